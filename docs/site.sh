@@ -13,6 +13,14 @@ mkdir -p "$out/pages/source"
 out=$(cd "$out" && pwd)
 
 cp "$docs"/*.md "$docs"/*.png "$docs"/*.svg "$out/pages/"
+# A live page, if the program was built with the engine for pages (-DLRB_WASM=ON).
+if "$tree/build/release/bin/lrbscope" --quiet run collision --live --frames none -o "$out/live" >/dev/null 2>&1; then
+  cp "$out/live/live.html" "$out/pages/"
+  for page in start scenarios; do
+    sed -i 's|(scenarios.md#a-live-page)|&, [try it here](live.html)|; s|^In `live.html`,|In `live.html` ([try it here](live.html)),|' "$out/pages/$page.md"
+  done
+fi
+rm -rf "$out/live"
 mv "$out/pages/start.md" "$out/pages/index.md"
 cp "$tree/CHANGELOG.md" "$out/pages/changelog.md"
 cp "$tree/CONTRIBUTING.md" "$out/pages/contributing.md"

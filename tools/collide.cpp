@@ -8,6 +8,7 @@
 #include "scenarios/frames/animation.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/poses.hpp"
+#include "scenarios/run/live_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tools/commands.hpp"
@@ -26,7 +27,7 @@ struct CollideOptions {
   PictureOptions picture;
   spec::StepQuestions more;
   std::optional<EventLevel> events;
-  bool json = false;
+  bool live = false, json = false;
 };
 
 /// Returns a motion that moves B's centre towards A's, from a separate position until some distance past the
@@ -87,6 +88,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
 }
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
+  if (o.live) run::check_live_page();
   if (!o.poses.empty()) io::open_poses(o.poses);  // check the file before an expensive build
   if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
   if (o.more.near) check_request(NearPairsRequest{.within = *o.more.near});
@@ -104,7 +106,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   run::Recording recording = run::record(scenario, std::move(bodies), progress);
   choose_views(o.picture.camera, scenario, recording);
-  const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
+  const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress, o.live);
   animate_frames(o.picture, folder);
   return report_outcome(outcome, folder, o.json, globals);
 }
@@ -140,6 +142,7 @@ Command add_collide(CLI::App& root, const Globals& globals) {
   add_events_option(*app, o->events);
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
+  add_live_option(*app, o->live);
   app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_collide(*o, globals); }};

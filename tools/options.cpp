@@ -286,6 +286,12 @@ void add_animation_option(CLI::App& app, PictureOptions& options) {
       ->type_name("OUT.mp4|gif|webp");
 }
 
+void add_live_option(CLI::App& app, bool& live) {
+  app.add_flag("--live", live,
+               "Also write live.html, a page in which B can be dragged and the engine answers each pose "
+               "(needs a program built with -DLRB_WASM=ON)");
+}
+
 void animate_frames(const PictureOptions& options, const std::string& folder) {
   if (!options.animation.empty()) run::animate(folder, options.animation);
 }

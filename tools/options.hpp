@@ -169,6 +169,9 @@ void add_animation_option(CLI::App& app, PictureOptions& options);
 /// Encodes the frames in a folder as an animation, if one was requested.
 void animate_frames(const PictureOptions& options, const std::string& folder);
 
+/// Adds --live, for commands that write a run.
+void add_live_option(CLI::App& app, bool& live);
+
 /// Adds --up, which takes x, y or z.
 void add_up_option(CLI::App& app, std::string& up);
 /// Returns a view rotated so that an axis (0, 1, 2) points up instead of z.

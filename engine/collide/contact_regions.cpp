@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <span>
 #include <unordered_map>
 
@@ -170,7 +171,7 @@ class Chainer {
     const auto begin = std::lower_bound(ends_.begin(), ends_.end(), End{point, 0});
     auto end = begin;
     while (end != ends_.end() && end->point == point) ++end;
-    return {begin, end};
+    return {std::to_address(begin), static_cast<std::size_t>(end - begin)};
   }
 
   ContactLoop walk(std::uint32_t from, std::uint32_t edge) {

@@ -6,6 +6,8 @@
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 namespace lrb {
@@ -73,6 +75,9 @@ inline std::uint32_t bits(Lanes lanes) {
 #elif defined(__SSE2__)
   const auto* half = reinterpret_cast<const __m128*>(&lanes);
   return static_cast<std::uint32_t>(_mm_movemask_ps(half[0]) | _mm_movemask_ps(half[1]) << 4);
+#elif defined(__wasm_simd128__)
+  const auto* half = reinterpret_cast<const v128_t*>(&lanes);
+  return static_cast<std::uint32_t>(wasm_i32x4_bitmask(half[0]) | wasm_i32x4_bitmask(half[1]) << 4);
 #else
   std::uint32_t result = 0;
   for (int k = 0; k < 8; ++k) result |= static_cast<std::uint32_t>(lanes[k] & 1) << k;
@@ -144,6 +149,15 @@ inline Int8 bytes_to_int(const std::uint8_t* q) {
   } u;
   u.half[0] = _mm_unpacklo_epi16(words, zero);
   u.half[1] = _mm_unpackhi_epi16(words, zero);
+  return u.all;
+#elif defined(__wasm_simd128__)
+  const v128_t words = wasm_u16x8_load8x8(q);
+  union {
+    v128_t half[2];
+    Int8 all;
+  } u;
+  u.half[0] = wasm_u32x4_extend_low_u16x8(words);
+  u.half[1] = wasm_u32x4_extend_high_u16x8(words);
   return u.all;
 #else
   Int8 x;

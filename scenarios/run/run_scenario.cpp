@@ -6,6 +6,7 @@
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/engine_run.hpp"
+#include "scenarios/run/live_page.hpp"
 #include "scenarios/run/run_page.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
@@ -54,7 +55,7 @@ RecordedRun recorded_run_of(const std::string& title, const std::string& purpose
 }
 
 RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
-                     const std::string& command, const ProgressReport& progress) {
+                     const std::string& command, const ProgressReport& progress, bool live) {
   const RecordedRun recorded = recorded_run_of(scenario, recording);
   check(scenario, recorded);
   const report::Folder locked(folder);
@@ -85,12 +86,18 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
   const report::Link summary{"summary.json", recording.trace.header.construction
                                                  ? "passes with their caps and reasons of rejection, as JSON"
                                                  : "totals, statistics and time steps, as JSON"};
+  std::vector<report::Link> links = {trace_link(trace_file), summary};
+  std::filesystem::remove(folder + "/" + kLivePage, error);
+  if (live) {
+    io::write_text(folder + "/" + kLivePage, live_page(recorded, folder, command));
+    links.push_back({kLivePage, "B can be dragged; the engine answers in the page"});
+  }
   run_page(recorded, drawn, folder,
            {scenario.name,
             scenario.purpose,
             command,
             trace_file,
-            {trace_link(trace_file), summary},
+            std::move(links),
             out.mismatches,
             "lrbscope why --run " + io::shell_word(folder)})
       .write(locked);
@@ -98,8 +105,9 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
 }
 
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
-                        const ProgressReport& progress) {
-  return write_run(scenario, record(scenario, progress), folder, command, progress);
+                        const ProgressReport& progress, bool live) {
+  if (live) check_live_page(scenario);
+  return write_run(scenario, record(scenario, progress), folder, command, progress, live);
 }
 
 }  // namespace lrb::run

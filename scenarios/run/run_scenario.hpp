@@ -21,11 +21,11 @@ RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& rec
 RecordedRun recorded_run_of(const std::string& title, const std::string& purpose, const Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
-/// montage.png}.
+/// montage.png}, and with `live` also live.html (live_page.hpp).
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
-                        const ProgressReport& progress);
+                        const ProgressReport& progress, bool live = false);
 /// Writes the same files for a run that has been recorded.
 RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
-                     const std::string& command, const ProgressReport& progress);
+                     const std::string& command, const ProgressReport& progress, bool live = false);
 
 }  // namespace lrb::run

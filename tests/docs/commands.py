@@ -29,6 +29,7 @@ NOT_RUN = [
         r"^(lrbscope paper|seq 0 3)",
         "takes minutes; tests/shards runs it in parts, spec and paper tests its experiments",
     ),
+    ("", r" --live\b", "needs the engine for pages; tests/browser/live.sh"),
     ("", r"^lrbscope xray\b", "needs another engine; xray_tests"),
     ("", r"--method (ours,)?fcl", "needs another engine; tails_tests"),
     ("docs/tails_and_worst.md", r"--command|run\.lrbcap", "needs another engine or its capture; tails_tests"),

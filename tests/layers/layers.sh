@@ -4,7 +4,7 @@
 # layers.sh --self-test: reverses an include of each module, one at a time in a copy, and fails unless each is detected.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-tops=(engine trace render scenarios bench tools python)
+tops=(engine trace render scenarios bench tools python wasm)
 
 check() { # the tree's root
   cd "$1"
