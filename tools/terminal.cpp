@@ -6,6 +6,7 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <string>
 #include <string_view>
@@ -92,6 +93,20 @@ run::ProgressReport progress_report(bool quiet) {
     }
     parts->bar->set(done);
   };
+}
+
+BuildOptions with_progress(BuildOptions options, bool quiet) {
+  struct Shared {
+    explicit Shared(bool q) : bar("build", 0, q) {}
+    std::mutex mutex;
+    Progress bar;
+  };
+  options.progress = [shared = std::make_shared<Shared>(quiet)](std::uint32_t pass,
+                                                                std::uint32_t front_faces) {
+    const std::lock_guard lock(shared->mutex);
+    shared->bar.set(pass, "front of " + std::to_string(front_faces) + " faces");
+  };
+  return options;
 }
 
 namespace {
