@@ -388,7 +388,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     if (o.validate)
       rep = std::make_unique<LrbRep>(bodies::build_from_mesh(std::move(mesh), {}, notes));
     else if (o.render || o.regions)
-      rep = std::make_unique<LrbRep>(bodies::body_of_mesh(std::move(mesh), with_progress({}, globals.quiet)).rep);
+      rep = std::make_unique<LrbRep>(
+          bodies::body_of_mesh(std::move(mesh), with_progress({}, globals.quiet)).rep);
   }
   bool valid = true;
   if (o.validate) {

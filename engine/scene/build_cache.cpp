@@ -33,17 +33,15 @@ bool is_of_mesh(const LrbRep& rep, const Mesh& mesh) {
            std::memcmp(all.data(), start.data(), start.size() * sizeof(start[0])) == 0;
   };
   return d.dim == mesh.dim && d.real_face_count == mesh.face_count() &&
-         begins_with(d.face_offsets, mesh.face_offsets) &&
-         begins_with(d.face_vertices, mesh.face_vertices) && begins_with(d.vertices, mesh.vertices);
+         begins_with(d.face_offsets, mesh.face_offsets) && begins_with(d.face_vertices, mesh.face_vertices) &&
+         begins_with(d.vertices, mesh.vertices);
 }
 
 }  // namespace
 
 std::string cache_entry(const Mesh& mesh, const BuildOptions& options) {
   // One hash per array at memory bandwidth, then a hash of them.
-  const auto hash_of_array = [](const auto& v) {
-    return fnv64_of_words(v.data(), v.size() * sizeof(v[0]));
-  };
+  const auto hash_of_array = [](const auto& v) { return fnv64_of_words(v.data(), v.size() * sizeof(v[0])); };
   Fnv64 h;
   h.add_value(static_cast<std::uint32_t>(mesh.dim));
   h.add_value(hash_of_array(mesh.vertices));
