@@ -300,10 +300,10 @@ std::vector<Cell> cells_of(const BuildResults& r, const BuiltBody& body) {
   return out;
 }
 
-std::string number(double value, int digits = 3) {
+std::string number(double value) {
   if (value == 0) return "-";
   char text[32];
-  std::snprintf(text, sizeof text, value >= 100 ? "%.0f" : "%.*g", digits, value);
+  std::snprintf(text, sizeof text, "%.*f", value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3, value);
   return text;
 }
 
