@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "bench/speed/build_times.hpp"
 #include "bench/speed/peer_table.hpp"
 #include "bench/speed/survey.hpp"
 #include "scenarios/io/files.hpp"
@@ -19,7 +20,12 @@ using workers::WorkerMethod;
 struct BenchOptions : MeasureOptions {
   BenchOptions() { folder = folder_help = "out/bench"; }
   std::vector<std::uint32_t> faces = {20000, 100000};
+  bool build = false;
+  unsigned rounds = 5;
 };
+
+/// Seconds. LRB-reps of large bodies take longer than queries.
+constexpr double kLeastBuildTimeout = 120;
 
 /// Returns true for lrbscope and for engines that answer the same query.
 bool is_peer(const workers::WorkerMethod& m) {
@@ -27,12 +33,33 @@ bool is_peer(const workers::WorkerMethod& m) {
          m.info.role != methods::Role::no_peer;
 }
 
+/// The option --build.
+int run_build_survey(const BenchOptions& o, std::vector<bench::BodyPair> bodies,
+                     std::vector<workers::WorkerMethod> methods, const Globals& globals) {
+  // lrbscope's methods differ in their queries; bench::own_structures() are what it builds.
+  std::erase_if(methods, [](const workers::WorkerMethod& m) {
+    return !m.info.present || m.info.has(methods::Trait::own_rep);
+  });
+  const report::Folder folder(o.folder);
+  const bench::BuildResults results = bench::survey_builds(
+      {std::move(bodies), std::move(methods), o.rounds, std::max(o.timeout, kLeastBuildTimeout), o.folder},
+      progress_report(globals.quiet));
+  const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n";
+  const std::string text = head + bench::build_text(results);
+  print(text);
+  report::Document page = bench::build_page(results);
+  page.number({"Machine", bench::machine(), bench::build_flags()}).command(globals.command_line);
+  page.file("builds.csv", bench::build_csv(results), "every build");
+  page.file("builds.txt", text, "the tables as text");
+  page.write(folder);
+  for (const std::string& file : page.written()) print(o.folder + "/" + file + "\n");
+  return kOk;
+}
+
 int run_bench(const BenchOptions& o, const Globals& globals) {
   std::vector<workers::WorkerMethod> methods = workers::find_all_methods();
   std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
   methods = chosen_methods(methods, o.methods);
-  make_folder(o.folder);
-  const io::FolderLock lock(o.folder);
   std::vector<bench::BodyPair> pairs;
   if (!o.models.empty()) pairs = bench::pairs_of_models(o.models);
   for (const std::uint32_t n : o.faces)
@@ -41,6 +68,9 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
         pairs.push_back(std::move(p));
         if (n != o.faces.front()) break;
       }
+  if (o.build) return run_build_survey(o, std::move(pairs), std::move(methods), globals);
+  make_folder(o.folder);
+  const io::FolderLock lock(o.folder);
   bench::SurveyOptions survey_options;
   survey_options.folder = o.folder;
   survey_options.timeout = o.timeout;
@@ -80,6 +110,11 @@ Command add_bench(CLI::App& root, const Globals& globals) {
                   "Face counts of the generated bodies: every kind at the first count, only rocks at the "
                   "others; 0: none [20000 100000]")
       ->check(CLI::Range(0, 2000000))
+      ->type_name("N");
+  app->add_flag("--build", o->build,
+                "Compare the time to build, the first answer and memory instead of queries");
+  app->add_option("--rounds", o->rounds, "With --build: number of times that each structure is built [5]")
+      ->check(CLI::Range(1, 1000))
       ->type_name("N");
   return {app, [o, &globals] { return run_bench(*o, globals); }};
 }

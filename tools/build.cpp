@@ -60,15 +60,10 @@ std::string as_text(const nlohmann::ordered_json& j, const ValidateReport* repor
 int run_build(const BuildCommandOptions& o, const Globals& globals) {
   std::vector<std::string> notes;
   Mesh mesh = bodies::read_body(o.mesh, o.corners, notes);
-  BuildOptions options = o.build;
-  Progress progress("build", 0, globals.quiet);
-  options.progress = [&](std::uint32_t pass, std::uint32_t faces) {
-    progress.set(pass, "front of " + std::to_string(faces) + " faces");
-  };
   const auto begin = std::chrono::steady_clock::now();
-  const LrbRep rep = bodies::build_from_mesh(check(std::move(mesh)), options, notes);
+  const LrbRep rep =
+      bodies::build_from_mesh(check(std::move(mesh)), with_progress(o.build, globals.quiet), notes);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  progress.finish();
   for (std::string line : {bodies::poor_line(rep, o.build), note_no_levels(rep)})
     if (!line.empty()) notes.push_back(std::move(line));
   note(globals, notes);

@@ -94,9 +94,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   if (o.more.near) check_request(NearPairsRequest{.within = *o.more.near});
   if (o.more.manifold) check_request(ManifoldRequest{.margin = *o.more.manifold});
   const run::ProgressReport progress = progress_report(globals.quiet);
-  progress("build", 0, 2);
-  auto both = bodies::load_two_bodies(o.a, o.b, {}, o.corners);
-  progress("build", 2, 2);
+  auto both = bodies::load_two_bodies(o.a, o.b, with_progress({}, globals.quiet), o.corners);
   std::vector<bodies::LoadedBody> bodies(std::make_move_iterator(both.begin()),
                                          std::make_move_iterator(both.end()));
   if (bodies[0].rep.dim() != bodies[1].rep.dim())

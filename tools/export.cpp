@@ -147,7 +147,8 @@ int export_body(const ExportOptions& given, const Globals& globals) {
          "expected kind, layer or region for a body; the other quantities need a run");
   if (o.what.empty()) o.what = {o.chooses_wrapper() ? "wrapper" : "body"};
   const bool needs_regions = o.asks_for("wrapper") || o.picture.colour_by;
-  const bodies::LoadedBody body = needs_regions ? bodies::load_body(o.input) : bodies::load_faces(o.input);
+  const bodies::LoadedBody body = needs_regions ? bodies::load_body(o.input, with_progress({}, globals.quiet))
+                                                : bodies::load_faces(o.input);
   note(globals, body.notes);
   std::optional<Wrapper> wrapper;
   if (o.asks_for("wrapper")) {

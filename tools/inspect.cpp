@@ -22,6 +22,7 @@
 #include "scenarios/io/files.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
+#include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
@@ -387,7 +388,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     if (o.validate)
       rep = std::make_unique<LrbRep>(bodies::build_from_mesh(std::move(mesh), {}, notes));
     else if (o.render || o.regions)
-      rep = std::make_unique<LrbRep>(bodies::body_of_mesh(std::move(mesh)).rep);
+      rep = std::make_unique<LrbRep>(
+          bodies::body_of_mesh(std::move(mesh), with_progress({}, globals.quiet)).rep);
   }
   bool valid = true;
   if (o.validate) {

@@ -9,6 +9,7 @@
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
+#include "tools/terminal.hpp"
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::cli {
@@ -42,7 +43,7 @@ std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbR
 }
 
 int run_levels(const LevelsOptions& o, const Globals& globals) {
-  const bodies::LoadedBody body = bodies::load_body(o.body, o.build, o.corners);
+  const bodies::LoadedBody body = bodies::load_body(o.body, with_progress(o.build, globals.quiet), o.corners);
   levels::LevelReportOptions report{o.shares, {}, o.build.threads, globals.command_line};
   if (!o.up.empty()) report.view = turned_up(report.view, o.up[0] - 'x');
   if (!o.folder.empty()) levels::check_drawable(body.rep, report.shares);

@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -11,6 +12,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "scenarios/bodies/loaded_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/terminal.hpp"
 #include "trace/json_read.hpp"
@@ -181,6 +183,11 @@ int parse_and_run(int argc, char** argv) {
   Globals globals;
   globals.command_line = shell_line({argv + std::min(argc, 1), argv + argc});
   app.add_flag("-q,--quiet", globals.quiet, "Print only errors to stderr");
+  std::string cache;
+  app.add_option("--cache", cache,
+                 "Folder that keeps the LRB-reps of meshes, so that they are built once [$LRBSCOPE_CACHE, or "
+                 "none]")
+      ->type_name("DIR");
   const std::vector<Command> commands = add_commands(app, globals);
   try {
     app.parse(argc, argv);
@@ -189,6 +196,8 @@ int parse_and_run(int argc, char** argv) {
     return complain("", usage_error(app, e, std::string(command_word(argc, argv))), kBadInput);
   }
   reject_empty_values(app);
+  // Before any thread starts. Programs that the command starts share the folder.
+  if (!cache.empty()) setenv(bodies::kCacheVariable, cache.c_str(), 1);
   for (const Command& command : commands)
     if (command.app->parsed()) return command.run();
   return kBadInput;

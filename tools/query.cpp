@@ -132,8 +132,9 @@ bool needs_regions(const CollideRequest& request) {
 int run_query(const QueryOptions& o, const Globals& globals) {
   const PoseLines list(o.poses);
   const std::vector<Pose>& poses = list.poses;
-  const auto loaded = needs_regions(o.request) ? bodies::load_two_bodies(o.a, o.b, {}, o.corners)
-                                               : bodies::load_faces_of_two(o.a, o.b, o.corners);
+  const auto loaded = needs_regions(o.request)
+                          ? bodies::load_two_bodies(o.a, o.b, with_progress({}, globals.quiet), o.corners)
+                          : bodies::load_faces_of_two(o.a, o.b, o.corners);
   const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
   note(globals, a.notes);
   note(globals, b.notes);

@@ -104,6 +104,20 @@ run::ProgressReport progress_report(bool quiet) {
   };
 }
 
+BuildOptions with_progress(BuildOptions options, bool quiet) {
+  struct Shared {
+    explicit Shared(bool q) : bar("build", 0, q) {}
+    std::mutex mutex;
+    Progress bar;
+  };
+  options.progress = [shared = std::make_shared<Shared>(quiet)](std::uint32_t pass,
+                                                                std::uint32_t front_faces) {
+    const std::lock_guard lock(shared->mutex);
+    shared->bar.set(pass, "front of " + std::to_string(front_faces) + " faces");
+  };
+  return options;
+}
+
 namespace {
 
 constexpr std::string_view kOutOfMemoryLine =

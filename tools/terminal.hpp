@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scenarios/record/recorded_run.hpp"
+#include <lrbscope/build.hpp>
 
 namespace lrb::cli {
 
@@ -34,6 +35,10 @@ class Progress {
 
 /// Returns a function that draws the progress of a job of several parts, one bar per part.
 run::ProgressReport progress_report(bool quiet);
+
+/// Returns the options with a progress bar for the build, removed when the last copy of them is destroyed.
+/// Bodies that are built at the same time share it.
+BuildOptions with_progress(BuildOptions options, bool quiet);
 
 /// Installs handlers for SIGINT, SIGTERM and SIGHUP that remove unfinished files, print a line, and then end
 /// the program by the same signal, so that a shell sees the cause. Finished files stay. Signals that the

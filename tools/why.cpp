@@ -12,6 +12,7 @@
 #include "scenarios/run/explanation_text.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
+#include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/explain.hpp>
@@ -61,7 +62,7 @@ int run_why(const WhyOptions& o, const Globals& globals) {
   }
   if (o.b.empty()) throw InputError("why: expected two bodies A and B, or --run DIR");
   const Pose pose = pose_of(o);
-  const auto loaded = bodies::load_two_bodies(o.a, o.b, {}, o.corners);
+  const auto loaded = bodies::load_two_bodies(o.a, o.b, with_progress({}, globals.quiet), o.corners);
   const bodies::LoadedBody &a = loaded[0], &b = loaded[1];
   note(globals, a.notes);
   note(globals, b.notes);

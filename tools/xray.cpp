@@ -69,15 +69,15 @@ std::vector<xray::PosePair> rigid_poses(const std::string& path) {
 int run_xray(const XrayOptions& o, const Globals& globals) {
   const std::vector<xray::PosePair> poses = rigid_poses(o.poses);
   const run::ProgressReport progress = progress_report(globals.quiet);
-  progress("build", 0, 2);
+  std::optional<BuildOptions> building = with_progress({}, globals.quiet);
   auto both = bodies::load_two(o.a, o.b, [&](const std::string& path) {
-    bodies::LoadedBody body = bodies::load_body(path, {}, o.corners);
+    bodies::LoadedBody body = bodies::load_body(path, *building, o.corners);
     if (body.rep.dim() != 3)
       throw InputError(printable_name(path) +
                        ": expected a 3D body, found a 2D body; the other engines support only 3D");
     return body;
   });
-  progress("build", 2, 2);
+  building.reset();
   std::vector<bodies::LoadedBody> bodies(std::make_move_iterator(both.begin()),
                                          std::make_move_iterator(both.end()));
   const capture::Capture walk = xray::walk_of(o.method, bodies[0].rep, bodies[1].rep, poses);

@@ -1,13 +1,11 @@
-// The OBB tree beside the trees of other engines, in wall time; a body of faces from a mesh; building a body
-// lean and to fit, its levels of detail, and loading its .lrb. Scaling: the same benchmarks on rocks of
-// 31,000 to 2,000,000 faces, with the exponent of the growth of time (tests/scaling measures memory). Other
-// times are processor times of one thread; `lrbscope inspect` prints the figures of a body.
+// Building a body lean and to fit, and its levels of detail, in processor time of one thread. Scaling:
+// building and loading rocks of 31,000 to 2,000,000 faces, with the exponent of the growth of time
+// (tests/scaling measures memory). `lrbscope bench --build` measures trees and LRB-reps beside other engines.
 #include <filesystem>
 #include <string>
 
 #include <unistd.h>
 
-#include "bench/methods/method.hpp"
 #include "bench/methods/triangles.hpp"
 #include "bench/micro/poses.hpp"
 #include "scenarios/bodies/generators.hpp"
@@ -17,34 +15,7 @@
 using namespace lrb;
 using namespace lrb::micro;
 
-namespace lrb::methods {
-std::vector<MethodEntry> bullet_methods();
-std::vector<MethodEntry> embree_methods();
-std::vector<MethodEntry> fcl_methods();
-}  // namespace lrb::methods
-
 namespace {
-
-void tree(benchmark::State& state, const LrbRep& rep, unsigned threads) {
-  for (auto _ : state) benchmark::DoNotOptimize(ObbTree(rep.simplices(), threads).height());
-  state.counters["bytes_per_face"] =
-      static_cast<double>(rep.tree().memory_bytes()) / static_cast<double>(rep.real_face_count());
-}
-
-/// Adds the trees of other engines. They include a copy of the triangles in the engine's form.
-void add_others(const Subject& s) {
-  for (const auto& all : {methods::bullet_methods(), methods::embree_methods(), methods::fcl_methods()})
-    for (const methods::MethodEntry& entry : all) {
-      if (entry.make == nullptr) continue;  // not installed
-      add(s, "tree, " + entry.info.name,
-          [&s, make = entry.make](benchmark::State& state) {
-            const std::unique_ptr<methods::Method> method = make();
-            for (auto _ : state) benchmark::DoNotOptimize(method->build(s.body));
-          })
-          ->UseRealTime()
-          ->Unit(benchmark::kMillisecond);
-    }
-}
 
 void build(benchmark::State& state, const Mesh& mesh, bool lean) {
   BuildOptions options;
@@ -80,18 +51,6 @@ BENCHMARK(growth_build)->RangeMultiplier(2)->Range(39, 316)->Unit(benchmark::kMi
 BENCHMARK(growth_load)->RangeMultiplier(2)->Range(39, 316)->Unit(benchmark::kMillisecond)->Complexity();
 
 void add_all(const Subject& s) {
-  for (const unsigned threads : {1u, 2u})
-    add(s, "tree, threads " + std::to_string(threads),
-        [&s, threads](benchmark::State& state) { tree(state, s.body, threads); })
-        ->UseRealTime()
-        ->Unit(benchmark::kMillisecond);
-  add_others(s);
-  add(s, "faces", [&s](benchmark::State& state) {
-    const Mesh mesh = methods::real_mesh(s.body);
-    BodyOptions faces;
-    faces.regions = false;
-    for (auto _ : state) benchmark::DoNotOptimize(Body::from(mesh, faces)->name());
-  })->Unit(benchmark::kMillisecond);
   for (const bool lean : {true, false})
     add(s, lean ? "lean" : "to fit", [&s, lean](benchmark::State& state) {
       build(state, methods::real_mesh(s.body), lean);
@@ -105,7 +64,6 @@ void add_all(const Subject& s) {
       rep.levels(1);
     }
   })->Unit(benchmark::kMillisecond);
-  add(s, "load", [&s](benchmark::State& state) { load(state, s.body); })->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace

@@ -12,6 +12,9 @@
 ///   --questions FILE --method M [--setting X] [--errors] --begin K --end L
 ///                         a bench::Record for each of a data set's queries K .. L - 1; with --errors also
 ///                         the errors of its answers
+///   --build FILE.lrb --method M
+///                         a bench::BuildTime for each of the rounds K .. L - 1; M may also be one of
+///                         bench::own_structures()
 ///   --saved --method M    a record, with the list of pairs, for each case whose file is named by a line of
 ///   file
 ///                         descriptor 3, until its end (bench/stability/case_meshes.hpp)
@@ -32,6 +35,7 @@
 #include "bench/methods/method.hpp"
 #include "bench/programs/case_queue.hpp"
 #include "bench/speed/bench_runner.hpp"
+#include "bench/speed/build_times.hpp"
 #include "bench/stability/case_meshes.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/stability_experiment.hpp"
@@ -47,7 +51,7 @@ using nlohmann::ordered_json;
 struct WorkerOptions {
   CaseQueue queue;
   bool pairs = false, errors = false;
-  std::string questions;
+  std::string questions, build;
   std::optional<double> setting;
   std::vector<std::string> bodies;
   bool no_join = false, saved = false;
@@ -81,6 +85,15 @@ void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Line
 void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entries, Lines& out) {
   if (o.queue.list) return list_methods(entries, out);
   if (o.queue.method.empty()) return say_expected(o.queue, out);
+  if (!o.build.empty()) {
+    const auto known = std::find_if(entries.begin(), entries.end(), [&](const methods::MethodEntry& e) {
+      return e.info.name == o.queue.method;
+    });
+    const methods::MethodEntry* entry = known == entries.end() ? nullptr : &*known;
+    for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k)
+      out.say(dump(to_json(bench::time_build(entry, o.queue.method, o.build))));
+    return;
+  }
   const methods::MethodEntry& entry = methods::find_method(entries, o.queue.method);
   if (o.saved) {
     std::ifstream requests("/proc/self/fd/3");
@@ -107,6 +120,7 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
   app.add_flag("--pairs", o.pairs);
   app.add_flag("--errors", o.errors);
   app.add_option("--questions", o.questions);
+  app.add_option("--build", o.build);
   app.add_option("--setting", o.setting);
   app.add_option("--bodies", o.bodies)->expected(2);
   app.add_flag("--no-join", o.no_join);

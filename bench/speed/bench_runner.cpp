@@ -23,12 +23,12 @@ void sweep_caches() {
   for (std::size_t i = 0; i < junk.size(); i += kLine) ++junk[i];
 }
 
-namespace {
-
 double heap_bytes() {
   const struct mallinfo2 m = mallinfo2();
   return static_cast<double>(m.uordblks + m.hblkhd);
 }
+
+namespace {
 
 std::size_t difference(const std::vector<SimplexPair>& of, const std::vector<SimplexPair>& without) {
   std::vector<SimplexPair> out;

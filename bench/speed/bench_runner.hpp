@@ -54,6 +54,9 @@ std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const 
 /// Reads more memory than most last-level caches contain, so that the next query fetches its data again.
 void sweep_caches();
 
+/// Returns the number of bytes of the heap that are in use.
+double heap_bytes();
+
 struct QueryTimes {
   double cold_us = 0;  ///< of the first query, after caches were swept
   double hot_us = 0;   ///< minimum of some repetitions

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <utility>
 
+#include "engine/scene/build_cache.hpp"
 #include <lrbscope/body.hpp>
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
@@ -26,7 +28,7 @@ const BodyOptions& default_body_options() {
 // From a checked mesh to an LRB-rep.
 // 1. Reject meshes that cannot be queried at all.
 // 2. Orient components outwards, if requested and needed.
-// 3. Build the regions and prove the cells closed (validate_cells()).
+// 3. Find the regions in the cache or build them, and prove the cells closed (validate_cells()).
 // 4. If the mesh cannot have regions or the proof fails, keep only the real faces and note the reason.
 
 namespace {
@@ -112,9 +114,18 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
   // Steps 2 and 3. The time includes the proof.
   if (can_be_built(mesh, turn)) {
     const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
+    if (std::optional<LrbRep> rep = find_built(mesh.mesh(), options, notes))
+      return {std::move(*rep), std::move(notes), 0, turned};
     const auto begin = Clock::now();
-    LrbRep rep = proven(build_lrb(mesh, options), notes);
+    LrbRep rep = build_lrb(mesh, options);
+    std::string fault = note_unproven(rep);
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (fault.empty()) {
+      keep_built(rep, mesh.mesh(), options, notes);
+    } else {
+      notes.push_back(std::move(fault));
+      rep = LrbRep::without_regions(rep);
+    }
     return {std::move(rep), std::move(notes), seconds, turned};
   }
   // Step 4. Without regions, the body still stores whether it intersects itself.

@@ -69,6 +69,7 @@ class Body:
         threads: int = 0,
         name: str = "body",
         progress: _Progress | None = None,
+        cache: _Path | None = None,
     ) -> None: ...
     @staticmethod
     def load(
@@ -79,6 +80,7 @@ class Body:
         seed: int = 1,
         threads: int = 0,
         progress: _Progress | None = None,
+        cache: _Path | None = None,
     ) -> Body: ...
     def save(self, path: _Path) -> None: ...
     def __copy__(self) -> Body: ...

@@ -22,8 +22,10 @@ std::size_t used_vertices(const LrbRep& rep) {
 }
 
 /// `progress` must outlive the options.
-BuildOptions build_options(py::handle lean, py::handle seed, py::handle threads, const Progress& progress) {
+BuildOptions build_options(py::handle lean, py::handle seed, py::handle threads, const py::object& cache,
+                           const Progress& progress) {
   BuildOptions options;
+  if (!cache.is_none()) options.cache = path(cache, "cache");
   options.lean = flag(lean, "lean");
   options.seed = count(seed, "seed", options.seed);
   options.threads = threads_of(count(threads, "threads"));
@@ -34,10 +36,11 @@ BuildOptions build_options(py::handle lean, py::handle seed, py::handle threads,
 }
 
 BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions, py::handle lean,
-                       py::handle seed, py::handle threads, py::handle name, const py::object& progress) {
+                       py::handle seed, py::handle threads, py::handle name, const py::object& progress,
+                       const py::object& cache) {
   Mesh mesh = mesh_of_arrays(vertices, faces, text(name, "name", "body"));
   const Progress report(progress);
-  const BuildOptions options = build_options(lean, seed, threads, report);
+  const BuildOptions options = build_options(lean, seed, threads, cache, report);
   const bool with_regions = flag(regions, "regions", true);
   const std::size_t n = mesh.vertices.size();
   const py::gil_scoped_release unlocked;
@@ -47,10 +50,10 @@ BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions
 }
 
 BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle seed, py::handle threads,
-             const py::object& progress) {
+             const py::object& progress, const py::object& cache) {
   const std::string name = path(file, "path");
   const Progress report(progress);
-  const BuildOptions options = build_options(lean, seed, threads, report);
+  const BuildOptions options = build_options(lean, seed, threads, cache, report);
   const bool with_regions = flag(regions, "regions", true);
   const py::gil_scoped_release unlocked;
   return std::make_shared<Body>(with_regions
@@ -231,8 +234,8 @@ using BodyClass = py::class_<Body, BodyPtr>;
 void bind_making(BodyClass& c) {
   c.def(py::init(&body_of_arrays), py::arg("vertices"), py::arg("faces"), py::kw_only(),
         py::arg("regions") = true, py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
-        py::arg("name") = "body", py::arg("progress") = py::none(),
-        R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body', progress=None)
+        py::arg("name") = "body", py::arg("progress") = py::none(), py::arg("cache") = py::none(),
+        R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body', progress=None, cache=None)
 
 Makes a body from arrays.
 
@@ -244,13 +247,15 @@ lean: build a smaller LRB-rep whose wrappers fit less tightly.
 seed, threads: of the build. The result depends only on the seed. threads 0: all cores.
 progress: called with (what, done, total) after each pass of the build, total 0 for an unknown one; True: a
     bar, where tqdm is installed.
+cache: a folder that keeps LRB-reps, so that each mesh is built once; by default that of the environment
+    variable LRBSCOPE_CACHE, or none.
 
 Raises InputError, which names the element, for a mesh that cannot be queried at all. A surface that cannot
 have regions (open, not manifold) gives a body without them.)");
   c.def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("regions") = true,
                py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
-               py::arg("progress") = py::none(),
-               R"(load(path, *, regions=True, lean=False, seed=1, threads=0, progress=None)
+               py::arg("progress") = py::none(), py::arg("cache") = py::none(),
+               R"(load(path, *, regions=True, lean=False, seed=1, threads=0, progress=None, cache=None)
 
 Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)");
   c.def("save", &save, py::arg("path"),

@@ -1,5 +1,7 @@
 #include "scenarios/bodies/loaded_body.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <future>
 #include <new>
@@ -37,7 +39,10 @@ LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options) {
 }
 
 LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options) {
-  return loaded(make_body(std::move(mesh), options));
+  BuildOptions with_cache = options;
+  const char* folder = std::getenv(kCacheVariable);
+  if (options.cache.empty() && folder != nullptr) with_cache.cache = folder;
+  return loaded(make_body(std::move(mesh), with_cache));
 }
 
 Mesh read_body(const std::string& path, Corners corners, std::vector<std::string>& notes) {
@@ -110,7 +115,13 @@ std::array<LoadedBody, 2> load_faces_of_two(const std::string& a, const std::str
 
 std::array<LoadedBody, 2> load_two_bodies(const std::string& a, const std::string& b,
                                           const BuildOptions& options, Corners corners) {
-  return load_two(a, b, [&](const std::string& path) { return load_body(path, options, corners); });
+  auto both = load_two(a, b, [&](const std::string& path) { return load_body(path, options, corners); });
+  // A cache that cannot be used gives the same note for both.
+  if (a != b)
+    std::erase_if(both[1].notes, [&](const std::string& note) {
+      return std::find(both[0].notes.begin(), both[0].notes.end(), note) != both[0].notes.end();
+    });
+  return both;
 }
 
 }  // namespace lrb::bodies

@@ -22,6 +22,10 @@ struct LoadedBody {
 
 using lrb::is_lrb_file;
 
+/// Environment variable of the folder in which body_of_mesh() and load_body() keep LRB-reps
+/// (BuildOptions::cache) if the options name none. `lrbscope --cache` sets it.
+inline constexpr const char* kCacheVariable = "LRBSCOPE_CACHE";
+
 /// Whether coincident corners are merged when a mesh is read (<lrbscope/mesh_repair.hpp>).
 enum class Corners : std::uint8_t { joined, apart };
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Counts the instructions of a few queries (callgrind) and compares them with tests/guard/guard.txt, to detect changes that
-# add work to a query, independently of the load of the machine. Counts depend on the compiler, its flags and AVX2;
+# Counts the instructions of a few queries and builds (callgrind) and compares them with tests/guard/guard.txt, to detect changes
+# that add work, independently of the load of the machine. Counts depend on the compiler, its flags and AVX2;
 # guard.txt has separate lines for each combination.
 #   tests/guard/guard.sh [BUILD] [--tolerance PERCENT] [--approve]      BUILD: a build folder [build/release]
 # Exit codes: 0 within the tolerance (or approved), 1 more instructions than it allows, 2 bad usage, 3 cannot count.

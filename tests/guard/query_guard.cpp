@@ -1,6 +1,6 @@
-// A few queries whose instructions guard.sh counts under callgrind, to which this program reports where a
-// query begins and ends. Alone it runs them and counts nothing. Prints the compiler first: counts depend on
-// it.
+// A few queries and builds whose instructions guard.sh counts under callgrind, to which this program reports
+// where each begins and ends. Alone it runs them and counts nothing. Prints the compiler first: counts depend
+// on it.
 #include <cstdio>
 #include <string>
 
@@ -67,6 +67,18 @@ void ask(const Guarded& g, const LrbRep& a, const LrbRep& b) {
   std::printf("%s %zu\n", g.name, pairs);
 }
 
+/// Reports a build to callgrind. The builds before it have filled the caches of the allocator.
+template <class Build>
+void count_build(const char* name, const Build& build) {
+  build();
+  CALLGRIND_ZERO_STATS;
+  CALLGRIND_START_INSTRUMENTATION;
+  const std::size_t faces = build();
+  CALLGRIND_STOP_INSTRUMENTATION;
+  CALLGRIND_DUMP_STATS_AT(name);
+  std::printf("%s %zu\n", name, faces);
+}
+
 }  // namespace
 
 int main() {
@@ -77,4 +89,7 @@ int main() {
 #endif
   const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 1)), b = build_lrb(shapes::bumpy_sphere(4, 2));
   for (const Guarded& g : kGuarded) g.watched ? ask<IdleProbe>(g, a, b) : ask<NullProbe>(g, a, b);
+  const Mesh small = shapes::bumpy_sphere(3, 1);
+  count_build("build_tree", [&]() -> std::size_t { return ObbTree(a.simplices(), 1).height(); });
+  count_build("build_lrb", [&]() -> std::size_t { return build_lrb(small).face_count(); });
 }

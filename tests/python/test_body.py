@@ -301,3 +301,30 @@ def test_progress_bar(monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     with pytest.raises(ModuleNotFoundError, match="pass a function"):
         Body(*ball_arrays(3), progress=True)
+
+
+def test_a_cache_keeps_built_bodies(tmp_path, monkeypatch):
+    arrays = ball_arrays(3)
+    plain = Body(*arrays)
+    cache = tmp_path / "cache"
+    first = Body(*arrays, cache=cache)
+    assert first.hash == plain.hash and first.build_seconds > 0
+    assert len(list(cache.glob("*.lrb"))) == len(list(cache.iterdir())) == 1
+    again = Body(*arrays, cache=str(cache), name="another")
+    assert again.hash == plain.hash and again.build_seconds == 0 and again.name == "another"
+    # Body.load() of a file with the same content, and the environment variable.
+    path = tmp_path / "ball.ply"
+    plain.save(path)
+    assert Body.load(path, cache=cache).build_seconds == 0
+    assert Body.load(path).build_seconds > 0
+    monkeypatch.setenv("LRBSCOPE_CACHE", str(cache))
+    assert Body.load(path).build_seconds == 0
+    assert Body.load(path, regions=False).region_count == 0
+    # A damaged entry.
+    (entry,) = cache.iterdir()
+    entry.write_bytes(entry.read_bytes()[:-9])
+    rebuilt = Body(*arrays)
+    assert rebuilt.hash == plain.hash and "its cached LRB-rep cannot be used" in rebuilt.notes[0]
+    assert Body(*arrays).build_seconds == 0
+    with pytest.raises(TypeError, match="cache"):
+        Body(*arrays, cache=3)

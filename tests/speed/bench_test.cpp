@@ -8,6 +8,7 @@
 
 #include "bench/methods/method.hpp"
 #include "bench/speed/bench_runner.hpp"
+#include "bench/speed/build_times.hpp"
 #include "bench/speed/data_set.hpp"
 #include "bench/speed/make_sets.hpp"
 #include "bench/speed/metrics.hpp"
@@ -456,6 +457,35 @@ TEST_CASE("the commands: records, table, charts; existing records are reused") {
   CHECK(std::count(points.begin(), points.end(), '\n') == 3 * 5 * 7);
   CHECK(test::run(folder, {"chart", "draw", "-o", "nothing"}).code == 2);
   CHECK(test::run(folder, {"bench", "--method", "nobody", "-o", "b"}).code == 2);
+}
+
+TEST_CASE("bench --build measures every structure in every round") {
+  const Folder folder;
+  const auto o = test::run(folder, {"bench", "--build", "--faces", "320", "--rounds", "2", "-o", "b"});
+  CHECK(o.code == 0);
+  for (const methods::MethodInfo& s : bench::own_structures())
+    CHECK(o.out.find(s.title) != std::string::npos);
+  std::istringstream csv(slurp(folder / "b/builds.csv"));
+  std::map<std::string, int> rows;
+  std::string line;
+  std::getline(csv, line);
+  CHECK(line.starts_with("body,faces,method,round,outcome,build_ms"));
+  while (std::getline(csv, line)) {
+    std::vector<std::string> cells;
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+    REQUIRE(cells.size() == 11);
+    ++rows[cells[2]];
+    const bool own = cells[2].starts_with("tree") || cells[2].starts_with("lrb");
+    if (own) CHECK(cells[4] == "answered");
+    if (cells[4] != "answered") continue;
+    CHECK(std::stod(cells[5]) > 0);
+    CHECK(std::stod(cells[7]) > std::stod(cells[5]));  // the first answer includes the build
+    CHECK(std::stod(cells[9]) > 0);
+    CHECK(cells[10] == "1");  // the bodies intersect
+  }
+  for (const methods::MethodInfo& s : bench::own_structures()) CHECK(rows[s.name] == 3 * 2);
+  CHECK(slurp(folder / "b/index.html").find("First answer") != std::string::npos);
 }
 
 TEST_CASE("numbers are judged by their error, in diagonals or fractions of the motion") {

@@ -121,11 +121,12 @@ Expected<Body> Body::from(const Eigen::MatrixBase<V>& vertices, const Eigen::Mat
 struct MadeBody {
   LrbRep rep;
   std::vector<std::string> notes;  ///< changes and failures, one line each, for users
-  double build_seconds = 0;        ///< 0 if no regions were built
+  double build_seconds = 0;        ///< 0 if no regions were built, or if they were in the cache
   std::uint32_t turned = 0;        ///< number of inward-oriented components
 };
 
-/// Reorients inward-oriented components, if `turn`, and builds an LRB-rep. A mesh without an LRB-rep, or with
+/// Reorients inward-oriented components, if `turn`, and builds an LRB-rep, or takes it from the folder
+/// `options.cache`. A mesh without an LRB-rep, or with
 /// a failed proof, becomes a body without regions, and a note gives the reason. Throws InputError if the mesh
 /// cannot be queried at all.
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = true);

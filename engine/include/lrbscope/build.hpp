@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -163,6 +164,9 @@ struct BuildOptions {
   /// Called after each pass with its number and the number of faces of the front. May be empty.
   std::function<void(std::uint32_t pass, std::uint32_t front_faces)> progress;
   ConstructProbe* probe = nullptr;  ///< observer of the build, may be null. Must outlive the build
+  /// Folder in which make_body(), and therefore Body, keeps LRB-reps and finds them again
+  /// (engine/scene/build_cache.hpp); empty: none. build_lrb() does not use it.
+  std::string cache;
 };
 
 /// Builds an LRB-rep by simplifying patches of progressive hulls (Sander et al., "Silhouette Clipping", 2000)

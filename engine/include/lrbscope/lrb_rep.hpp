@@ -88,6 +88,7 @@ class LrbRep {
   /// concurrent calls wait.
   bool overlaps_itself() const;
   const std::string& name() const { return d_.name; }
+  void rename(std::string name) { d_.name = std::move(name); }
   const LrbData& data() const { return d_; }
 
   std::span<const Eigen::Vector3d> vertices() const { return d_.vertices; }
