@@ -232,10 +232,11 @@ py::object itself(const py::object& self) {
 using BodyClass = py::class_<Body, BodyPtr>;
 
 void bind_making(BodyClass& c) {
-  c.def(py::init(&body_of_arrays), py::arg("vertices"), py::arg("faces"), py::kw_only(),
-        py::arg("regions") = true, py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
-        py::arg("name") = "body", py::arg("progress") = py::none(), py::arg("cache") = py::none(),
-        R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body', progress=None, cache=None)
+  c.def(
+      py::init(&body_of_arrays), py::arg("vertices"), py::arg("faces"), py::kw_only(),
+      py::arg("regions") = true, py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
+      py::arg("name") = "body", py::arg("progress") = py::none(), py::arg("cache") = py::none(),
+      R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body', progress=None, cache=None)
 
 Makes a body from arrays.
 

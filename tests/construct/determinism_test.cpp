@@ -19,8 +19,9 @@ TEST_CASE("the same seed gives the same complex, another seed another one") {
 }
 
 /// Bodies with whole coordinates, so that only the builder's arithmetic counts. If this fails after the
-/// builder was changed on purpose, put in the new values and raise kBuilderVersion (engine/scene/build_cache.hpp); if it fails with one compiler or build type only,
-/// something depends on the order of evaluation, on fused operations or on uninitialised memory.
+/// builder was changed on purpose, put in the new values and raise kBuilderVersion
+/// (engine/scene/build_cache.hpp); if it fails with one compiler or build type only, something depends on the
+/// order of evaluation, on fused operations or on uninitialised memory.
 TEST_CASE("the same complex with every compiler and build type") {
   CHECK(build_lrb(comb(6)).hash() == 346505426862216434u);
   CHECK(build_lrb(comb_2d(12)).hash() == 11678506581189530301u);
