@@ -27,8 +27,8 @@ struct BuildTime {
   bool contact = false;   ///< the first answer, which is the same for all methods
 };
 
-/// Returns lrbscope's structures, which only this comparison lists: the OBB tree on one thread and on all,
-/// the LRB-rep likewise, and an LRB-rep loaded from its file.
+/// Returns lrbscope's structures, which only this comparison lists: the OBB tree and the LRB-rep, both on one
+/// thread and on all, and an LRB-rep loaded from its file.
 std::vector<methods::MethodInfo> own_structures();
 
 /// Measures a build and a first answer in this process, which should not have built anything before. `entry`:

@@ -29,8 +29,8 @@ std::optional<LrbRep> find_built(const Mesh& mesh, const BuildOptions& options,
                                  std::vector<std::string>& notes);
 
 /// Keeps an LRB-rep built from the mesh in the folder, with its levels of detail, and makes the folder if it
-/// is missing. Adds a note if that is impossible. Does nothing where find_built() finds nothing by its
-/// contract.
+/// is missing. Adds a note if that is impossible. Has no effect without a folder or with a probe that
+/// observes the build.
 void keep_built(const LrbRep& rep, const Mesh& mesh, const BuildOptions& options,
                 std::vector<std::string>& notes);
 

@@ -481,8 +481,7 @@ TEST_CASE("inspect --self-intersections: a JSON line for each pair, and exit cod
 TEST_CASE("--cache and LRBSCOPE_CACHE keep LRB-reps for commands that need them") {
   const Folder folder;
   lrb::write_mesh(lrb::shapes::bumpy_sphere(3, 1), folder / "rock.obj");
-  lrb::write_mesh(lrb::shapes::torus(24, 12), folder / "ring.obj");
-  std::vector<std::string> coarse = {"query", "rock.obj", "ring.obj", "--tolerance", "0.05"};
+  std::vector<std::string> coarse = {"levels", "rock.obj"};
   const Outcome plain = run(folder, coarse);
   CHECK(plain.code == 0);
   const auto entries = [&](const std::string& name) {
@@ -491,8 +490,8 @@ TEST_CASE("--cache and LRBSCOPE_CACHE keep LRB-reps for commands that need them"
       return f.starts_with(name + "/") && f.ends_with(".lrb");
     });
   };
-  // Off by default, and not used by queries that answer exactly.
-  CHECK(run(folder, {"query", "rock.obj", "ring.obj", "--cache", "kept"}).code == 0);
+  // Off by default, and not used by commands that need no LRB-rep.
+  CHECK(run(folder, {"inspect", "rock.obj", "--cache", "kept"}).code == 0);
   CHECK_FALSE(std::filesystem::exists(folder / "kept"));
   coarse.insert(coarse.end(), {"--cache", "kept"});
   for (int i = 0; i < 2; ++i) {
@@ -500,19 +499,19 @@ TEST_CASE("--cache and LRBSCOPE_CACHE keep LRB-reps for commands that need them"
     CHECK(o.code == 0);
     CHECK(o.out == plain.out);
     CHECK(o.err == plain.err);
-    CHECK(entries("kept") == 2);
+    CHECK(entries("kept") == 1);
   }
   coarse.resize(coarse.size() - 2);
   const Environment variable("LRBSCOPE_CACHE", "from_environment");
   CHECK(run(folder, coarse).out == plain.out);
-  CHECK(entries("from_environment") == 2);
-  // One line for both bodies if the folder cannot be used.
+  CHECK(entries("from_environment") == 1);
+  // One line if the folder cannot be used.
   folder.write("file", "");
   coarse.insert(coarse.end(), {"--cache", "file"});
   const Outcome o = run(folder, coarse);
   CHECK(o.code == 0);
   CHECK(o.out == plain.out);
   CHECK(o.err == plain.err +
-                     "note: file: cannot create the folder (a file of this name exists); continuing "
+                     "note: file: cannot create the folder (Not a directory); continuing "
                      "without the cache of LRB-reps\n");
 }
