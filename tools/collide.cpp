@@ -106,7 +106,8 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   run::Recording recording = run::record(scenario, std::move(bodies), progress);
   choose_views(o.picture.camera, scenario, recording);
-  const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress, o.live);
+  const run::RunOutcome outcome =
+      run::write_run(scenario, recording, folder, globals.command_line, progress, o.live);
   animate_frames(o.picture, folder);
   return report_outcome(outcome, folder, o.json, globals);
 }

@@ -28,8 +28,8 @@ std::string compressed(const std::string& bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<std::uint8_t> out(size);
   constexpr int kLevel = 9;
-  if (compress2(out.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
-                kLevel) != Z_OK)
+  if (compress2(out.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                static_cast<uLong>(bytes.size()), kLevel) != Z_OK)
     throw EnvironmentError("zlib cannot compress a body (out of memory)");
   return report::base64(out.data(), size);
 }
@@ -56,23 +56,25 @@ std::string live_page(const RecordedRun& recorded, const std::string& folder, co
   // Equal bodies are stored once.
   const std::string a = io::read_text(folder + "/a.lrb"), b = io::read_text(folder + "/b.lrb");
   data["files"] = {compressed(a), a == b ? std::string() : compressed(b)};
-  std::string library, script = "\"use strict\";\n", json = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  for (const char* name : {"three.min.js", "OrbitControls.js"}) library += "\n" + std::string(io::embedded_file(name));
+  std::string library, script = "\"use strict\";\n",
+                       json = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  for (const char* name : {"three.min.js", "OrbitControls.js"})
+    library += "\n" + std::string(io::embedded_file(name));
   for (const char* name : {"scene_run.js", "scene_bodies.js", "scene_marks.js", "scene_view.js", "drag.js"})
     script += io::embedded_file(name);
   for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
-  return report::filled(io::embedded_file("drag.html"),
-                        {{"title", render::escape_markup(recorded.title)},
-                         {"purpose", render::escape_markup(recorded.purpose)},
-                         {"style", render::page_root_css() + render::scene_root_css() +
-                                       std::string(io::embedded_file("page.css")) +
-                                       std::string(io::embedded_file("scene.css")) +
-                                       std::string(io::embedded_file("drag.css"))},
-                         {"version", trace::lrbscope_version()},
-                         {"data", json},
-                         {"library", library},
-                         {"engine", io::embedded_file(kEngine)},
-                         {"script", script}});
+  return report::filled(
+      io::embedded_file("drag.html"),
+      {{"title", render::escape_markup(recorded.title)},
+       {"purpose", render::escape_markup(recorded.purpose)},
+       {"style",
+        render::page_root_css() + render::scene_root_css() + std::string(io::embedded_file("page.css")) +
+            std::string(io::embedded_file("scene.css")) + std::string(io::embedded_file("drag.css"))},
+       {"version", trace::lrbscope_version()},
+       {"data", json},
+       {"library", library},
+       {"engine", io::embedded_file(kEngine)},
+       {"script", script}});
 }
 
 }  // namespace lrb::run

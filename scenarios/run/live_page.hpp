@@ -1,6 +1,7 @@
 #pragma once
-/// The live page of a run: body B can be dragged and rotated, and the engine, compiled to WebAssembly (wasm/),
-/// answers each pose exactly in the page. The page contains the bodies and the engine and fetches nothing.
+/// The live page of a run: body B can be dragged and rotated, and the engine, compiled to WebAssembly
+/// (wasm/), answers each pose exactly in the page. The page contains the bodies and the engine and fetches
+/// nothing.
 
 #include <string>
 

@@ -93,12 +93,7 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
     links.push_back({kLivePage, "B can be dragged; the engine answers in the page"});
   }
   run_page(recorded, drawn, folder,
-           {scenario.name,
-            scenario.purpose,
-            command,
-            trace_file,
-            std::move(links),
-            out.mismatches,
+           {scenario.name, scenario.purpose, command, trace_file, std::move(links), out.mismatches,
             "lrbscope why --run " + io::shell_word(folder)})
       .write(locked);
   return out;

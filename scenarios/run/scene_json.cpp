@@ -556,12 +556,9 @@ json posed_bodies_json(const RecordedRun& p) {
   };
   for (const trace::Step& step : p.trace->steps)
     steps.push_back({{"index", step.index}, {"poses", {rows(step.pose_a), rows(step.pose_b)}}});
-  return {{"dim", p.reps[0]->dim()},
-          {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
-          {"unit", frame.unit},
-          {"view", view_json(p.trace->header)},
-          {"colours", colours()},
-          {"bodies", std::move(bodies)},
+  return {{"dim", p.reps[0]->dim()},  {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
+          {"unit", frame.unit},       {"view", view_json(p.trace->header)},
+          {"colours", colours()},     {"bodies", std::move(bodies)},
           {"steps", std::move(steps)}};
 }
 
