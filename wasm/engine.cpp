@@ -1,6 +1,6 @@
-// The engine's interface for JavaScript: two bodies, queried for all intersecting pairs at any pose of B. Bodies are given as
-// the bytes of .lrb files, so that they are the ones that were built natively: the answers are then the same as native ones, bit
-// for bit.
+// The engine's interface for JavaScript: two bodies, queried for all intersecting pairs at any pose of B.
+// Bodies are given as the bytes of .lrb files, so that they are the ones that were built natively: the
+// answers are then the same as native ones, bit for bit.
 //
 // Results are views into this program's memory, valid until the next query.
 
@@ -29,7 +29,8 @@ class TestedFaces : public lrb::CollideProbe {
     for (int side = 0; side < 2; ++side) seen_[side].resize(reps_[side]->face_count());
   }
 
-  void face_test(lrb::SimplexId a, lrb::SimplexId b, lrb::exact::Meet, std::uint32_t, std::uint32_t) override {
+  void face_test(lrb::SimplexId a, lrb::SimplexId b, lrb::exact::Meet, std::uint32_t,
+                 std::uint32_t) override {
     add(0, reps_[0]->face_of_simplex(a));
     add(1, reps_[1]->face_of_simplex(b));
   }
@@ -132,8 +133,8 @@ EMSCRIPTEN_KEEPALIVE const char* lrb_word(int which) {
   return s.text.c_str();
 }
 
-/// Return a list of the answer: 0, 1: the pairs' simplices of A and of B; 2, 3: refined regions of A and of B; 4, 5: tested faces
-/// of A and of B.
+/// Return a list of the answer: 0, 1: the pairs' simplices of A and of B; 2, 3: refined regions of A and of
+/// B; 4, 5: tested faces of A and of B.
 EMSCRIPTEN_KEEPALIVE const std::uint32_t* lrb_list(int which) {
   return session().lists[which].data();
 }
@@ -141,10 +142,12 @@ EMSCRIPTEN_KEEPALIVE std::size_t lrb_list_size(int which) {
   return session().lists[which].size();
 }
 
-/// Returns a counter of the query: 0: face tests, 1: pairs of nodes, 2: box tests, 3: regions refined, 4: exact fallbacks.
+/// Returns a counter of the query: 0: face tests, 1: pairs of nodes, 2: box tests, 3: regions refined, 4:
+/// exact fallbacks.
 EMSCRIPTEN_KEEPALIVE double lrb_counter(int which) {
   const lrb::Counters& c = session().result.counters;
-  const std::uint64_t counters[] = {c.face_tests, c.node_pairs, c.box_tests, c.regions_opened, c.exact_fallbacks};
+  const std::uint64_t counters[] = {c.face_tests, c.node_pairs, c.box_tests, c.regions_opened,
+                                    c.exact_fallbacks};
   return static_cast<double>(counters[which]);
 }
 

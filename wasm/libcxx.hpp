@@ -1,6 +1,6 @@
 #pragma once
-// Included before every file: the parts of C++20 that the engine uses and that libc++ 13 (Debian's emscripten 3.1.6) lacks.
-// A newer libc++ has them.
+// Included before every file: the parts of C++20 that the engine uses and that libc++ 13 (Debian's
+// emscripten 3.1.6) lacks. A newer libc++ has them.
 #include <version>
 #if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 14000
 #include <algorithm>
@@ -27,7 +27,7 @@ constexpr auto lexicographical_compare_three_way(I first, I last, J other, J oth
     -> decltype(*first <=> *other) {
   for (; first != last && other != other_last; ++first, ++other)
     if (const auto order = *first <=> *other; order != 0) return order;
-  return first != last     ? strong_ordering::greater
+  return first != last         ? strong_ordering::greater
          : other != other_last ? strong_ordering::less
                                : strong_ordering::equal;
 }
