@@ -86,10 +86,11 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
     const auto it = scenes.find({p.set, p.pose_class});
     return it == scenes.end() ? std::string() : it->second;
   });
-  report::Document page = bench::accuracy_page(o.set.quantity, points, infos, charts, unfinished);
+  report::Document page = bench::accuracy_page(o.set.quantity, sets, points, infos, charts, unfinished);
   page.number({"Machine", bench::machine(), bench::build_flags()}).command(globals.command_line);
   page.link({"records.jsonl", "every answer of every method"});
   page.file("points.jsonl", bench::to_lines(points), "computed from them");
+  page.file("chart.csv", bench::drawn_csv(points), "the points of the charts");
   for (const auto& [key, target] : scenes)
     page.link({target, "scene, trace and pictures", key.first + ", " + bench::title(key.second)});
   page.print("chart", "for print", bench::accuracy_print(o.set.quantity, sets, missing, charts));
@@ -101,8 +102,8 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
 int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals) {
   const methods::Quantity quantity = o.set.quantity;
   const bool pairs = quantity == methods::Quantity::pairs;
-  if (methods::is_list(quantity) && !pairs)
-    throw InputError("--quantity: expected pairs, distance, first_contact or depth, found " +
+  if (quantity == methods::Quantity::self_intersections)
+    throw InputError("--quantity: expected pairs, near_pairs, distance, first_contact or depth, found " +
                      std::string(name_of(quantity)));
   if (o.folder.empty()) o.folder = pairs ? "out/chart" : "out/chart-" + std::string(name_of(quantity));
   const std::vector<workers::WorkerMethod> methods =
@@ -128,7 +129,7 @@ Command add_chart(CLI::App& root, const Globals& globals) {
   add_measure_options(*app, *o);
   add_quantity_option(*app, o->set.quantity);
   app->get_option("--quantity")
-      ->description("Quantity to compute: pairs, distance, first_contact or depth [pairs]");
+      ->description("Quantity to compute: pairs, near_pairs, distance, first_contact or depth [pairs]");
   app->add_option("--faces", o->faces, "Face count of the generated bodies; 0: none [2000]")
       ->check(CLI::Range(0, 200000))
       ->type_name("N");

@@ -9,6 +9,7 @@
 #include "bench/programs/case_queue.hpp"
 #include "bench/quantities/number_method.hpp"
 #include "bench/speed/bench_runner.hpp"
+#include "bench/speed/metrics.hpp"
 #include "bench/speed/record.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/workers/worker_json.hpp"
@@ -32,10 +33,16 @@ NumberQuery query_of(const DataSet& set, const Question& q) {
   const auto placed = [&](std::size_t body, const Pose& pose) {
     return methods::at_pose(load_lrb(set.folder + "/" + set.bodies.at(body).file), pose);
   };
-  return {placed(q.a, q.pose_a), placed(q.b, q.pose_b), q.from, q.to, set.diagonal};
+  return {placed(q.a, q.pose_a),
+          placed(q.b, q.pose_b),
+          q.from,
+          q.to,
+          set.diagonal,
+          bench::within_of(q.pose_class) * set.diagonal};
 }
 
 bool says_contact(methods::Quantity quantity, const NumberAnswer& answer) {
+  if (methods::is_list(quantity)) return !answer.pairs.empty();
   if (quantity == methods::Quantity::first_contact) return answer.lower < stability::kNever;
   return quantity == methods::Quantity::depth ? answer.upper > 0 : answer.upper <= 0;
 }
@@ -43,7 +50,7 @@ bool says_contact(methods::Quantity quantity, const NumberAnswer& answer) {
 /// Runs a query with a method at a parameter value. A rejection is a valid outcome. Throws InputError if the
 /// query does not exist.
 bench::Record bench_record(const NumberMethod& method, std::optional<double> setting, const DataSet& set,
-                           std::uint64_t question) {
+                           std::uint64_t question, bool judges) {
   const Question& q = question_of(set, question);
   bench::Record r;
   r.set = set.name;
@@ -57,8 +64,13 @@ bench::Record bench_record(const NumberMethod& method, std::optional<double> set
     const NumberAnswer answer = bench::ask_again_and_again([&] { return method.ask(query, setting); }, times);
     r.all.cold_us = times.cold_us;
     r.all.hot_us = times.hot_us;
-    r.all.lower = answer.lower;
-    r.all.upper = answer.upper;
+    if (methods::is_list(method.quantity)) {
+      r.all.count = answer.pairs.size();
+      if (judges) r.errors = bench::errors_of_near(set, q, query.a, query.b, answer.pairs, answer.distances);
+    } else {
+      r.all.lower = answer.lower;
+      r.all.upper = answer.upper;
+    }
     r.all.contact = says_contact(method.quantity, answer);
     if (method.proves) r.all.error_bound = answer.upper - answer.lower;
   });
@@ -84,7 +96,7 @@ struct Options {
   CaseQueue queue;
   std::string quantity = "distance", questions;
   std::optional<double> setting;
-  bool pairs = false;
+  bool pairs = false, errors = false;
 };
 
 Quantity quantity_of(const Options& o) {
@@ -118,10 +130,11 @@ void say_records(const Options& o, Lines& out) {
 /// Answers a data set's queries; without a method, with lrbscope at its finest setting.
 void answer_questions(const Options& o, Lines& out) {
   const bench::DataSet set = bench::read_data_set(o.questions);
-  const bool judges = o.queue.method.empty();
-  const NumberMethod method = method_of(set.quantity, judges ? "ours" : o.queue.method);
+  const bool finds = o.queue.method.empty();
+  const NumberMethod method = method_of(set.quantity, finds ? "ours" : o.queue.method);
   for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k)
-    out.say(dump(judges ? known_number(method, set, k) : to_json(bench_record(method, o.setting, set, k))));
+    out.say(dump(finds ? known_number(method, set, k)
+                       : to_json(bench_record(method, o.setting, set, k, o.errors))));
 }
 
 void work(const Options& o, Lines& out) {
@@ -146,7 +159,7 @@ int run(int argc, char** argv) {
   app.add_option("--questions", o.questions);
   app.add_option("--setting", o.setting);
   app.add_flag("--pairs", o.pairs);
-  app.add_flag("--errors");  // accepted by all workers; unused in this one
+  app.add_flag("--errors", o.errors);  // of lists; numbers are judged by the survey
   CLI11_PARSE(app, argc, argv);
   return run_worker([&](Lines& out) { work(o, out); });
 }

@@ -1,5 +1,6 @@
-// FCL as packaged: distance() of two BVHModels, continuousCollide() with each solver that supports them, and
-// the maximum penetration depth of collide()'s contacts.
+// FCL as packaged: distance() of two BVHModels, continuousCollide() with each solver that supports them, the
+// maximum penetration depth of collide()'s contacts, and near pairs by the traversal of distance(), which is
+// kept from stopping at pairs that are farther than the nearest, but within the distance.
 #include "bench/quantities/number_method.hpp"
 
 #ifdef LRB_HAS_FCL
@@ -8,6 +9,9 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/continuous_collision.h>
+#include <fcl/narrowphase/detail/primitive_shape_algorithm/triangle_distance.h>
+#include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
+#include <fcl/narrowphase/detail/traversal/traversal_recurse.h>
 #include <fcl/narrowphase/distance.h>
 
 #include "bench/methods/triangles.hpp"
@@ -21,8 +25,8 @@ using methods::Stopwatch;
 template <class Volume>
 fcl::BVHModel<Volume> model_of(const LrbRep& rep, const Eigen::Vector3d& by = {0, 0, 0}) {
   const methods::Triangles t = methods::triangles_of(rep);
-  std::vector<fcl::Vector3d> points;
-  for (const Eigen::Vector3d& v : t.vertices) points.push_back(v + by);
+  std::vector<fcl::Vector3<typename Volume::S>> points;
+  for (const Eigen::Vector3d& v : t.vertices) points.push_back((v + by).cast<typename Volume::S>());
   std::vector<fcl::Triangle> triangles;
   for (const auto& c : t.triangles) triangles.emplace_back(c[0], c[1], c[2]);
   fcl::BVHModel<Volume> model;
@@ -83,6 +87,43 @@ NumberAnswer fcl_depth(const NumberQuery& q, Setting) {
   return {depth, depth, watch.microseconds()};
 }
 
+/// S: float or double.
+template <class S>
+class NearNode : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<S> {
+ public:
+  NearNode(S within, NumberAnswer& answer) : within_(within), answer_(answer) {}
+  bool canStop(S bound) const override { return bound > within_; }
+  void leafTesting(int b1, int b2) const override {
+    const int i = this->model1->getBV(b1).primitiveId(), j = this->model2->getBV(b2).primitiveId();
+    const fcl::Triangle &s = this->tri_indices1[i], &t = this->tri_indices2[j];
+    const fcl::Vector3<S>*p = this->vertices1, *q = this->vertices2;
+    fcl::Vector3<S> on_a, on_b;
+    const S d = fcl::detail::TriangleDistance<S>::triDistance(p[s[0]], p[s[1]], p[s[2]], q[t[0]], q[t[1]],
+                                                              q[t[2]], this->tf, on_a, on_b);
+    if (d <= within_) add_near(answer_, {static_cast<SimplexId>(i), static_cast<SimplexId>(j)}, d);
+  }
+
+ private:
+  S within_;
+  NumberAnswer& answer_;
+};
+
+template <class S>
+NumberAnswer fcl_near(const NumberQuery& q, Setting) {
+  const auto a = model_of<fcl::OBBRSS<S>>(q.a), b = model_of<fcl::OBBRSS<S>>(q.b);
+  const fcl::DistanceRequest<S> request;
+  fcl::DistanceResult<S> result;
+  NumberAnswer out;
+  NearNode<S> node(static_cast<S>(q.within), out);
+  const fcl::Transform3<S> none = fcl::Transform3<S>::Identity();
+  const Stopwatch watch;
+  fcl::detail::initialize(node, a, none, b, none, request, result);
+  fcl::detail::distanceRecurse<S>(&node, 0, 0, nullptr);
+  out.microseconds = watch.microseconds();
+  sort_near(out);
+  return out;
+}
+
 NumberMethod fcl_method(const char* name, const char* what, const char* remark, Quantity quantity,
                         std::function<NumberAnswer(const NumberQuery&, Setting)> ask,
                         methods::MethodStyle style) {
@@ -133,7 +174,13 @@ std::vector<NumberMethod> fcl_number_methods() {
       fcl_sweep("fcl-polynomials", "continuousCollide, polynomials", "Its polynomial solver.",
                 fcl::CCDC_POLYNOMIAL_SOLVER, 10, {"FCL, polynomials", "#8a5a2b", "star"}),
       fcl_method("fcl-contacts", "collide, contacts", "The largest penetration depth of its contacts.",
-                 Quantity::depth, fcl_depth, {"FCL, contacts", "#d55e00", "rect"})};
+                 Quantity::depth, fcl_depth, {"FCL, contacts", "#d55e00", "rect"}),
+      fcl_method("fcl-near", "traversal of distance, double",
+                 "All pairs: the traversal of distance() of two BVHModel<OBBRSS>, bounded by the given "
+                 "distance; triDistance() at its leaves.",
+                 Quantity::near_pairs, fcl_near<double>, {"FCL, double", "#a3132f", "triangle"}),
+      fcl_method("fcl-near-float", "traversal of distance, float", "The same in float.", Quantity::near_pairs,
+                 fcl_near<float>, {"FCL, float", "#d55e00", "rect"})};
 }
 
 }  // namespace lrb::stability

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
+#include <utility>
 
 #include "bench/workers/worker_json.hpp"
 #include <lrbscope/core/strings.hpp>
@@ -36,7 +38,21 @@ NumberMethod with_parameter(NumberMethod m, const char* parameter, std::vector<d
 std::vector<NumberMethod> number_methods() {
   std::vector<NumberMethod> all = own_number_methods();
   for (NumberMethod& m : fcl_number_methods()) all.push_back(std::move(m));
+  for (NumberMethod& m : cgal_number_methods()) all.push_back(std::move(m));
   return all;
+}
+
+void add_near(NumberAnswer& answer, SimplexPair pair, double distance) {
+  answer.pairs.push_back(pair);
+  answer.distances.push_back(distance);
+}
+
+void sort_near(NumberAnswer& answer) {
+  std::vector<std::pair<SimplexPair, double>> both;
+  for (std::size_t i = 0; i < answer.pairs.size(); ++i)
+    both.emplace_back(answer.pairs[i], answer.distances[i]);
+  std::sort(both.begin(), both.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  for (std::size_t i = 0; i < both.size(); ++i) std::tie(answer.pairs[i], answer.distances[i]) = both[i];
 }
 
 void judge_number(Record& record, const NumberMethod& method, const NumberAnswer& answer,

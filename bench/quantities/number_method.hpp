@@ -15,6 +15,7 @@ struct NumberAnswer {
   double lower = 0, upper = 0;          ///< equal, unless the method gives an interval
   double microseconds = 0;              ///< the time of the query alone
   std::vector<SimplexPair> pairs = {};  ///< ascending; if the quantity is a list
+  std::vector<double> distances = {};   ///< of near pairs, if reported; of an interval the upper end
 };
 
 /// The value of a method's parameter. nullopt: the setting for tests of correctness.
@@ -37,6 +38,10 @@ NumberMethod with_parameter(NumberMethod m, const char* parameter, std::vector<d
 std::vector<NumberMethod> number_methods();
 std::vector<NumberMethod> own_number_methods();
 std::vector<NumberMethod> fcl_number_methods();
+std::vector<NumberMethod> cgal_number_methods();
+/// Adds a near pair, or sorts all of them by their triangles.
+void add_near(NumberAnswer& answer, SimplexPair pair, double distance);
+void sort_near(NumberAnswer& answer);
 
 /// Runs a method on a case. Sets outcome, time and message of the record, and both numbers as relations; for
 /// lists the counts of pairs. Returns the answer, or nullopt if there is none.

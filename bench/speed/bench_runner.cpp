@@ -10,6 +10,7 @@
 #include "bench/methods/triangles.hpp"
 #include "bench/speed/metrics.hpp"
 #include "bench/workers/worker_json.hpp"
+#include "engine/exact/pair_distance.hpp"
 #include "engine/mesh/face_pairs.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/error.hpp>
@@ -130,18 +131,23 @@ struct WorldBody {
     rep.simplex(s, v);
     Box b;
     for (const VertexId i : v) b.extend(x[i]);
-    return b;
+    return {b.min() - margin, b.max() + margin};
   }
   const LrbRep& rep;
   std::vector<Eigen::Vector3d> x;
   Box whole;
+  Eigen::Vector3d margin{0, 0, 0};  ///< of the triangles' boxes
 };
 
 }  // namespace
 
-std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
-                                     const Pose& pose_b) {
-  const WorldBody wa(a, pose_a), wb(b, pose_b);
+std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                     double within) {
+  WorldBody wa(a, pose_a);
+  const WorldBody wb(b, pose_b);
+  // Boxes of A grow by more than the distance, so that rounding loses no candidate.
+  const double size = wa.whole.merged(wb.whole).diagonal().norm();
+  wa.margin.setConstant(within > 0 ? within + 1e-12 * (size + within) : 0);
   const std::uint32_t first_of_b = a.real_simplex_count();
   std::vector<Box> boxes(first_of_b + b.real_simplex_count());
   const auto add = [&](const WorldBody& body, const Box& other, std::uint32_t first) {
@@ -149,7 +155,7 @@ std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const 
       if (const Box box = body.box(s); box.intersects(other)) boxes[first + s] = box;
   };
   add(wa, wb.whole, 0);
-  add(wb, wa.whole, first_of_b);
+  add(wb, {wa.whole.min() - wa.margin, wa.whole.max() + wa.margin}, first_of_b);
   std::vector<SimplexPair> pairs;
   BoxTree(boxes).for_each_pair([&](std::uint32_t i, std::uint32_t j) {
     if (i >= first_of_b || j < first_of_b) return;
@@ -157,7 +163,9 @@ std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const 
     const SimplexPair pair{SimplexId(i), SimplexId(j - first_of_b)};
     wa.corners(pair.a, ca);
     wb.corners(pair.b, cb);
-    if (exact::meet_triangles(ca, cb) != exact::Meet::disjoint) pairs.push_back(pair);
+    if (exact::meet_triangles(ca, cb) != exact::Meet::disjoint ||
+        (within > 0 && exact::compare_distance(ca, cb, 3, within) <= 0))
+      pairs.push_back(pair);
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;

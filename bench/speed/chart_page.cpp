@@ -78,6 +78,26 @@ NumberText text_of_number(Quantity quantity) {
       "lrbscope reports an interval that contains the distance, at every tolerance and within every budget."};
 }
 
+ChartText of_near() {
+  return {
+      "Speed versus accuracy: near pairs",
+      "All pairs of triangles within a distance of 0.1, 1 or 5 % of the larger body's diagonal. B is half that distance away: "
+      "time of a query, and error of the list.",
+      "larger of: wrong share of the list, error of a distance / diagonal",
+      "width of the widest interval: proven",
+      {{"Axes", kHowToRead},
+       {"Times", kTimes},
+       {"Frontier", kFrontier},
+       {"Error",
+        "The pairs that are missing or extra, as a share of all listed and all near ones, or the largest error of a listed "
+        "distance over the larger body's diagonal, whichever is larger; averaged over poses. The table has each: list, recall "
+        "(missing), precision (extra), distance. An interval counts by its upper end. A missing answer counts as 1. The right "
+        "list is by exact predicates for all pairs with boxes within the distance, right distances by integers."},
+       {"Proof",
+        "lrbscope reports an interval that contains the distance of each pair; its list is exact. The width of the widest "
+        "interval is a cross at the same height. Other methods prove nothing."}}};
+}
+
 ChartText of_number(Quantity quantity) {
   const NumberText n = text_of_number(quantity);
   return {
@@ -108,6 +128,7 @@ std::vector<const Point*> panel(const std::vector<Point>& points, const std::str
 }
 
 ChartText chart_text(Quantity quantity) {
+  if (quantity == Quantity::near_pairs) return of_near();
   return quantity == Quantity::pairs ? of_pairs() : of_number(quantity);
 }
 
@@ -312,6 +333,13 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   return chart;
 }
 
+constexpr int kCsvDigits = 6;
+
+bool is_ours(methods::Role role) {
+  return role == methods::Role::ours || role == methods::Role::ours_double ||
+         role == methods::Role::ours_other;
+}
+
 /// Returns the errors that at least one method provides.
 std::vector<std::size_t> errors_in(const std::vector<Point>& points) {
   std::vector<std::size_t> out;
@@ -353,6 +381,33 @@ report::Table table_of_points(const std::vector<Point>& points) {
   return t;
 }
 
+/// A method at a setting, over all classes of poses of a data set.
+struct Setting {
+  std::string name;
+  double error = 0;           ///< the largest
+  std::vector<double> times;  ///< (classes)
+};
+
+/// Returns the settings with answers that may be on a frontier in every class. `ours`: only of lrbscope.
+std::vector<Setting> settings_of(const DataSet& set, const std::vector<Point>& points,
+                                 const std::vector<methods::MethodInfo>& methods, bool ours) {
+  std::map<std::string, Setting> all;
+  for (const Point& p : points) {
+    const auto info = std::find_if(methods.begin(), methods.end(),
+                                   [&](const methods::MethodInfo& m) { return m.name == p.method; });
+    if (p.set != set.name || !p.left_out.empty() || info == methods.end()) continue;
+    if (ours && !is_ours(info->role)) continue;
+    Setting& s = all[name_of(p.method, p.setting)];
+    s.name = name_of(p.method, p.setting);
+    s.error = std::max(s.error, p.error());
+    s.times.push_back(p.median);
+  }
+  std::vector<Setting> out;
+  for (auto& [name, s] : all)
+    if (s.times.size() == classes_of(set.quantity).size()) out.push_back(std::move(s));
+  return out;
+}
+
 report::Table table_of_metrics(const std::vector<Point>& points) {
   report::Table t{"Errors", {"name", "definition", "worst value"}};
   for (const std::size_t m : errors_in(points)) {
@@ -372,6 +427,56 @@ report::Table table_of_methods(const std::vector<methods::MethodInfo>& methods) 
 
 }  // namespace
 
+std::string drawn_csv(const std::vector<Point>& points) {
+  const auto quoted = [](const std::string& word) {
+    std::string out = "\"";
+    for (const char c : word) out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + "\"";
+  };
+  std::string out = "bodies,pose,method,setting,error,proven,us,us_least,us_most,frontier\n";
+  for (const Point& p : points) {
+    if (!is_drawn(p)) continue;
+    out += quoted(p.set) + "," + quoted(std::string(name_of(p.pose_class))) + "," + quoted(p.method) + "," +
+           (p.setting ? io::number_text(*p.setting, kCsvDigits) : "") + "," +
+           io::number_text(p.error(), kCsvDigits) + "," +
+           (p.proven_deviation ? io::number_text(*p.proven_deviation, kCsvDigits) : "");
+    for (const double us : {p.median, p.least, p.most})
+      out += "," + (p.median > 0 ? io::number_text(us, kCsvDigits) : "");
+    out += "," + quoted(frontier_text(p)) + "\n";
+  }
+  return out;
+}
+
+report::Table table_of_settings(const std::vector<DataSet>& sets, const std::vector<Point>& points,
+                                const std::vector<methods::MethodInfo>& methods) {
+  constexpr double kBounds[] = {0.1, 0.01, 0.001, 1e-6, 1e-12};
+  report::Table t{"Which setting for an error of at most x?",
+                  {"bodies", "faces", "error", "fastest", "median \u00b5s", "error in fact",
+                   "fastest of lrbscope", "median \u00b5s", "error in fact"}};
+  for (const DataSet& set : sets) {
+    std::uint32_t faces = 0;
+    for (const BodyFile& b : set.bodies) faces = std::max(faces, b.faces);
+    for (const double bound : kBounds) {
+      std::vector<std::string> row = {set.name, std::to_string(faces), render::short_number(bound)};
+      for (const bool ours : {false, true}) {
+        const Setting* best = nullptr;
+        const std::vector<Setting> all = settings_of(set, points, methods, ours);
+        for (const Setting& s : all)
+          if (s.error <= bound && (best == nullptr || geometric_mean(s.times) < geometric_mean(best->times)))
+            best = &s;
+        row.push_back(best != nullptr ? best->name : "\u2013");
+        row.push_back(best != nullptr ? render::short_number(geometric_mean(best->times)) : "\u2013");
+        row.push_back(best != nullptr ? render::short_number(best->error) : "\u2013");
+      }
+      t.rows.push_back(std::move(row));
+    }
+  }
+  t.note =
+      "Errors are the largest of a class of poses, times geometric means over the classes. A dash: no method keeps the error "
+      "in every class. Methods that a frontier leaves out are not considered.";
+  return t;
+}
+
 std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, const std::vector<Point>& points,
                                            const std::vector<methods::MethodInfo>& methods,
                                            const std::function<std::string(const Point&)>& scene_of) {
@@ -382,13 +487,15 @@ std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, con
   return out;
 }
 
-report::Document accuracy_page(Quantity quantity, const std::vector<Point>& points,
+report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& sets,
+                               const std::vector<Point>& points,
                                const std::vector<methods::MethodInfo>& methods,
                                const std::vector<report::Chart>& charts, const std::string& unfinished) {
   const ChartText words = chart_text(quantity);
   report::Document doc(words.title, words.purpose);
   if (!unfinished.empty()) doc.verdict("unfinished", false).purpose(unfinished);
   doc.each(words.texts, &report::Document::text).each(charts, &report::Document::chart);
+  doc.table(table_of_settings(sets, points, methods));
   return doc.table(table_of_metrics(points)).table(table_of_methods(methods)).table(table_of_points(points));
 }
 

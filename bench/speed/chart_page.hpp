@@ -19,7 +19,8 @@ std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, con
                                            const std::function<std::string(const Point&)>& scene_of);
 
 /// Returns the page of these charts. `unfinished`: a sentence on missing answers, or empty.
-report::Document accuracy_page(Quantity quantity, const std::vector<Point>& points,
+report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& sets,
+                               const std::vector<Point>& points,
                                const std::vector<methods::MethodInfo>& methods,
                                const std::vector<report::Chart>& charts, const std::string& unfinished);
 
@@ -27,6 +28,15 @@ report::Document accuracy_page(Quantity quantity, const std::vector<Point>& poin
 /// are left out. `missing`: of an unfinished survey; the title of the first panel of its rows names it.
 report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& sets,
                                const std::vector<Missing>& missing, const std::vector<report::Chart>& charts);
+
+/// Returns what the charts draw as CSV with a head, a line for each point, for plotting programs.
+std::string drawn_csv(const std::vector<Point>& points);
+
+/// Returns a table of the setting to take for an error of at most x: for each pair of bodies the one that is
+/// fastest of all that keep it in every class of poses, and the fastest of lrbscope's. The error of a class
+/// is the mean over its poses. Points that cannot be on a frontier are not considered.
+report::Table table_of_settings(const std::vector<DataSet>& sets, const std::vector<Point>& points,
+                                const std::vector<methods::MethodInfo>& methods);
 
 /// Returns the points of a panel.
 std::vector<const Point*> panel(const std::vector<Point>& points, const std::string& set, PoseClass c);

@@ -51,7 +51,7 @@ ordered_json question_json(const Question& q, Quantity quantity) {
                       {"b", q.b},
                       {"pose_a", workers::pose_json(q.pose_a)},
                       {"pose_b", workers::pose_json(q.pose_b)}};
-  if (quantity == Quantity::pairs) out["expected"] = workers::PairsJson::write(q.expected);
+  if (methods::is_list(quantity)) out["expected"] = workers::PairsJson::write(q.expected);
   if (quantity == Quantity::first_contact) {
     out["from"] = vector_json(q.from);
     out["to"] = vector_json(q.to);
@@ -67,7 +67,7 @@ Question question_from(const json& value, Quantity quantity) {
   value.at("b").get_to(q.b);
   q.pose_a = pose_from(value.at("pose_a"));
   q.pose_b = pose_from(value.at("pose_b"));
-  if (quantity == Quantity::pairs) q.expected = workers::PairsJson::read(value.at("expected"));
+  if (methods::is_list(quantity)) q.expected = workers::PairsJson::read(value.at("expected"));
   if (quantity == Quantity::first_contact) {
     q.from = vector_from(value.at("from"));
     q.to = vector_from(value.at("to"));
@@ -86,6 +86,7 @@ std::span<const PoseClass> classes_of(Quantity quantity) {
                                         PoseClass::gap_whole};
   static constexpr PoseClass kMotions[] = {PoseClass::into, PoseClass::graze, PoseClass::past};
   static constexpr PoseClass kDepths[] = {PoseClass::shallow, PoseClass::deep};
+  static constexpr PoseClass kNear[] = {PoseClass::near_1000th, PoseClass::near_100th, PoseClass::near_20th};
   switch (quantity) {
     case Quantity::distance:
       return kGaps;
@@ -93,9 +94,10 @@ std::span<const PoseClass> classes_of(Quantity quantity) {
       return kMotions;
     case Quantity::depth:
       return kDepths;
+    case Quantity::near_pairs:
+      return kNear;
     case Quantity::pairs:
-    case Quantity::near_pairs:  // not measured
-    case Quantity::self_intersections:
+    case Quantity::self_intersections:  // not measured
       break;
   }
   return kPairs;
@@ -103,13 +105,27 @@ std::span<const PoseClass> classes_of(Quantity quantity) {
 
 const char* title(PoseClass c) {
   static constexpr const char* kTitles[] = {
-      "0.5 % apart", "shallow, 1 %", "deep, 10 %",  "identical pose", "one body small", "0.1 % apart",
-      "1 % apart",   "10 % apart",   "100 % apart", "straight in",    "grazing, 1 %",   "past, 1 % away"};
+      "0.5 % apart",  "shallow, 1 %",   "deep, 10 %",   "identical pose", "one body small",
+      "0.1 % apart",  "1 % apart",      "10 % apart",   "100 % apart",    "straight in",
+      "grazing, 1 %", "past, 1 % away", "within 0.1 %", "within 1 %",     "within 5 %"};
   return kTitles[static_cast<std::size_t>(c)];
 }
 
+double within_of(PoseClass c) {
+  switch (c) {
+    case PoseClass::near_1000th:
+      return 0.001;
+    case PoseClass::near_100th:
+      return 0.01;
+    case PoseClass::near_20th:
+      return 0.05;
+    default:
+      return 0;
+  }
+}
+
 bool is_complete(const DataSet& set) {
-  return set.quantity == Quantity::pairs ||
+  return methods::is_list(set.quantity) ||
          std::all_of(set.questions.begin(), set.questions.end(), [](const Question& q) { return q.number; });
 }
 

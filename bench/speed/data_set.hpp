@@ -31,9 +31,12 @@ enum class PoseClass : std::uint8_t {
   gap_100th,
   gap_10th,
   gap_whole,
-  into,   ///< B moves straight towards A and into it
-  graze,  ///< B passes A and penetrates it by a hundredth
-  past,   ///< B passes A at a hundredth, along some direction
+  into,         ///< B moves straight towards A and into it
+  graze,        ///< B passes A and penetrates it by a hundredth
+  past,         ///< B passes A at a hundredth, along some direction
+  near_1000th,  ///< near pairs within a thousandth; B is half of it away, along some direction
+  near_100th,
+  near_20th,
 };
 constexpr auto enum_names(PoseClass) {
   return std::to_array<EnumName<PoseClass>>({{PoseClass::apart, "apart"},
@@ -47,11 +50,16 @@ constexpr auto enum_names(PoseClass) {
                                              {PoseClass::gap_whole, "gap_whole"},
                                              {PoseClass::into, "into"},
                                              {PoseClass::graze, "graze"},
-                                             {PoseClass::past, "past"}});
+                                             {PoseClass::past, "past"},
+                                             {PoseClass::near_1000th, "near_1000th"},
+                                             {PoseClass::near_100th, "near_100th"},
+                                             {PoseClass::near_20th, "near_20th"}});
 }
 /// Returns the pose classes used for a quantity, in their order.
 std::span<const PoseClass> classes_of(Quantity quantity);
 const char* title(PoseClass c);  ///< "0.5 % apart"
+/// Returns the distance within which pairs are near, in diagonals of the larger body; 0 for other classes.
+double within_of(PoseClass c);
 
 /// The file of an LRB-rep, and the cost of building it.
 struct BodyFile {
@@ -69,7 +77,7 @@ struct Question {
   PoseClass pose_class = PoseClass::apart;
   std::size_t a = 0, b = 0;  ///< indices into DataSet::bodies
   Pose pose_a, pose_b;
-  std::vector<SimplexPair> expected;           ///< ascending; see bench_runner.hpp
+  std::vector<SimplexPair> expected;           ///< if the quantity is a list; ascending; see bench_runner.hpp
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};  ///< first contact: translation from pose_b at t = 0 and 1
   std::optional<KnownNumber> number = {};      ///< the right answer if the quantity is a number
 };

@@ -23,6 +23,7 @@ enum class Metric : std::uint8_t {
   distance,        ///< error of the distance, for methods compared on it
   time_of_impact,  ///< error of the time of first contact, for methods compared on it
   penetration,     ///< error of the penetration depth, for methods compared on it
+  list,            ///< pairs in one list only, for methods compared on near pairs
 };
 
 struct MetricInfo {
@@ -33,8 +34,10 @@ struct MetricInfo {
 };
 inline constexpr auto kMetricInfos = std::to_array<MetricInfo>({
     {Metric::contact, "contact", "fraction of poses with a false or a missed contact", 1},
-    {Metric::precision, "precision", "1 - precision: fraction of the listed pairs that do not intersect", 1},
-    {Metric::recall, "recall", "1 - recall: fraction of the intersecting pairs that are not listed", 1},
+    {Metric::precision, "precision",
+     "1 - precision: fraction of the listed pairs that do not intersect or are not near", 1},
+    {Metric::recall, "recall", "1 - recall: fraction of the intersecting or near pairs that are not listed",
+     1},
     {Metric::hausdorff, "hausdorff",
      "Hausdorff distance of the contact regions, relative to the larger body's diagonal", 1},
     {Metric::deviation, "off",
@@ -46,11 +49,13 @@ inline constexpr auto kMetricInfos = std::to_array<MetricInfo>({
     {Metric::normal, "normal", "angle between the normals of the largest contact, relative to 180 degrees",
      1},
     {Metric::depth, "depth", "error of the largest estimated depth, relative to the diagonal", 1},
-    {Metric::distance, "distance", "error of the distance, relative to the larger body's diagonal", 1},
+    {Metric::distance, "distance",
+     "error of the distance, of near pairs the largest one, relative to the larger body's diagonal", 1},
     {Metric::time_of_impact, "time",
      "error of the time of first contact, as a fraction of the motion; 1: a false or a missed contact", 1},
     {Metric::penetration, "penetration",
      "error of the penetration depth, relative to the larger body's diagonal", 1},
+    {Metric::list, "list", "fraction of the listed and the near pairs that are missing or extra", 1},
 });
 inline constexpr std::size_t kMetrics = kMetricInfos.size();
 

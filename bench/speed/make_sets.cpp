@@ -56,6 +56,7 @@ namespace fs = std::filesystem;
 
 /// Returns the motion of B beyond first contact, in diagonals of the larger body; negative: separate.
 double depth_of(PoseClass c) {
+  if (const double within = within_of(c); within > 0) return -within / 2;
   switch (c) {
     case PoseClass::apart:
       return -0.005;
@@ -105,7 +106,7 @@ class Maker {
   DataSet make() {
     for (const PoseClass c : classes_of(o_.quantity)) {
       if (o_.quantity != Quantity::pairs)
-        add_numbers(c);
+        add_posed(c);
       else if (c == PoseClass::identical)
         add_identical();
       else
@@ -138,7 +139,7 @@ class Maker {
 
   /// Adds B at one pose, or on a straight motion that is two diagonals long and starts at a random distance,
   /// so that no method that samples equal times is favoured.
-  void add_numbers(PoseClass c) {
+  void add_posed(PoseClass c) {
     Approaches approaches(reps_[0], reps_[1], set_.diagonal, o_.seed);
     shapes::RandomEngine random(o_.seed);
     for (int i = 0; i < o_.poses; ++i) {
@@ -154,6 +155,8 @@ class Maker {
         q.from = (is_into ? shapes::uniform(random, 1.2, 1.8) : shapes::uniform(random, 0.8, 1.2)) * back;
         q.to = q.from - 2 * back;
       }
+      if (o_.quantity == Quantity::near_pairs)
+        q.expected = exact_pairs(reps_[0], q.pose_a, reps_[1], q.pose_b, within_of(c) * set_.diagonal);
       set_.questions.push_back(std::move(q));
     }
   }
@@ -298,6 +301,8 @@ std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string
       {"trace", {{"gzip", true}}},
       {"frames", {{"at", "step"}, {"size", {960, 540}}, {"views", views}}}};
   if (set.quantity == Quantity::pairs) value["expect"] = {{{"step", 0}, {"pairs", q.expected.size()}}};
+  if (set.quantity == Quantity::near_pairs)
+    value["query"] = {{"near", within_of(q.pose_class) * set.diagonal}};
   if (set.quantity == Quantity::depth) value["query"] = {{"clash", true}};
   if (set.quantity == Quantity::distance || set.quantity == Quantity::first_contact)
     value["query"] = {{"distance", true}};

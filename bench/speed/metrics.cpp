@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/exact/pair_distance.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 
@@ -146,7 +147,8 @@ RegionError region_error(const Region& exact, const Region& found, double diagon
 
 namespace {
 
-constexpr Metric kOfNumbers[] = {Metric::distance, Metric::time_of_impact, Metric::penetration};
+/// Metrics of other quantities than intersecting pairs.
+constexpr Metric kOfNumbers[] = {Metric::distance, Metric::time_of_impact, Metric::penetration, Metric::list};
 
 std::optional<double>& at(Errors& e, Metric m) {
   return e[static_cast<std::size_t>(m)];
@@ -375,15 +377,18 @@ Metric chart_metric(Quantity quantity) {
       return Metric::time_of_impact;
     case Quantity::depth:
       return Metric::penetration;
+    case Quantity::near_pairs:
+      return Metric::list;
     case Quantity::pairs:
-    case Quantity::near_pairs:  // not measured
-    case Quantity::self_intersections:
+    case Quantity::self_intersections:  // not measured
       break;
   }
   return Metric::hausdorff;
 }
 
 double Point::error() const {
+  if (const auto& list = errors[static_cast<std::size_t>(Metric::list)])
+    return std::max(*list, errors[static_cast<std::size_t>(Metric::distance)].value_or(0));
   for (const Metric m :
        {Metric::hausdorff, Metric::distance, Metric::time_of_impact, Metric::penetration, Metric::contact})
     if (const auto& e = errors[static_cast<std::size_t>(m)]) return *e;
@@ -402,9 +407,12 @@ using RecordsByQuestion = std::map<std::pair<std::string, std::uint64_t>, std::v
 /// Returns the errors of a record, or nullopt if it was not judged.
 std::optional<Errors> errors_of(const DataSet& set, const Question& q, const methods::MethodInfo& info,
                                 const Record& r) {
-  if (set.quantity != Quantity::pairs) return errors_of_number(set, q, r);
-  if (r.outcome != Outcome::answered) return worst_of(info);
-  return r.errors;
+  if (!methods::is_list(set.quantity)) return errors_of_number(set, q, r);
+  if (r.outcome == Outcome::answered) return r.errors;
+  if (set.quantity == Quantity::pairs) return worst_of(info);
+  Errors e;
+  at(e, Metric::list) = metric_info(Metric::list).worst;
+  return e;
 }
 
 /// Adds a data set's points.
@@ -438,6 +446,29 @@ void add_points(const DataSet& set, const std::vector<methods::MethodInfo>& meth
 Errors errors_of_answer(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
                         const methods::MethodInfo& info, const methods::MethodAnswer& answer) {
   return Judge(set, question, a, b).errors(info, answer);
+}
+
+Errors errors_of_near(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
+                      const std::vector<SimplexPair>& pairs, const std::vector<double>& distances) {
+  Errors e;
+  const std::size_t extra = without(pairs, question.expected), missed = without(question.expected, pairs);
+  at(e, Metric::precision) = share(extra, pairs.size());
+  at(e, Metric::recall) = share(missed, question.expected.size());
+  at(e, Metric::list) = share(extra + missed, question.expected.size() + extra);
+  if (distances.size() != pairs.size()) return e;
+  double worst = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const WorldTriangle s(a, Pose{}, pairs[i].a), t(b, Pose{}, pairs[i].b);
+    double least = 0, most = 0;
+    if (exact::meet_triangles(s.corners, t.corners) == exact::Meet::disjoint) {
+      const exact::PairDistance exact = exact::distance_of_simplices(s.corners, t.corners, 3);
+      least = exact.lower;
+      most = exact.upper;
+    }
+    worst = std::max({worst, least - distances[i], distances[i] - most});
+  }
+  at(e, Metric::distance) = std::min(metric_info(Metric::distance).worst, worst / set.diagonal);
+  return e;
 }
 
 std::vector<Point> measure_points(const std::vector<DataSet>& sets,

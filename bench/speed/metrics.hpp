@@ -50,7 +50,7 @@ struct Point {
 
   std::size_t failed() const { return rejected + crashed + timed_out; }
   /// Returns the error on the chart's axis: of the number or the contact region if the method provides one,
-  /// else of its boolean answer.
+  /// of near pairs the larger of those of the list and of the distances, else of its boolean answer.
   double error() const;
   bool says_only_yes_or_no() const;
 };
@@ -64,6 +64,11 @@ std::vector<Point> measure_points(const std::vector<DataSet>& sets,
 /// bodies.
 Errors errors_of_answer(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
                         const methods::MethodInfo& info, const methods::MethodAnswer& answer);
+
+/// Returns the errors of a list of near pairs, ascending; `a` and `b` are the bodies in world coordinates.
+/// `distances`: of each listed pair; or empty, if the method reports none.
+Errors errors_of_near(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
+                      const std::vector<SimplexPair>& pairs, const std::vector<double>& distances);
 
 /// Returns them as JSON, one per line.
 std::string to_lines(const std::vector<Point>& points);
