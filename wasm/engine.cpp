@@ -74,12 +74,12 @@ double micros_of(Session& s, double seconds) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
   const auto spent = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  constexpr int kMost = 1000;
+  constexpr int kMaxRuns = 1000;
   int runs = 0;
   do {
     s.query();
     ++runs;
-  } while (spent() < seconds && runs < kMost);
+  } while (spent() < seconds && runs < kMaxRuns);
   return 1e6 * spent() / runs;
 }
 
