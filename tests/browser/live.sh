@@ -46,8 +46,13 @@ native() {
   script drive_live.js
   echo '</body></html>'
 } >"$work/page.html"
-browse --window-size=1400,900 --timeout=300000 --virtual-time-budget=600000 "${webgl[@]}" "file://$work/page.html" >"$work/dom" || true
-sed -n '/<pre id="driven">/,/<\/pre>/p' "$work/dom" | sed -e 's/.*<pre id="driven">//' -e 's/<\/pre>.*//' | unmarked >"$work/driven"
+# Twice if there is no result at all: on a machine under load the browser may be ended before the engine is compiled.
+for attempt in 1 2; do
+  browse --window-size=1400,900 --timeout=300000 --virtual-time-budget=600000 "${webgl[@]}" "file://$work/page.html" >"$work/dom" || true
+  sed -n '/<pre id="driven">/,/<\/pre>/p' "$work/dom" | sed -e 's/.*<pre id="driven">//' -e 's/<\/pre>.*//' | unmarked >"$work/driven"
+  [ ! -s "$work/driven" ] || break
+  echo "live.sh: attempt $attempt: the browser printed no result" >&2
+done
 grep -v '^pose ' "$work/driven" | cut -c1-200 || true
 
 failed=0

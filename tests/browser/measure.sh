@@ -20,6 +20,11 @@ make_pages() {
   "$lrbscope" --quiet levels "$out/dent/a.lrb" --at 0.02 0.1 -o "$out/levels" >/dev/null
   pages=()
   for name in meet build dent plane open near compare golden levels; do pages+=("$out/$name/index.html"); done
+  if "$lrbscope" --quiet run "$work/meet.json" --live --frames none -o "$out/live" >/dev/null 2>&1; then
+    pages+=("$out/live/live.html")
+  else
+    echo "measure.sh: no live page: the program was built without LRB_WASM"
+  fi
   if [ -x "$(dirname "$lrbscope")/lrbscope-xray-fcl" ]; then
     printf '1 0 0 %s 0 1 0 0.3 0 0 1 0.2\n' 1.5 9 >"$work/poses.txt"
     "$lrbscope" --quiet xray "$out/meet/a.lrb" "$out/meet/b.lrb" --poses "$work/poses.txt" -o "$out/xray" >/dev/null

@@ -450,8 +450,9 @@ class LivePage {
     byId("turn").onclick = () => this.setMode(true);
     byId("fit").onclick = () => this.view.fit();
     for (const name of ["lids", "tested"])
-      byId(name).onchange = () => {
-        this.view.shown[name] = byId(name).checked;
+      byId(name).onclick = () => {
+        this.view.shown[name] = !this.view.shown[name];
+        byId(name).setAttribute("aria-pressed", String(this.view.shown[name]));
         this.draw();
       };
     this.listenToMouse();
