@@ -275,6 +275,8 @@ class LivePage {
       fail(`The engine stopped at this pose (${e.message || e}); reload the page.`);
       return;
     }
+    // `lrbscope query` leaves A at the identity.
+    byId("pose-query").hidden = this.poseA.some((x, i) => x !== (i % 5 === 0 ? 1 : 0));
     if (this.view) {
       this.view.place(0, this.poseA);
       this.view.place(1, rows);
