@@ -393,7 +393,7 @@ report::Document build_page(const BuildResults& r) {
   };
   for (const Panel& panel :
        {Panel{"Build", "wall time, ms", &Cell::build}, Panel{"First answer", "wall time, ms", &Cell::first},
-        Panel{"Build, CPU", "CPU time of all threads, ms", &Cell::build_cpu}}) {
+        Panel{"Build, all threads", "CPU time, ms", &Cell::build_cpu}}) {
     report::Chart chart{panel.title, {"triangles", true}, {panel.axis, true}};
     std::map<std::string, report::Series> series;
     // From few triangles to many.
