@@ -251,7 +251,7 @@ TEST_CASE("lrbscope stability --quantity: table, records, a repeated case, an un
   o = test::run(folder, {"chart", "--quantity", "self_intersections"});
   CHECK(o.code == 2);
   CHECK(o.err ==
-        "lrbscope: --quantity: expected pairs, distance, first_contact or depth, found self_intersections\n");
+        "lrbscope: --quantity: expected pairs, near_pairs, distance, first_contact or depth, found self_intersections\n");
   o = test::run(folder, {"stability", "--quantity", "length"});
   CHECK(o.code == 2);
   CHECK(o.error_lines() == 1);
