@@ -250,8 +250,9 @@ TEST_CASE("lrbscope stability --quantity: table, records, a repeated case, an un
   CHECK(std::filesystem::exists(folder / "out/stability-self_intersections/worst/shared-plain.png"));
   o = test::run(folder, {"chart", "--quantity", "self_intersections"});
   CHECK(o.code == 2);
-  CHECK(o.err ==
-        "lrbscope: --quantity: expected pairs, near_pairs, distance, first_contact or depth, found self_intersections\n");
+  CHECK(
+      o.err ==
+      "lrbscope: --quantity: expected pairs, near_pairs, distance, first_contact or depth, found self_intersections\n");
   o = test::run(folder, {"stability", "--quantity", "length"});
   CHECK(o.code == 2);
   CHECK(o.error_lines() == 1);
