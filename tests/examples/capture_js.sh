@@ -83,10 +83,10 @@ capture.node(1, 5, true);
 capture.prim(1, 0, true);
 capture.count(name, 4000000000);
 capture.count(name, 1);
-capture.end(k.MEET, 1);
+capture.end(k.INTERSECTING, 1);
 capture.begin(k.ANY, a, null, 0, null);
 const met = bvh.shapecast(watched(capture, { intersectsBounds: (box, leaf, score, depth, node) => node === 2, intersectsTriangle: () => false }));
-capture.end(met ? k.MEET : k.APART, 0);
+capture.end(met ? k.INTERSECTING : k.SEPARATE, 0);
 fs.writeFileSync("js.lrbcap", capture.close());
 
 // Without times: those of chunks, the wall clock, and how long queries took.
@@ -113,7 +113,7 @@ node record.mjs "$tree/examples/capture/lrbscope_capture.mjs"
 
 cat >pieces.mjs <<'END'
 import fs from "fs";
-const { Capture, ALL_PAIRS, ANY, MEET, APART, AABB } = await import(process.argv[2]);
+const { Capture, ALL_PAIRS, ANY, INTERSECTING, SEPARATE, AABB } = await import(process.argv[2]);
 const file = fs.openSync(process.env.LRBCAP_OUT, "w"), capture = new Capture("pieces");
 const mesh = capture.mesh("a", [0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2]);
 const tree = capture.tree({ mesh, volume: AABB, firstChild: [0, 0], child: [], firstPrim: [0, 1], prim: [0], volumes: Float32Array.from([0, 0, 0, 1, 1, 0]) });
@@ -121,12 +121,12 @@ for (let i = 0; i < 3; ++i) {
   capture.begin(ALL_PAIRS, tree, null, tree, [1, 0, 0, i, 0, 1, 0, 0, 0, 0, 1, 0]);
   capture.node(0, 0, i < 2);
   if (i < 2) capture.prim(0, 0, true);
-  capture.end(i < 2 ? MEET : APART, i < 2 ? 1 : 0);
+  capture.end(i < 2 ? INTERSECTING : SEPARATE, i < 2 ? 1 : 0);
   fs.writeSync(file, capture.take());
 }
 capture.begin(ANY, tree, null, 0, null); // with a shape: listed, but not checked
 capture.node(0, 0, false);
-capture.end(APART, 0);
+capture.end(SEPARATE, 0);
 fs.writeSync(file, capture.close());
 END
 "$2" --quiet live --exit -- node pieces.mjs "$tree/examples/capture/lrbscope_capture.mjs" >said
