@@ -467,7 +467,10 @@ Errors errors_of_near(const DataSet& set, const Question& question, const LrbRep
     }
     worst = std::max({worst, least - distances[i], distances[i] - most});
   }
-  at(e, Metric::distance) = std::min(metric_info(Metric::distance).worst, worst / set.diagonal);
+  // Answers are doubles: less than this is rounding, as is the upper end of an interval, and ranks no method.
+  constexpr double kRounding = 1e-14;
+  worst /= set.diagonal;
+  at(e, Metric::distance) = worst < kRounding ? 0 : std::min(metric_info(Metric::distance).worst, worst);
   return e;
 }
 

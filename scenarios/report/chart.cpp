@@ -48,14 +48,17 @@ json series_json(const Series& s) {
           {"line", kLines[static_cast<std::size_t>(s.style.line)]}};
 }
 
+std::string colour_of(const SeriesStyle& style, std::size_t i) {
+  return style.colour.empty() ? series_colour(i) : style.colour;
+}
+
 /// Returns the style of the i-th series in gnuplot: colour, point and dashes.
 std::string look(const SeriesStyle& style, std::size_t i) {
   const std::size_t colours = render::page::kSeries.size();
   const Shape* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
                                     [&](const Shape& s) { return s.name == style.shape; });
   const int point = (shape == std::end(kShapes) ? kShapes[i % colours] : *shape).point;
-  return " lc rgb '" + (style.colour.empty() ? series_colour(i) : style.colour) + "' pt " +
-         std::to_string(point) + " ps 0.5 dt " +
+  return " lc rgb '" + colour_of(style, i) + "' pt " + std::to_string(point) + " ps 0.5 dt " +
          (style.line == Line::dashed ? "2" : std::to_string(1 + i / colours)) + " lw 1.2";
 }
 
@@ -78,7 +81,9 @@ std::string plot(Gnuplot& chart, const Series& s, std::size_t i, const std::stri
   const std::string title = s.label.empty() ? " notitle" : " title " + gnuplot_text(s.label);
   std::string out;
   if (!s.low.empty()) out += data + "1:2:3:4 with yerrorbars" + style + " notitle, ";
-  if (!s.from.empty()) out += data + "3:2:($1-$3):(0) with vectors nohead" + style + " dt 3 notitle, ";
+  if (!s.from.empty())  // vectors take no points, and gnuplot rejects a second dash type
+    out += data + "3:2:($1-$3):(0) with vectors nohead lc rgb '" + colour_of(s.style, i) +
+           "' dt 3 lw 1.2 notitle, ";
   return out + data + "1:2 with " + form(s) + style + title;
 }
 
