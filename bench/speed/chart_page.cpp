@@ -91,8 +91,8 @@ ChartText of_near() {
        {"Error",
         "The pairs that are missing or extra, as a share of all listed and all near ones, or the largest error of a listed "
         "distance over the larger body's diagonal, whichever is larger; averaged over poses. The table has each: list, recall "
-        "(missing), precision (extra), distance. An interval counts by its upper end. A missing answer counts as 1. The right "
-        "list is by exact predicates for all pairs with boxes within the distance, right distances by integers."},
+        "(missing), precision (extra), distance. An interval counts by its upper end. Errors of distances below 1e-14 count as 0. "
+        "A missing answer counts as 1. The right list is by exact predicates for all pairs with boxes within the distance, right distances by integers."},
        {"Proof",
         "lrbscope reports an interval that contains the distance of each pair; its list is exact. The width of the widest "
         "interval is a cross at the same height. Other methods prove nothing."}}};

@@ -1,12 +1,15 @@
 /// Speed and accuracy: data sets, records, what is computed from them, and the commands.
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
 #include <doctest/doctest.h>
 
 #include "bench/methods/method.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/build_times.hpp"
 #include "bench/speed/data_set.hpp"
@@ -15,6 +18,7 @@
 #include "bench/speed/peer_table.hpp"
 #include "bench/speed/record.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "scenarios/report/gnuplot.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
@@ -564,4 +568,59 @@ TEST_CASE("chart --quantity: correct answers, records, points and a page for eac
   CHECK(slurp(folder / "out/chart-depth/index.html").find("scenes/rocks-80-depth-deep/index.html") !=
         std::string::npos);
   CHECK(chart("length").code == 2);
+  CHECK(chart("self_intersections").code == 2);
+}
+
+TEST_CASE("chart --quantity near_pairs: lists and distances are judged, and written as CSV") {
+  const Folder folder;
+  const auto ran =
+      test::run(folder, {"chart", "--quantity", "near_pairs", "--faces", "80", "--poses", "2", "--rounds",
+                         "1", "--no-scenes", "--method", "ours", "--method", "plain", "-o", "c"});
+  CHECK(ran.code == 0);
+  std::uint64_t near = 0;
+  for (const bench::Record& r : bench::read_records(folder / "c/records.jsonl")) {
+    REQUIRE(r.errors);
+    CHECK((*r.errors)[static_cast<std::size_t>(Metric::list)] == 0);
+    CHECK(*(*r.errors)[static_cast<std::size_t>(Metric::distance)] == 0);
+    if (r.method == "ours") CHECK(*r.all.error_bound < 1e-12);
+    near += r.all.count;
+  }
+  CHECK(near > 100);
+  if (report::has_gnuplot())
+    CHECK(std::filesystem::exists(folder / "c/chart.svg"));  // with crosses and their lines
+  const std::string csv = slurp(folder / "c/chart.csv");
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 3 * 3 * 2);
+  CHECK(slurp(folder / "c/index.html").find("Which setting for an error of at most x?") != std::string::npos);
+}
+
+TEST_CASE("errors of near pairs: missing and extra pairs, and the largest error of a distance") {
+  // The nearest corners of two boxes are 5 apart: (3, 4, 0).
+  const LrbRep a = build_lrb(shapes::box()), b = methods::at_pose(a, Pose::translation({4, 5, 0.5}));
+  bench::DataSet set;
+  set.diagonal = 10;
+  bench::Question q;
+  q.expected = bench::exact_pairs(a, Pose{}, b, Pose{}, 5);
+  REQUIRE(q.expected.size() > 2);
+  CHECK(bench::exact_pairs(a, Pose{}, b, Pose{}, std::nextafter(5, 0)).empty());
+  const auto error = [&](std::vector<SimplexPair> pairs, double distance, Metric m) {
+    std::sort(pairs.begin(), pairs.end());
+    return bench::errors_of_near(set, q, a, b, pairs,
+                                 std::vector<double>(pairs.size(), distance))[static_cast<std::size_t>(m)];
+  };
+  CHECK(*error(q.expected, 5, Metric::list) == 0);
+  CHECK(*error(q.expected, 5, Metric::distance) == 0);
+  CHECK(*error(q.expected, 5.5, Metric::distance) == doctest::Approx(0.05));
+  CHECK(*error(q.expected, 4.5, Metric::distance) == doctest::Approx(0.05));
+  std::vector<SimplexPair> some(q.expected.begin() + 1, q.expected.end());
+  const auto n = static_cast<double>(q.expected.size());
+  CHECK(*error(some, 5, Metric::list) == doctest::Approx(1 / n));
+  CHECK(*error(some, 5, Metric::recall) == doctest::Approx(1 / n));
+  CHECK(*error(some, 5, Metric::precision) == 0);
+  std::vector<SimplexPair> more = q.expected;
+  for (SimplexId s = 0; more.size() == q.expected.size(); ++s)
+    if (const SimplexPair p{s, SimplexId(0)}; std::find(more.begin(), more.end(), p) == more.end())
+      more.push_back(p);
+  CHECK(*error(more, 5, Metric::list) == doctest::Approx(1 / (n + 1)));
+  CHECK(*error(more, 5, Metric::precision) == doctest::Approx(1 / (n + 1)));
+  CHECK(*error({}, 5, Metric::list) == 1);
 }
