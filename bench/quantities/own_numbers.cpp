@@ -168,13 +168,24 @@ double triangle_to_triangle(const Triangle& s, const Triangle& t) {
 }
 
 NumberAnswer plain_near_pairs(const NumberQuery& q, Setting) {
+  struct Face {
+    Triangle corners;
+    Eigen::AlignedBox3d box;
+  };
+  const auto faces_of = [](const LrbRep& rep) {
+    std::vector<Face> out;
+    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s)
+      out.push_back({triangle(rep, s), box_of(triangle(rep, s))});
+    return out;
+  };
   NumberAnswer out;
   const Stopwatch watch;
-  for (SimplexId i = 0; i < q.a.real_simplex_count(); ++i)
-    for (SimplexId j = 0; j < q.b.real_simplex_count(); ++j) {
-      const Triangle s = triangle(q.a, i), t = triangle(q.b, j);
-      if (box_of(s).exteriorDistance(box_of(t)) > q.within) continue;
-      if (const double d = triangle_to_triangle(s, t); d <= q.within) add_near(out, {i, j}, d);
+  const std::vector<Face> a = faces_of(q.a), b = faces_of(q.b);
+  for (SimplexId i = 0; i < a.size(); ++i)
+    for (SimplexId j = 0; j < b.size(); ++j) {
+      if (a[i].box.exteriorDistance(b[j].box) > q.within) continue;
+      const double d = triangle_to_triangle(a[i].corners, b[j].corners);
+      if (d <= q.within) add_near(out, {i, j}, d);
     }
   out.microseconds = watch.microseconds();
   return out;

@@ -83,7 +83,7 @@ ChartText of_near() {
       "Speed versus accuracy: near pairs",
       "All pairs of triangles within a distance of 0.1, 1 or 5 % of the larger body's diagonal. B is half that distance away: "
       "time of a query, and error of the list.",
-      "larger of: wrong share of the list, error of a distance / diagonal",
+      "error of the list or distances",
       "width of the widest interval: proven",
       {{"Axes", kHowToRead},
        {"Times", kTimes},
