@@ -231,29 +231,29 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
   push(Event::of(payload::Step{index}));
 }
 
-void Recorder::add(MeasuredDistance distance) {
+Step& Recorder::step_to_add_to() {
   if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
-  trace_.steps.back().result.distance = std::move(distance);
+  return trace_.steps.back();
+}
+
+void Recorder::add(MeasuredDistance distance) {
+  step_to_add_to().result.distance = std::move(distance);
 }
 
 void Recorder::add(MeasuredClash clash) {
-  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
-  trace_.steps.back().result.clash = std::move(clash);
+  step_to_add_to().result.clash = std::move(clash);
 }
 
 void Recorder::add(MeasuredNearPairs near) {
-  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
-  trace_.steps.back().result.near = std::move(near);
+  step_to_add_to().result.near = std::move(near);
 }
 
 void Recorder::add(MeasuredManifolds manifold) {
-  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
-  trace_.steps.back().result.manifold = std::move(manifold);
+  step_to_add_to().result.manifold = std::move(manifold);
 }
 
 void Recorder::add(EngineReport report) {
-  if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
-  trace_.steps.back().result.engine = std::move(report);
+  step_to_add_to().result.engine = std::move(report);
 }
 
 void Recorder::end_step(const CollideResult& result) {

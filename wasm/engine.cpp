@@ -5,7 +5,9 @@
 // Results are views into this program's memory, valid until the next query.
 
 #include <chrono>
+#include <cinttypes>
 #include <cstdint>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -125,10 +127,9 @@ EMSCRIPTEN_KEEPALIVE const char* lrb_word(int which) {
   if (which == 0) {
     s.text = lrb::to_string(s.result.relation);
   } else {
-    constexpr char kDigits[] = "0123456789abcdef";
-    s.text.assign(16, '0');
-    std::uint64_t hash = lrb::fingerprint(s.result.pairs);
-    for (std::size_t i = 16; i-- > 0; hash >>= 4) s.text[i] = kDigits[hash & 15];
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016" PRIx64, lrb::fingerprint(s.result.pairs));
+    s.text = digits;
   }
   return s.text.c_str();
 }

@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <sstream>
+#include <numeric>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/speed/bench_runner.hpp"
@@ -363,15 +363,21 @@ std::string build_text(const BuildResults& r) {
 }
 
 std::string build_csv(const BuildResults& r) {
-  std::ostringstream out;
-  out << "body,faces,method,round,outcome,build_ms,build_cpu_ms,first_ms,first_cpu_ms,heap_bytes,contact\n";
+  constexpr int kDigits = 6;
+  report::Table table{"",
+                      {"body", "faces", "method", "round", "outcome", "build_ms", "build_cpu_ms", "first_ms",
+                       "first_cpu_ms", "heap_bytes", "contact"}};
   std::map<std::string, std::uint32_t> faces;
   for (const BuiltBody& body : r.bodies) faces[body.name] = body.faces;
-  for (const BuildTime& t : r.times)
-    out << t.body << "," << faces[t.body] << "," << t.method << "," << t.round << "," << name_of(t.outcome)
-        << "," << t.build_ms << "," << t.build_cpu_ms << "," << t.first_ms << "," << t.first_cpu_ms << ","
-        << t.heap_bytes << "," << (t.contact ? 1 : 0) << "\n";
-  return out.str();
+  for (const BuildTime& t : r.times) {
+    std::vector<std::string>& row = table.rows.emplace_back();
+    row = {t.body, std::to_string(faces[t.body]), t.method, std::to_string(t.round),
+           std::string(name_of(t.outcome))};
+    for (const double x : {t.build_ms, t.build_cpu_ms, t.first_ms, t.first_cpu_ms, t.heap_bytes})
+      row.push_back(io::number_text(x, kDigits));
+    row.push_back(t.contact ? "1" : "0");
+  }
+  return report::csv(table);
 }
 
 report::Document build_page(const BuildResults& r) {
@@ -391,35 +397,37 @@ report::Document build_page(const BuildResults& r) {
     const char *title, *axis;
     Spread Cell::*value;
   };
+  std::vector<std::vector<Cell>> cells;  // (bodies)
+  for (const BuiltBody& body : r.bodies) cells.push_back(cells_of(r, body));
+  // From few triangles to many.
+  std::vector<std::size_t> by_size(cells.size());
+  std::iota(by_size.begin(), by_size.end(), std::size_t{0});
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [&](std::size_t i, std::size_t k) { return r.bodies[i].faces < r.bodies[k].faces; });
   for (const Panel& panel :
        {Panel{"Build", "wall time, ms", &Cell::build}, Panel{"First answer", "wall time, ms", &Cell::first},
         Panel{"Build, all threads", "CPU time, ms", &Cell::build_cpu}}) {
     report::Chart chart{panel.title, {"triangles", true}, {panel.axis, true}};
     std::map<std::string, report::Series> series;
-    // From few triangles to many.
-    std::vector<const BuiltBody*> bodies;
-    for (const BuiltBody& body : r.bodies) bodies.push_back(&body);
-    std::stable_sort(bodies.begin(), bodies.end(),
-                     [](const BuiltBody* a, const BuiltBody* b) { return a->faces < b->faces; });
-    for (const BuiltBody* body : bodies)
-      for (const Cell& c : cells_of(r, *body)) {
+    for (const std::size_t i : by_size)
+      for (const Cell& c : cells[i]) {
         const Spread& s = c.*panel.value;
         if (s.median == 0) continue;
         report::Series& line = series[c.method->name];
         line.label = c.method->title;
-        line.x.push_back(body->faces);
+        line.x.push_back(c.body->faces);
         line.y.push_back(s.median);
         line.low.push_back(s.low);
         line.high.push_back(s.high);
-        line.notes.push_back(c.method->title + "\n" + head_of(*body) + "\n" + with_span(s) + " ms");
+        line.notes.push_back(c.method->title + "\n" + head_of(*c.body) + "\n" + with_span(s) + " ms");
       }
     for (const methods::MethodInfo& m : r.methods)
       if (const auto it = series.find(m.name); it != series.end()) chart.series.push_back(it->second);
     page.chart(chart);
   }
-  for (const BuiltBody& body : r.bodies) {
-    report::Table table{head_of(body), columns()};
-    for (const Cell& c : cells_of(r, body)) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    report::Table table{head_of(r.bodies[i]), columns()};
+    for (const Cell& c : cells[i]) {
       table.rows.push_back(row_of(c));
       table.rows.back().resize(columns().size());
     }

@@ -384,27 +384,31 @@ report::Table table_of_points(const std::vector<Point>& points) {
 /// A method at a setting, over all classes of poses of a data set.
 struct Setting {
   std::string name;
-  double error = 0;           ///< the largest
-  std::vector<double> times;  ///< (classes)
+  double error = 0;  ///< the largest
+  double time = 0;   ///< the geometric mean over the classes
 };
 
 /// Returns the settings with answers that may be on a frontier in every class. `ours`: only of lrbscope.
 std::vector<Setting> settings_of(const DataSet& set, const std::vector<Point>& points,
                                  const std::vector<methods::MethodInfo>& methods, bool ours) {
-  std::map<std::string, Setting> all;
+  struct Answers {
+    double error = 0;
+    std::vector<double> times;  ///< (classes)
+  };
+  std::map<std::string, Answers> all;
   for (const Point& p : points) {
     const auto info = std::find_if(methods.begin(), methods.end(),
                                    [&](const methods::MethodInfo& m) { return m.name == p.method; });
     if (p.set != set.name || !p.left_out.empty() || info == methods.end()) continue;
     if (ours && !is_ours(info->role)) continue;
-    Setting& s = all[name_of(p.method, p.setting)];
-    s.name = name_of(p.method, p.setting);
+    Answers& s = all[name_of(p.method, p.setting)];
     s.error = std::max(s.error, p.error());
     s.times.push_back(p.median);
   }
   std::vector<Setting> out;
-  for (auto& [name, s] : all)
-    if (s.times.size() == classes_of(set.quantity).size()) out.push_back(std::move(s));
+  for (const auto& [name, s] : all)
+    if (s.times.size() == classes_of(set.quantity).size())
+      out.push_back({name, s.error, geometric_mean(s.times)});
   return out;
 }
 
@@ -428,23 +432,23 @@ report::Table table_of_methods(const std::vector<methods::MethodInfo>& methods) 
 }  // namespace
 
 std::string drawn_csv(const std::vector<Point>& points) {
-  const auto quoted = [](const std::string& word) {
-    std::string out = "\"";
-    for (const char c : word) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + "\"";
-  };
-  std::string out = "bodies,pose,method,setting,error,proven,us,us_least,us_most,frontier\n";
+  report::Table t{
+      "",
+      {"bodies", "pose", "method", "setting", "error", "proven", "us", "us_least", "us_most", "frontier"}};
   for (const Point& p : points) {
     if (!is_drawn(p)) continue;
-    out += quoted(p.set) + "," + quoted(std::string(name_of(p.pose_class))) + "," + quoted(p.method) + "," +
-           (p.setting ? io::number_text(*p.setting, kCsvDigits) : "") + "," +
-           io::number_text(p.error(), kCsvDigits) + "," +
-           (p.proven_deviation ? io::number_text(*p.proven_deviation, kCsvDigits) : "");
+    std::vector<std::string>& row = t.rows.emplace_back();
+    row = {p.set,
+           std::string(name_of(p.pose_class)),
+           p.method,
+           p.setting ? io::number_text(*p.setting, kCsvDigits) : "",
+           io::number_text(p.error(), kCsvDigits),
+           p.proven_deviation ? io::number_text(*p.proven_deviation, kCsvDigits) : ""};
     for (const double us : {p.median, p.least, p.most})
-      out += "," + (p.median > 0 ? io::number_text(us, kCsvDigits) : "");
-    out += "," + quoted(frontier_text(p)) + "\n";
+      row.push_back(p.median > 0 ? io::number_text(us, kCsvDigits) : "");
+    row.push_back(frontier_text(p));
   }
-  return out;
+  return report::csv(t);
 }
 
 report::Table table_of_settings(const std::vector<DataSet>& sets, const std::vector<Point>& points,
@@ -456,16 +460,16 @@ report::Table table_of_settings(const std::vector<DataSet>& sets, const std::vec
   for (const DataSet& set : sets) {
     std::uint32_t faces = 0;
     for (const BodyFile& b : set.bodies) faces = std::max(faces, b.faces);
+    const std::vector<Setting> of_all = settings_of(set, points, methods, false),
+                               of_ours = settings_of(set, points, methods, true);
     for (const double bound : kBounds) {
       std::vector<std::string> row = {set.name, std::to_string(faces), render::short_number(bound)};
-      for (const bool ours : {false, true}) {
+      for (const std::vector<Setting>* settings : {&of_all, &of_ours}) {
         const Setting* best = nullptr;
-        const std::vector<Setting> all = settings_of(set, points, methods, ours);
-        for (const Setting& s : all)
-          if (s.error <= bound && (best == nullptr || geometric_mean(s.times) < geometric_mean(best->times)))
-            best = &s;
+        for (const Setting& s : *settings)
+          if (s.error <= bound && (best == nullptr || s.time < best->time)) best = &s;
         row.push_back(best != nullptr ? best->name : "\u2013");
-        row.push_back(best != nullptr ? render::short_number(geometric_mean(best->times)) : "\u2013");
+        row.push_back(best != nullptr ? render::short_number(best->time) : "\u2013");
         row.push_back(best != nullptr ? render::short_number(best->error) : "\u2013");
       }
       t.rows.push_back(std::move(row));

@@ -99,13 +99,22 @@ std::array<LoadedBody, 2> load_two(const std::string& a, const std::string& b, c
   const auto is_file = [&](const std::string& path) {
     return std::filesystem::is_regular_file(path, ignored);
   };
-  if (is_file(a) && is_file(b)) try {
-      return load_at_once(a, b, load);
-    } catch (const std::bad_alloc&) {
-      // One at a time needs less memory.
-    }
-  LoadedBody first = load(a);
-  return {std::move(first), load(b)};
+  const auto load_both = [&]() -> std::array<LoadedBody, 2> {
+    if (is_file(a) && is_file(b)) try {
+        return load_at_once(a, b, load);
+      } catch (const std::bad_alloc&) {
+        // One at a time needs less memory.
+      }
+    LoadedBody first = load(a);
+    return {std::move(first), load(b)};
+  };
+  std::array<LoadedBody, 2> both = load_both();
+  // A cache that cannot be used gives the same note for both.
+  if (a != b)
+    std::erase_if(both[1].notes, [&](const std::string& note) {
+      return std::find(both[0].notes.begin(), both[0].notes.end(), note) != both[0].notes.end();
+    });
+  return both;
 }
 
 std::array<LoadedBody, 2> load_faces_of_two(const std::string& a, const std::string& b, Corners corners) {
@@ -115,13 +124,7 @@ std::array<LoadedBody, 2> load_faces_of_two(const std::string& a, const std::str
 
 std::array<LoadedBody, 2> load_two_bodies(const std::string& a, const std::string& b,
                                           const BuildOptions& options, Corners corners) {
-  auto both = load_two(a, b, [&](const std::string& path) { return load_body(path, options, corners); });
-  // A cache that cannot be used gives the same note for both.
-  if (a != b)
-    std::erase_if(both[1].notes, [&](const std::string& note) {
-      return std::find(both[0].notes.begin(), both[0].notes.end(), note) != both[0].notes.end();
-    });
-  return both;
+  return load_two(a, b, [&](const std::string& path) { return load_body(path, options, corners); });
 }
 
 }  // namespace lrb::bodies

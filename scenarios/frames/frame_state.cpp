@@ -60,8 +60,6 @@ void FrameState::add_answer(Moment& m) const {
     if (m.result != nullptr) contacts = m.result->regions;
     m.separation_vector = separation_vector_of(*m.answer->clash, bodies(), contacts);
   }
-  if (m.answer->near) m.near = near_marks(*m.answer->near);
-  if (m.answer->manifold) m.contacts = contact_marks(*m.answer->manifold);
   if (shows_separating_plane(m))
     m.separating = explain_walk(rep(Side::a), pose(Side::a), rep(Side::b), pose(Side::b));
 }
@@ -186,10 +184,13 @@ void FrameState::add_marks(render::Scene& scene, bool plain) const {
   const render::Style& style = style_of(spec_.style);
   if (now_.separating && !plain) add_separating_plane(scene.list, *now_.separating, bodies(), style);
   if (now_.gap) add_gap(scene, *now_.gap, style);
-  if (now_.answer != nullptr && now_.answer->near)
-    add_near_pairs(scene, now_.near, now_.near.size() == now_.answer->near->pairs, style);
+  if (now_.answer != nullptr && now_.answer->near) {
+    const trace::MeasuredNearPairs& near = *now_.answer->near;
+    add_near_pairs(scene, near_marks(near), near.nearest.size() == near.pairs, style);
+  }
   if (now_.answer != nullptr && now_.answer->manifold)
-    add_contact_points(scene, now_.contacts, now_.answer->manifold->margin, size_of(bodies()), style);
+    add_contact_points(scene, contact_marks(*now_.answer->manifold), now_.answer->manifold->margin,
+                       size_of(bodies()), style);
   if (now_.separation_vector) add_separation_vector(scene, *now_.separation_vector, run_.reps[0]->dim());
   if (!plain && !now_.wrong.empty()) {
     add_wrong_pairs(scene.list, now_.wrong, bodies(), style.paper);

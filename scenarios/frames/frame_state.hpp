@@ -73,8 +73,6 @@ class FrameState {
     /// The segment between the closest points, and the separating translation of B, of a step that ends here;
     /// nullopt if they were not requested.
     std::optional<MarkedSegment> gap, separation_vector;
-    std::vector<NearMark> near;         ///< of the same step
-    std::vector<ContactMark> contacts;  ///< points of its contact manifolds
     /// The wrong pairs of another engine in the step; empty before the step's end.
     std::span<const WrongPair> wrong;
     /// The pass of a construction that the event belongs to; null before the first, and for other runs.

@@ -11,6 +11,7 @@
 
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/paper/experiment.hpp"
+#include "scenarios/report/document.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/trace/trace.hpp>
 
@@ -173,40 +174,40 @@ RatioBands ratios(const Run& run) {
 }
 
 std::string table1_csv(std::span<const PaperObject> objects) {
-  std::string out = "object,real_faces,total_faces,outermost_faces\n";
+  report::Table t{"", {"object", "real_faces", "total_faces", "outermost_faces"}};
   for (const PaperObject& o : objects)
-    out += o.name + "," + std::to_string(o.rep.real_face_count()) + "," + std::to_string(o.rep.face_count()) +
-           "," + std::to_string(o.rep.outermost_faces().size()) + "\n";
-  return out;
+    t.rows.push_back({o.name, std::to_string(o.rep.real_face_count()), std::to_string(o.rep.face_count()),
+                      std::to_string(o.rep.outermost_faces().size())});
+  return report::csv(t);
 }
 
 std::string table2_csv(std::span<const Run> runs) {
-  std::string out =
-      "seed,time_step,steps_after,object,recursion,steps,minimum,average,maximum,published_minimum,"
-      "published_average,published_maximum\n";
+  report::Table t{"",
+                  {"seed", "time_step", "steps_after", "object", "recursion", "steps", "minimum", "average",
+                   "maximum", "published_minimum", "published_average", "published_maximum"}};
   for (const Run& run : runs)
     for (const ObjectRow& row : run.rows)
       for (std::size_t i = 0; i < kRecursions.size(); ++i) {
-        out += std::to_string(run.protocol.seed) + "," + text_of(run.protocol.step) + "," +
-               std::to_string(run.protocol.steps_after) + "," + row.object + "," +
-               std::string(trace::name_of(kRecursions[i])) + "," + std::to_string(row.steps);
-        for (const auto member : kMeasured) out += "," + text_of(row.recursions[i].comparisons.*member);
+        std::vector<std::string>& cells = t.rows.emplace_back();
+        cells = {std::to_string(run.protocol.seed),           text_of(run.protocol.step),
+                 std::to_string(run.protocol.steps_after),    row.object,
+                 std::string(trace::name_of(kRecursions[i])), std::to_string(row.steps)};
+        for (const auto member : kMeasured) cells.push_back(text_of(row.recursions[i].comparisons.*member));
         const PublishedRow* p = i == kPaper ? published(row.object) : nullptr;
-        for (const auto member : kPublished) out += "," + (p ? text_of(p->*member) : std::string());
-        out += "\n";
+        for (const auto member : kPublished) cells.push_back(p ? text_of(p->*member) : "");
       }
-  return out;
+  return report::csv(t);
 }
 
 std::string ratios_csv(std::span<const Run> runs) {
-  std::string out = "object,number,seeds,median,lowest,highest\n";
+  report::Table t{"", {"object", "number", "seeds", "median", "lowest", "highest"}};
   for (const ObjectRow& row : runs.front().rows) {
     const RatioBands bands = ratios(runs, row.object);
     for (std::size_t i = 0; i < bands.size(); ++i)
-      out += row.object + "," + kRatioNames[i] + "," + std::to_string(runs.size()) + "," +
-             text_of(bands[i].median) + "," + text_of(bands[i].low) + "," + text_of(bands[i].high) + "\n";
+      t.rows.push_back({row.object, kRatioNames[i], std::to_string(runs.size()), text_of(bands[i].median),
+                        text_of(bands[i].low), text_of(bands[i].high)});
   }
-  return out;
+  return report::csv(t);
 }
 
 std::string tables_json(std::span<const PaperObject> objects, std::span<const Run> runs,

@@ -119,6 +119,26 @@ Folder::Folder(std::string path) : path_(made(std::move(path))), lock_(path_) {
   io::reject_links(path_);
 }
 
+std::string csv(const Table& table) {
+  std::string out;
+  const auto add = [&](const std::vector<std::string>& row) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i > 0) out += ",";
+      if (row[i].find_first_of(",\"\r\n") == std::string::npos) {
+        out += row[i];
+        continue;
+      }
+      out += "\"";
+      for (const char c : row[i]) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+      out += "\"";
+    }
+    out += "\n";
+  };
+  add(table.columns);
+  for (const std::vector<std::string>& row : table.rows) add(row);
+  return out;
+}
+
 Document::Document(std::string title, std::string purpose)
     : title_(std::move(title)), purpose_(std::move(purpose)) {
   version(trace::lrbscope_version());

@@ -35,6 +35,10 @@ struct Table {
   Rows rows_are = Rows::plain;
 };
 
+/// Returns columns and rows of a table as CSV (RFC 4180), for other programs. Cells with a comma, a quote or
+/// a line break are quoted.
+std::string csv(const Table& table);
+
 /// A heading and a paragraph.
 struct Text {
   std::string title, text;

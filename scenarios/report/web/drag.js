@@ -94,55 +94,25 @@ function poseOf(text) {
   return numbers.length === 12 && numbers.every(Number.isFinite) ? numbers : null;
 }
 
+/** Returns the pose of B in the page's address, or null. */
+function poseOfAddress() {
+  return poseOf(decodeURIComponent(location.hash.replace(/^#pose=/, "")));
+}
+
 // ---- the view: bodies, wrappers, tested faces and faces in contact
-class DragView {
+class DragView extends BodiesCanvas {
   constructor(json, bodies) {
-    Object.assign(this, { json, bodies, canvas: byId("view-canvas"), colours: new Colours(json.colours) });
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-    this.size = new THREE.Vector2(1, 1);
-    this.stage = new THREE.Scene();
-    this.camera = new SceneCamera(this.canvas, json, () => this.redraw());
-    this.stage.add(new THREE.AmbientLight(0xffffff, 0.54), this.camera.perspective, this.camera.flat);
-    this.views = bodies.map((b) => new BodyView(b, this.colours));
-    this.views.forEach((v) => this.stage.add(v.group));
-    this.marks = new Marks(this.views, this.colours, this.size);
+    super(json, bodies);
+    this.json = json;
     const mode = this.colours.mode(bodies, "kind", null);
     this.views.forEach((v) => v.paint(mode, 0.4));
     this.lidKeys = ["", ""];
     this.shown = { lids: true, tested: true };
-    this.legend = new Legend(this);
-    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
-    this.resize();
-  }
-
-  resize() {
-    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    if (!width || !height) return;
-    this.size.set(width, height);
-    this.renderer.setSize(width, height, false);
-    this.camera.resize(width, height);
-    if (this.camera.fitted) this.fit();
-    this.redraw();
-  }
-
-  redraw() {
-    if (this.waiting) return;
-    this.waiting = true;
-    requestAnimationFrame(() => {
-      this.waiting = false;
-      this.draw();
-    });
+    this.start();
   }
 
   draw() {
-    if (this.camera.plane) {
-      const pixel = (2 * this.camera.halfHeight) / this.size.y;
-      for (const view of this.views) view.widen(pixel);
-      this.marks.widen(pixel);
-    }
-    this.camera.prepare(this.reach());
-    this.renderer.render(this.stage, this.camera.camera);
+    this.render();
   }
 
   /** Places a body at a pose of the world; its vertices are relative to its centre. */
@@ -203,30 +173,14 @@ class DragView {
     view.showLids((f) => included(body.inner[f], true) && !included(body.outer[f], false));
   }
 
-  points() {
-    return this.views.flatMap((view) => view.reached.map((p) => view.toWorld(p)));
-  }
-  reach() {
-    const points = this.points(),
-      { centre } = ballOf(new THREE.Box3().setFromPoints(points));
-    return points.reduce((most, p) => Math.max(most, p.distanceTo(centre)), 1e-6);
-  }
-  fit(from) {
-    this.camera.fit(this.points(), from);
-    this.redraw();
-  }
-
   /** Returns true if B is the nearest body under a point of the screen. */
   isOverB(x, y) {
-    const box = this.canvas.getBoundingClientRect(),
-      ray = new THREE.Raycaster();
-    ray.setFromCamera(
-      new THREE.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height),
-      this.camera.camera,
+    const hit = this.nearest(
+      x,
+      y,
+      this.views.flatMap((v) => [v.real, ...(v.lids.mesh.visible ? [v.lids] : [])]),
     );
-    const meshes = this.views.flatMap((v) => [v.real.mesh, ...(v.lids.mesh.visible ? [v.lids.mesh] : [])]);
-    const [hit] = ray.intersectObjects(meshes.filter((mesh) => mesh.userData.faces.triangles > 0));
-    return Boolean(hit) && hit.object.userData.faces.body.side === 1;
+    return hit !== null && hit.side === 1;
   }
 
   /** Returns the directions of the screen: right, up, and out of it. */
@@ -254,15 +208,19 @@ class LivePage {
     this.bodies = json.bodies.map((b, side) => new Body(b, side, json.dim));
     this.simplices = json.bodies.map((b) => b.simplices);
     this.picked = -1;
-    const last = json.steps[json.steps.length - 1].poses;
-    this.poseA = last[0];
-    this.first = poseOf(decodeURIComponent(location.hash.replace(/^#pose=/, ""))) || last[1];
-    this.pose = new DraggedPose(this.first);
+    const [poseA, poseB] = this.lastPoses();
+    this.poseA = poseA;
+    this.pose = new DraggedPose(poseOfAddress() || poseB);
     this.view = webglWorks() ? new DragView(json, this.bodies) : null;
     if (!this.view) fail("This browser has no WebGL, so the bodies are not drawn. The engine still answers the pose below.");
     this.connect();
     this.changed();
-    if (this.view) this.view.fit(this.view.camera.from);
+    if (this.view) this.view.frameAll(this.view.camera.from);
+  }
+
+  /** Returns the poses of A and B in the last step of the run. */
+  lastPoses() {
+    return this.json.steps[this.json.steps.length - 1].poses;
   }
 
   /** Queries the current pose and shows the answer. */
@@ -391,9 +349,9 @@ class LivePage {
   }
 
   reset() {
-    const last = this.json.steps[this.json.steps.length - 1].poses;
-    this.poseA = last[0];
-    this.pose.set(last[1]);
+    const [poseA, poseB] = this.lastPoses();
+    this.poseA = poseA;
+    this.pose.set(poseB);
     if (byId("run-step").max > 0) this.nameStep(this.json.steps.length - 1);
     this.changed();
   }
@@ -437,7 +395,7 @@ class LivePage {
     byId("apply").onclick = () => this.apply(byId("pose").value);
     byId("reset").onclick = () => this.reset();
     window.addEventListener("hashchange", () => {
-      const rows = poseOf(decodeURIComponent(location.hash.replace(/^#pose=/, "")));
+      const rows = poseOfAddress();
       if (rows && rows.join() !== this.pose.rows().join()) this.apply(rows.join(" "));
     });
     if (steps.length > 1) {
@@ -450,7 +408,7 @@ class LivePage {
     this.setMode(false);
     byId("move").onclick = () => this.setMode(false);
     byId("turn").onclick = () => this.setMode(true);
-    byId("fit").onclick = () => this.view.fit();
+    byId("fit").onclick = () => this.view.frameAll();
     for (const name of ["lids", "tested"])
       byId(name).onclick = () => {
         this.view.shown[name] = !this.view.shown[name];
@@ -518,7 +476,7 @@ class LivePage {
     const keys = {
       r: () => this.reset(),
       m: () => this.setMode(!this.turning),
-      f: () => this.view.fit(),
+      f: () => this.view.frameAll(),
       w: () => toggle("lids"),
       t: () => toggle("tested"),
       "[": () => this.goToStep(Number(byId("run-step").value) - 1),
@@ -541,11 +499,6 @@ class LivePage {
     const { length } = byId("step").options;
     byId("step").selectedIndex = Math.max(0, Math.min(length - 1, byId("step").selectedIndex + by));
   }
-}
-
-function webglWorks() {
-  const canvas = document.createElement("canvas");
-  return Boolean(canvas.getContext("webgl") || canvas.getContext("experimental-webgl"));
 }
 
 function fail(text) {

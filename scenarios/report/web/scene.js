@@ -264,10 +264,6 @@ function openView(scene, selection, wrappers, why) {
   return new SceneView(scene, selection, wrappers, why);
 }
 
-function webglWorks() {
-  const canvas = document.createElement("canvas");
-  return Boolean(canvas.getContext("webgl") || canvas.getContext("experimental-webgl"));
-}
 
 /** Links frames and charts to events, and vice versa; the address names the event. */
 function followPage(events, selection) {

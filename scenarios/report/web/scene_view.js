@@ -235,24 +235,101 @@ class Picker {
 
   /** Returns the face under a point of the screen, {side, face, simplex}; `through`: lids are ignored. */
   under(x, y, through = false) {
-    const { views, now } = this.view;
+    const { view } = this,
+      { views, now } = view;
     const pieces = views.flatMap((v) => v.pieces);
     const lids = through ? [] : views.filter((v) => v.lids.mesh.visible).map((v) => v.lids);
     const real = views.map((v) => v.real);
-    if (now.isolate) return this.nearest(x, y, pieces) || this.nearest(x, y, real);
+    if (now.isolate) return view.nearest(x, y, pieces) || view.nearest(x, y, real);
     // A ghost's real faces are picked only if no lids are visible.
     return now.ghost && lids.length
-      ? this.nearest(x, y, lids)
-      : this.nearest(x, y, [...pieces, ...lids, ...real]);
+      ? view.nearest(x, y, lids)
+      : view.nearest(x, y, [...pieces, ...lids, ...real]);
+  }
+}
+
+function webglWorks() {
+  const canvas = document.createElement("canvas");
+  return Boolean(canvas.getContext("webgl") || canvas.getContext("experimental-webgl"));
+}
+
+// ---- the bodies on a canvas that follows the size of its frame. Subclasses draw: draw() ends with render()
+class BodiesCanvas {
+  constructor(scene, bodies) {
+    Object.assign(this, { bodies, canvas: byId("view-canvas"), colours: new Colours(scene.colours) });
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    this.size = new THREE.Vector2(1, 1);
+    this.stage = new THREE.Scene();
+    this.camera = new SceneCamera(this.canvas, scene, () => this.redraw());
+    this.stage.add(new THREE.AmbientLight(0xffffff, 0.54), this.camera.perspective, this.camera.flat);
+    this.views = bodies.map((b) => new BodyView(b, this.colours));
+    this.views.forEach((v) => this.stage.add(v.group));
+    this.marks = new Marks(this.views, this.colours, this.size);
+    this.legend = new Legend(this);
   }
 
-  /** Returns the nearest face of several FaceMesh. */
+  /** Called by a subclass once it can draw. */
+  start() {
+    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
+    this.canvas.addEventListener("webglcontextlost", (e) => e.preventDefault()); // it is restored later
+    this.canvas.addEventListener("webglcontextrestored", () => this.redraw());
+    this.resize();
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (!width || !height) return;
+    this.size.set(width, height);
+    this.renderer.setSize(width, height, false);
+    this.camera.resize(width, height);
+    if (this.camera.fitted) this.camera.fit(this.extremes());
+    this.redraw();
+  }
+
+  redraw() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.draw();
+    });
+  }
+
+  render() {
+    if (this.camera.plane) {
+      const pixel = (2 * this.camera.halfHeight) / this.size.y;
+      for (const view of this.views) view.widen(pixel);
+      this.marks.widen(pixel);
+    }
+    this.camera.prepare(this.reach().radius);
+    this.renderer.render(this.stage, this.camera.camera);
+  }
+
+  /** Returns points that span both bodies at their current poses. */
+  extremes() {
+    return this.views.flatMap((view) => view.reached.map((p) => view.toWorld(p)));
+  }
+
+  /** Returns a bounding ball of them. */
+  reach() {
+    const points = this.extremes();
+    const ball = ballOf(new THREE.Box3().setFromPoints(points));
+    ball.radius = points.reduce((most, p) => Math.max(most, p.distanceTo(ball.centre)), 1e-6);
+    return ball;
+  }
+
+  frameAll(from) {
+    this.camera.fit(this.extremes(), from);
+    this.redraw();
+  }
+
+  /** Returns the nearest face of several FaceMesh under a point of the screen: {side, face, simplex}, or null. */
   nearest(x, y, among) {
-    const { canvas, camera } = this.view;
-    const box = canvas.getBoundingClientRect();
+    const box = this.canvas.getBoundingClientRect();
     const at = new THREE.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height);
     const ray = new THREE.Raycaster();
-    ray.setFromCamera(at, camera.camera);
+    ray.setFromCamera(at, this.camera.camera);
     const [hit] = ray.intersectObjects(
       among.filter((faces) => faces.triangles > 0).map((faces) => faces.mesh),
     );
@@ -263,11 +340,10 @@ class Picker {
 }
 
 // ---- the 3D view: draws the selection, and selects by clicks
-class SceneView {
+class SceneView extends BodiesCanvas {
   constructor(scene, selection, wrappers, why) {
-    Object.assign(this, { selection, wrappers, events: selection.events, bodies: selection.events.bodies });
-    this.canvas = byId("view-canvas");
-    this.colours = new Colours(scene.colours);
+    super(scene, selection.events.bodies);
+    Object.assign(this, { selection, wrappers, events: selection.events });
     this.poses = scene.steps.poses.map(unpack);
     /** The display state; change it through look(). */
     this.now = {
@@ -281,25 +357,12 @@ class SceneView {
       scope: "run",
       why: true,
     };
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-    this.size = new THREE.Vector2(1, 1);
-    this.stage = new THREE.Scene();
-    this.camera = new SceneCamera(this.canvas, scene, () => this.redraw());
-    this.stage.add(new THREE.AmbientLight(0xffffff, 0.54), this.camera.perspective, this.camera.flat);
-    this.views = this.bodies.map((b) => new BodyView(b, this.colours));
-    this.views.forEach((v) => this.stage.add(v.group));
-    this.marks = new Marks(this.views, this.colours, this.size);
-    this.legend = new Legend(this);
     this.whyMarks = new WhyMarks(this, why);
     this.measured = new MeasuredMarks(this, scene.measured);
     this.keys = {};
     selection.listeners.push(() => this.redraw());
-    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
     this.picker = new Picker(this);
-    this.canvas.addEventListener("webglcontextlost", (e) => e.preventDefault()); // it is restored later
-    this.canvas.addEventListener("webglcontextrestored", () => this.redraw());
-    this.resize();
+    this.start();
   }
 
   /** Takes the poses of all steps, for other events. */
@@ -315,25 +378,6 @@ class SceneView {
     this.redraw();
   }
 
-  redraw() {
-    if (this.waiting) return;
-    this.waiting = true;
-    requestAnimationFrame(() => {
-      this.waiting = false;
-      this.draw();
-    });
-  }
-
-  resize() {
-    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    if (!width || !height) return;
-    this.size.set(width, height);
-    this.renderer.setSize(width, height, false);
-    this.camera.resize(width, height);
-    if (this.camera.fitted) this.camera.fit(this.extremes());
-    this.redraw();
-  }
-
   draw() {
     this.place();
     this.paint();
@@ -342,13 +386,7 @@ class SceneView {
     this.mark();
     this.whyMarks.draw();
     this.measured.draw();
-    if (this.camera.plane) {
-      const pixel = (2 * this.camera.halfHeight) / this.size.y;
-      for (const view of this.views) view.widen(pixel);
-      this.marks.widen(pixel);
-    }
-    this.camera.prepare(this.reach().radius);
-    this.renderer.render(this.stage, this.camera.camera);
+    this.render();
     this.circle();
     this.measured.write();
   }
@@ -548,18 +586,9 @@ class SceneView {
   }
 
   // -- framing
-  /** Returns points that span both bodies at their current poses. */
   extremes() {
     this.place();
-    return this.views.flatMap((view) => view.reached.map((p) => view.toWorld(p)));
-  }
-
-  /** Returns a bounding ball of them. */
-  reach() {
-    const points = this.extremes();
-    const ball = ballOf(new THREE.Box3().setFromPoints(points));
-    ball.radius = points.reduce((most, p) => Math.max(most, p.distanceTo(ball.centre)), 1e-6);
-    return ball;
+    return super.extremes();
   }
 
   ballOfFaces(faces) {
@@ -593,11 +622,6 @@ class SceneView {
       side,
       face,
     }));
-  }
-
-  frameAll(from) {
-    this.camera.fit(this.extremes(), from);
-    this.redraw();
   }
 }
 

@@ -189,6 +189,7 @@ class Recorder final : public CollideProbe {
     return static_cast<EventId>(trace_.events.size() - 1);
   }
 
+  Step& step_to_add_to();
   void start_over();
   void close_step();
 
