@@ -208,7 +208,7 @@ class LivePage {
     this.bodies = json.bodies.map((b, side) => new Body(b, side, json.dim));
     this.simplices = json.bodies.map((b) => b.simplices);
     this.picked = -1;
-    const [poseA, poseB] = this.lastPoses();
+    const [poseA, poseB] = json.steps[json.steps.length - 1].poses;
     this.poseA = poseA;
     this.pose = new DraggedPose(poseOfAddress() || poseB);
     this.view = webglWorks() ? new DragView(json, this.bodies) : null;
@@ -216,11 +216,6 @@ class LivePage {
     this.connect();
     this.changed();
     if (this.view) this.view.frameAll(this.view.camera.from);
-  }
-
-  /** Returns the poses of A and B in the last step of the run. */
-  lastPoses() {
-    return this.json.steps[this.json.steps.length - 1].poses;
   }
 
   /** Queries the current pose and shows the answer. */
@@ -349,11 +344,7 @@ class LivePage {
   }
 
   reset() {
-    const [poseA, poseB] = this.lastPoses();
-    this.poseA = poseA;
-    this.pose.set(poseB);
-    if (byId("run-step").max > 0) this.nameStep(this.json.steps.length - 1);
-    this.changed();
+    this.goToStep(this.json.steps.length - 1);
   }
 
   goToStep(i) {
