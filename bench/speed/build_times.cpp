@@ -42,9 +42,9 @@ static_assert(covers_all_fields<bench::BuildTime>);
 namespace lrb::bench {
 namespace {
 
-/// A structure of lrbscope.
+/// A structure of lrbscope. Variants have the same colour and shape.
 struct Structure {
-  const char *name, *title, *remark;
+  const char *name, *title, *remark, *colour, *shape;
   LrbRep (*make)(const Mesh& mesh, const std::string& file);
 };
 
@@ -62,16 +62,16 @@ LrbRep regions_of(const Mesh& mesh, unsigned threads) {
 }
 
 constexpr Structure kStructures[] = {
-    {"tree", "lrbscope, OBB tree", "answers exactly; one thread",
+    {"tree", "lrbscope, OBB tree", "answers exactly; one thread", "#0072b2", "circle",
      [](const Mesh& mesh, const std::string&) { return tree_of(mesh, 1); }},
-    {"tree-threads", "lrbscope, OBB tree, all cores", "the same bytes",
+    {"tree-threads", "lrbscope, OBB tree, all cores", "the same bytes", "#0072b2", "circle",
      [](const Mesh& mesh, const std::string&) { return tree_of(mesh, kAllCores); }},
-    {"lrb", "lrbscope, LRB-rep", "also answers to a tolerance; one thread, mesh checks included",
-     [](const Mesh& mesh, const std::string&) { return regions_of(mesh, 1); }},
-    {"lrb-threads", "lrbscope, LRB-rep, all cores", "the same bytes",
+    {"lrb", "lrbscope, LRB-rep", "also answers to a tolerance; one thread, mesh checks included", "#4aa3dc",
+     "rect", [](const Mesh& mesh, const std::string&) { return regions_of(mesh, 1); }},
+    {"lrb-threads", "lrbscope, LRB-rep, all cores", "the same bytes", "#4aa3dc", "rect",
      [](const Mesh& mesh, const std::string&) { return regions_of(mesh, kAllCores); }},
     {"lrb-loaded", "lrbscope, .lrb file", "an LRB-rep with its tree and levels of detail, read from a file",
-     [](const Mesh&, const std::string& file) { return load_lrb(file); }},
+     "#1c1e22", "star", [](const Mesh&, const std::string& file) { return load_lrb(file); }},
 };
 
 double cpu_ms() {
@@ -112,6 +112,7 @@ std::vector<methods::MethodInfo> own_structures() {
     info.title = s.title;
     info.remark = s.remark;
     info.role = methods::Role::ours_other;
+    info.style = {s.title, s.colour, s.shape};
     out.push_back(info);
   }
   return out;
@@ -180,7 +181,14 @@ BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport&
   for (const BodyPair& pair : survey.bodies) {
     progress("bodies", out.bodies.size(), survey.bodies.size());
     Mesh mesh = pair.a();
-    mesh.name = std::filesystem::path(mesh.name).stem().string();
+    // Results and files are found by the name: bodies of one kind and several sizes share that of the kind.
+    const std::string stem = std::filesystem::path(mesh.name).stem().string();
+    const auto is_taken = [&](const std::string& name) {
+      return std::any_of(out.bodies.begin(), out.bodies.end(),
+                         [&](const BuiltBody& body) { return body.name == name; });
+    };
+    mesh.name = stem;
+    for (int k = 2; is_taken(mesh.name); ++k) mesh.name = stem + "-" + std::to_string(k);
     out.bodies.push_back(prepare(mesh, survey.folder));
   }
   // lrbscope's structures are measured by a worker, too.
@@ -380,6 +388,23 @@ std::string build_csv(const BuildResults& r) {
   return report::csv(table);
 }
 
+namespace {
+
+/// Returns a style for each method: its own colour and shape, with another line for each further variant that
+/// shares them.
+std::map<std::string, report::SeriesStyle> line_styles(const std::vector<methods::MethodInfo>& methods) {
+  std::map<std::string, report::SeriesStyle> out;
+  std::map<std::pair<std::string, std::string>, int> variants;
+  for (const methods::MethodInfo& m : methods) {
+    const int variant = variants[{m.style.colour, m.style.shape}]++;
+    out[m.name] = {variant == 0 ? report::Line::straight : report::Line::dashed, m.style.colour,
+                   variant < 2 ? m.style.shape : "none"};
+  }
+  return out;
+}
+
+}  // namespace
+
 report::Document build_page(const BuildResults& r) {
   report::Document page("Building beside other engines",
                         "Time to build each structure from the same triangles, time to the first answer, and "
@@ -409,12 +434,14 @@ report::Document build_page(const BuildResults& r) {
         Panel{"Build, all threads", "CPU time, ms", &Cell::build_cpu}}) {
     report::Chart chart{panel.title, {"triangles", true}, {panel.axis, true}};
     std::map<std::string, report::Series> series;
+    const std::map<std::string, report::SeriesStyle> styles = line_styles(r.methods);
     for (const std::size_t i : by_size)
       for (const Cell& c : cells[i]) {
         const Spread& s = c.*panel.value;
         if (s.median == 0) continue;
         report::Series& line = series[c.method->name];
         line.label = c.method->title;
+        line.style = styles.at(c.method->name);
         line.x.push_back(c.body->faces);
         line.y.push_back(s.median);
         line.low.push_back(s.low);

@@ -492,6 +492,29 @@ TEST_CASE("bench --build measures every structure in every round") {
   CHECK(slurp(folder / "b/index.html").find("First answer") != std::string::npos);
 }
 
+TEST_CASE("bench --build: bodies of one kind and two sizes have different names") {
+  const Folder folder;
+  CHECK(test::run(folder, {"bench", "--build", "--faces", "80", "320", "--rounds", "1", "-o", "b"}).code ==
+        0);
+  std::istringstream csv(slurp(folder / "b/builds.csv"));
+  std::map<std::string, std::string> faces;  // by body
+  std::map<std::pair<std::string, std::string>, int> rows;
+  std::string line;
+  std::getline(csv, line);
+  while (std::getline(csv, line)) {
+    std::istringstream in(line);
+    std::string body, count, method;
+    std::getline(in, body, ',');
+    std::getline(in, count, ',');
+    std::getline(in, method, ',');
+    CHECK(faces.try_emplace(body, count).first->second == count);
+    CHECK(++rows[{body, method}] == 1);
+  }
+  CHECK(faces.size() == 4);  // a rock, a knot and a ball, and a larger rock
+  CHECK(faces.at("rock") == "80");
+  CHECK(faces.at("rock-2") == "320");
+}
+
 TEST_CASE("numbers are judged by their error, in diagonals or fractions of the motion") {
   const auto error = [](Quantity quantity, double known, const bench::Record& r) {
     bench::DataSet set;
