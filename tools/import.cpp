@@ -130,7 +130,7 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
 std::string without_tree_words(std::uint64_t n) {
   return render::counted(n, "query", "queries") +
          " with a single triangle or shape instead of a tree on one side " + (n == 1 ? "is" : "are") +
-         " left out";
+         " left out; describe the shape by a mesh to see it (LRBCAP_SHAPE)";
 }
 
 /// Writes the page that lists the runs of several pairs of trees.

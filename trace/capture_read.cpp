@@ -382,8 +382,8 @@ class Reader {
     Growing growing;
     Query& query = growing.query;
     query.number = query_;
-    if (kind < 1 || kind > 5)
-      fail("expected a query of kind 1 (all pairs) to 5 (self), found " + text(kind) +
+    if (kind < 1 || kind > 6)
+      fail("expected a query of kind 1 (all pairs) to 6 (shape), found " + text(kind) +
            "; see docs/capture.md");
     query.kind = static_cast<QueryKind>(kind - 1);  // kinds of a file begin with 1
     query.trees = {a == 0 ? kNull : index_of(trees_, a, "tree"),
@@ -566,7 +566,9 @@ class Reader {
   /// helpers and of a query of one tree with itself (which may begin with siblings) need not.
   void check_start(const Growing& growing, Growing::Stored& part, const Event& e) const {
     part.rooted = true;
-    if (&part != &growing.parts[0] || growing.query.kind == QueryKind::self) return;
+    if (&part != &growing.parts[0] || growing.query.kind == QueryKind::self ||
+        growing.query.kind == QueryKind::shape)
+      return;
     const std::uint32_t nodes[] = {e.a, e.b};
     const auto is_below_root = [&](std::size_t side) {
       const std::uint32_t tree = growing.query.trees[side];

@@ -3,14 +3,15 @@
 //
 //   const capture = new Capture("three-mesh-bvh 0.9");
 //   const tree = addMeshBVH(capture, "cow", bvh);
-//   capture.begin(ANY, tree, null, 0, null);
+//   const box = addShape(capture, "box", new THREE.BoxGeometry());        // for pictures
+//   capture.begin(SHAPE, tree, null, box, null);
 //   const met = bvh.shapecast(watched(capture, callbacks));
 //   capture.end(met ? INTERSECTING : SEPARATE, met ? 1 : 0);
 //   fs.writeFileSync("run.lrbcap", capture.close());          // or a Blob to download
 //
 // MIT licence, as lrbscope_capture.h. docs/capture.md describes calls and format.
 
-export const ALL_PAIRS = 1, ANY = 2, DISTANCE = 3, FIRST_CONTACT = 4, SELF = 5;
+export const ALL_PAIRS = 1, ANY = 2, DISTANCE = 3, FIRST_CONTACT = 4, SELF = 5, SHAPE = 6;
 export const SEPARATE = 0, INTERSECTING = 1, UNREPORTED = 2;
 export const AABB = 1, SPHERE = 2, OBB = 3, RSS = 4, KDOP = 5;
 export const NO_AXIS = 255;
@@ -112,11 +113,25 @@ export class Capture {
   }
 }
 
-// Describes a MeshBVH of three-mesh-bvh and the mesh of its geometry. Returns the number of the tree.
-export function addMeshBVH(capture, name, bvh) {
-  const position = bvh.geometry.attributes.position, index = bvh.geometry.index, vertices = [];
+// Describes the mesh of a BufferGeometry.
+function addGeometry(capture, name, { attributes: { position }, index }) {
+  const vertices = [];
   for (let i = 0; i < position.count; ++i) vertices.push(position.getX(i), position.getY(i), position.getZ(i));
   const triangles = index ? index.array : Array.from({ length: position.count }, (_, i) => i);
+  return { mesh: capture.mesh(name, vertices, triangles), vertices, count: triangles.length / 3 };
+}
+
+// Describes a shape by a BufferGeometry, for pictures of queries of kind SHAPE. Returns the number of its tree.
+export function addShape(capture, name, geometry) {
+  const { mesh, vertices, count } = addGeometry(capture, name, geometry);
+  const bounds = [0, 1, 2].map((k) => vertices.filter((_, i) => i % 3 === k));
+  const volumes = [...bounds.map((x) => Math.min(...x)), ...bounds.map((x) => Math.max(...x))];
+  return capture.tree({ mesh, volume: AABB, volumes, firstChild: [0, 0], child: [], firstPrim: [0, count],
+    prim: Array.from({ length: count }, (_, i) => i) });
+}
+
+// Describes a MeshBVH of three-mesh-bvh and the mesh of its geometry. Returns the number of the tree.
+export function addMeshBVH(capture, name, bvh) {
   const nodes = [], path = []; // path: the node of each depth
   bvh.traverse((depth, isLeaf, box, offset, count) => { // in the order of nodeIndex: parent, left, right
     const node = { box: Array.from(box), children: [], prims: [] };
@@ -127,7 +142,7 @@ export function addMeshBVH(capture, name, bvh) {
   });
   const offsets = (key) => nodes.reduce((out, node) => (out.push(out.at(-1) + node[key].length), out), [0]);
   return capture.tree({
-    mesh: capture.mesh(name, vertices, triangles), volume: AABB,
+    mesh: addGeometry(capture, name, bvh.geometry).mesh, volume: AABB,
     firstChild: offsets("children"), child: nodes.flatMap((node) => node.children),
     firstPrim: offsets("prims"), prim: nodes.flatMap((node) => node.prims),
     volumes: Float32Array.from(nodes.flatMap((node) => node.box)),

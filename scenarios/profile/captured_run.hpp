@@ -24,7 +24,7 @@ struct TreePair {
 
 struct TreePairs {
   std::vector<TreePair> pairs;     ///< in the order of their first queries
-  std::uint64_t without_tree = 0;  ///< queries with a single triangle or shape on one side, left out
+  std::uint64_t without_tree = 0;  ///< queries with an undescribed triangle or shape on one side, left out
 };
 TreePairs tree_pairs(const capture::Capture& capture);
 

@@ -41,7 +41,7 @@ const Volumes& CapturedBodies::volumes(std::uint32_t tree) {
 std::optional<std::array<std::uint32_t, 2>> CapturedBodies::trees_of(const capture::Query& query) {
   std::array<std::uint32_t, 2> out = query.trees;
   if (query.kind == capture::QueryKind::self && out[1] == kNull) out[1] = out[0];
-  if (out[0] == kNull || out[1] == kNull) return std::nullopt;
+  if (out[0] == kNull || out[1] == kNull || query.kind == capture::QueryKind::shape) return std::nullopt;
   return out;
 }
 

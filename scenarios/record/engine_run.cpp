@@ -91,6 +91,11 @@ std::vector<trace::TreeShape> read_trees(const std::string& text, const std::str
   }
 }
 
+bool is_compared(const std::optional<trace::EngineReport>& report) {
+  return !report ||
+         (report->query != trace::EngineQuery::first_contact && report->query != trace::EngineQuery::shape);
+}
+
 CollideResult exact_answer(const PosedBodies& bodies, const CollideRequest& request,
                            const std::optional<trace::EngineReport>& report,
                            std::span<const SimplexPair> found) {
@@ -123,7 +128,7 @@ std::vector<WrongPair> wrong_pairs(std::span<const SimplexPair> found, std::span
                                    const std::optional<trace::EngineReport>& report) {
   using trace::EngineQuery, trace::EngineVerdict;
   std::vector<WrongPair> out;
-  if (report && report->query == EngineQuery::first_contact) return out;
+  if (!is_compared(report)) return out;
   std::vector<SimplexPair> pairs;
   std::set_difference(found.begin(), found.end(), exact.begin(), exact.end(), std::back_inserter(pairs));
   for (const SimplexPair& pair : pairs) out.push_back({pair, false});
@@ -141,8 +146,7 @@ AnswerScore score_of(const trace::StepResult& answer, std::span<const WrongPair>
                      const CollideResult& exact) {
   using trace::EngineQuery, trace::EngineVerdict;
   AnswerScore out;
-  const bool is_compared = !answer.engine || answer.engine->query != EngineQuery::first_contact;
-  if (!is_compared) return out;
+  if (!is_compared(answer.engine)) return out;
   out.missed = static_cast<std::uint64_t>(
       std::count_if(wrong.begin(), wrong.end(), [](const WrongPair& w) { return w.missed; }));
   out.false_pairs = wrong.size() - out.missed;

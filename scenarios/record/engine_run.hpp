@@ -43,6 +43,9 @@ std::vector<SimplexPair> pairs_found(std::span<const trace::Event> events);
 std::vector<WrongPair> wrong_pairs(std::span<const SimplexPair> found, std::span<const SimplexPair> exact,
                                    const std::optional<trace::EngineReport>& report);
 
+/// Returns false for first contacts and shapes, whose answers are not checked.
+bool is_compared(const std::optional<trace::EngineReport>& report);
+
 /// The answer of an engine to a query, compared with the exact one.
 struct AnswerScore {
   std::uint64_t right = 0, missed = 0, false_pairs = 0;  ///< pairs

@@ -187,14 +187,14 @@ report::Table engine_table(const RecordedRun& p) {
       if (is_shown) row.push_back(std::move(text));
     };
     const AnswerScore score = checked ? score_at(p, i) : AnswerScore();
-    const bool is_first_contact = report.query == trace::EngineQuery::first_contact;
-    const auto number = [&](std::uint64_t n) { return is_first_contact ? "" : group_digits(n); };
+    const bool is_compared = run::is_compared(report);
+    const auto number = [&](std::uint64_t n) { return is_compared ? group_digits(n) : std::string(); };
     cell(has_kinds, io::in_words(name_of(report.query)));
     cell(true, std::string(name_of(report.verdict)) + (score.verdict == false ? ", wrong" : ""));
-    cell(checked, checked && !is_first_contact ? (*p.results)[i].pairs.empty()
-                                                     ? "no pairs"
-                                                     : group_digits((*p.results)[i].pairs.size()) + " pairs"
-                                               : "");
+    cell(checked, checked && is_compared ? (*p.results)[i].pairs.empty()
+                                               ? "no pairs"
+                                               : group_digits((*p.results)[i].pairs.size()) + " pairs"
+                                         : "");
     cell(true, group_digits(report.pairs));
     cell(checked, number(score.right));
     cell(checked, number(score.missed));

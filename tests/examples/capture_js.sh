@@ -38,7 +38,7 @@ int main(void) {
   LRBCAP_COUNT(name, 4000000000u);
   LRBCAP_COUNT(name, 1);
   LRBCAP_END(LRBCAP_INTERSECTING, 1);
-  LRBCAP_BEGIN(LRBCAP_ANY, a, NULL, 0, NULL);
+  LRBCAP_BEGIN(LRBCAP_SHAPE, a, NULL, a, NULL);
   LRBCAP_NODE(1, 0, 0, LRBCAP_NO_AXIS);
   LRBCAP_NODE(2, 0, 1, LRBCAP_NO_AXIS);
   LRBCAP_PRIM(0, 0, 0);
@@ -84,7 +84,7 @@ capture.prim(1, 0, true);
 capture.count(name, 4000000000);
 capture.count(name, 1);
 capture.end(k.INTERSECTING, 1);
-capture.begin(k.ANY, a, null, 0, null);
+capture.begin(k.SHAPE, a, null, a, null);
 const met = bvh.shapecast(watched(capture, { intersectsBounds: (box, leaf, score, depth, node) => node === 2, intersectsTriangle: () => false }));
 capture.end(met ? k.INTERSECTING : k.SEPARATE, 0);
 fs.writeFileSync("js.lrbcap", capture.close());

@@ -543,4 +543,23 @@ TEST_CASE("import: many pairs of trees get a page that lists their runs") {
   CHECK(slurp(folder / "out/pair_3/index.html").find("of a body with itself") != std::string::npos);
 }
 
+TEST_CASE("import: a tree with a shape is shown, and its answer is not checked") {
+  const Folder folder;
+  ToyEngine engine;
+  for (const char* name : {"body", "shape"}) engine.add(captured(shapes::box(), name));
+  engine.query(0, 1, {0.5, 0.5, 0.5}, capture::QueryKind::shape);
+  engine.query(0, 1, {0.25, 0.25, 0.25}, capture::QueryKind::shape);
+  engine.capture.queries[1].verdict = capture::Verdict::separate;  // would be wrong for two bodies
+  write_capture(engine.capture, folder / "run.lrbcap");
+  Outcome outcome = run(folder, {"--quiet", "import", "run.lrbcap", "-o", "out", "--size", "640x480"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  CHECK(outcome.out.find("Toy 1.0: 2 queries, ") == 0);
+  CHECK(outcome.out.find("answers not checked") != std::string::npos);
+  CHECK(slurp(folder / "out/index.html").find("2 queries are of A with a shape") != std::string::npos);
+  CHECK(slurp(folder / "out/trace.json").find("\"shape\"") != std::string::npos);
+  outcome = run(folder, {"check", "run.lrbcap"});
+  CHECK(outcome.code == 0);
+}
+
 }  // namespace lrb::test

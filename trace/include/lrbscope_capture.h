@@ -49,8 +49,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Kinds of queries. LRBCAP_SELF: one tree with itself. */
-enum { LRBCAP_ALL_PAIRS = 1, LRBCAP_ANY = 2, LRBCAP_DISTANCE = 3, LRBCAP_FIRST_CONTACT = 4, LRBCAP_SELF = 5 };
+/* Kinds of queries. LRBCAP_SELF: one tree with itself. LRBCAP_SHAPE: a tree with a shape, whose tree has one
+ * node, and whose triangles are for pictures only; events name its node 0 and its triangle 0. */
+enum {
+  LRBCAP_ALL_PAIRS = 1,
+  LRBCAP_ANY = 2,
+  LRBCAP_DISTANCE = 3,
+  LRBCAP_FIRST_CONTACT = 4,
+  LRBCAP_SELF = 5,
+  LRBCAP_SHAPE = 6
+};
 /* The engine's answer. */
 enum { LRBCAP_SEPARATE = 0, LRBCAP_INTERSECTING = 1, LRBCAP_UNREPORTED = 2 };
 /* The axis on which two volumes are apart: 0-2 axes of A, 3-5 axes of B, 6-14 cross products of edges

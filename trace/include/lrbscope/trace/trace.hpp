@@ -123,14 +123,15 @@ std::string to_text(const MeasuredApproach& m);
 
 // The answer of another engine, as it reported it.
 
-/// The kind of query.
-enum class EngineQuery : std::uint8_t { all_pairs, any, distance, first_contact, self };
+/// The kind of query. shape: of a tree with a shape whose mesh is for pictures only; not checked.
+enum class EngineQuery : std::uint8_t { all_pairs, any, distance, first_contact, self, shape };
 constexpr auto enum_names(EngineQuery) {
   return std::to_array<EnumName<EngineQuery>>({{EngineQuery::all_pairs, "all_pairs"},
                                                {EngineQuery::any, "any"},
                                                {EngineQuery::distance, "distance"},
                                                {EngineQuery::first_contact, "first_contact"},
-                                               {EngineQuery::self, "self"}});
+                                               {EngineQuery::self, "self"},
+                                               {EngineQuery::shape, "shape"}});
 }
 enum class EngineVerdict : std::uint8_t { separate, intersecting, unreported };
 constexpr auto enum_names(EngineVerdict) {
