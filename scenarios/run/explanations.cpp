@@ -204,11 +204,17 @@ json walk_json(const RecordedRun& p, const trace::Step& step, const SceneFrame& 
   return out;
 }
 
+/// Returns true for queries of a tree with a shape, whose triangles are not those of a test.
+bool is_of_shape(const trace::Step& step) {
+  return step.result.engine && step.result.engine->query == trace::EngineQuery::shape;
+}
+
 /// Explains the steps without pairs; evenly spaced ones if there are too many.
 json steps_json(const RecordedRun& p, const Explained& what, const SceneFrame& frame, std::size_t most) {
   Numbers empty;
   for (std::uint32_t i = 0; i < what.steps.size(); ++i) {
     const trace::Step& step = p.trace->steps[what.steps[i]];
+    if (is_of_shape(step)) continue;
     const CollideResult* exact =
         p.results != nullptr && what.steps[i] < p.results->size() ? &(*p.results)[what.steps[i]] : nullptr;
     // Another engine's answer may be wrong; the results are lrbscope's.
@@ -229,6 +235,7 @@ json explanations_json(const RecordedRun& p, const Explained& what, const SceneF
                        const std::string& command, const ExplainLimits& limits) {
   if (!is_answered(p)) return nullptr;
   std::vector<ComparedPair> pairs = pairs_of(p, what);
+  std::erase_if(pairs, [&](const ComparedPair& pair) { return is_of_shape(p.trace->steps[pair.step]); });
   const std::size_t all = pairs.size();
   choose(pairs, limits.pairs);
   PairExplainer explainer(*p.reps[0], *p.reps[1]);
