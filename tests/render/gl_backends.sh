@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# gl_backends.sh LRBSCOPE RENDER_HASH: tests the choice of the library that draws, by $LRB_GL and by what is installed. A library
+# gl_backends.sh LRBSCOPE RENDER_HASH: tests the choice of the library that draws, by $LRB_GL and by the installed libraries. A library
 # is hidden by an empty file of its name in LD_LIBRARY_PATH. Skipped (77) if this machine has neither OSMesa nor EGL.
 set -euo pipefail
 bin=$1 hashes=$2
