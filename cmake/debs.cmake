@@ -41,7 +41,9 @@ where the bodies are close to each other.
 ")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lrbscope)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS fonts-dejavu-core)
+# Loaded at run time, for pictures; libegl1 without libgl1-mesa-dri cannot draw.
+set(lrb_draws "libosmesa6 | libegl1, libosmesa6 | libgl1-mesa-dri")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "fonts-dejavu-core, ${lrb_draws}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS ffmpeg)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${lrb_about}This package contains the program, which records, replays and draws every
@@ -50,13 +52,15 @@ comparison and every refinement, as pictures, pages and traces.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME liblrbscope-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libboost-dev, libtbb-dev, nlohmann-json3-dev, zlib1g-dev, libosmesa6-dev, \
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev, libboost-dev, libtbb-dev, nlohmann-json3-dev, zlib1g-dev, \
 libcairo2-dev, libpng-dev, libglm-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "${lrb_draws}")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "${lrb_about}This package contains the headers and the library for find_package(lrbscope).")
 
 if(library IN_LIST CPACK_COMPONENTS_ALL)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME liblrbscope${PROJECT_VERSION_MAJOR})
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "${lrb_draws}")
   set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${lrb_about}This package contains the shared library.")
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
          ", ${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME} (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
@@ -66,7 +70,7 @@ if(python IN_LIST CPACK_COMPONENTS_ALL)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   math(EXPR lrb_next_python "${LRB_PYTHON_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${LRB_PYTHON_MINOR}~), python3 (<< 3.${lrb_next_python}), \
-python3-numpy, fonts-dejavu-core")
+python3-numpy, fonts-dejavu-core, ${lrb_draws}")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "${lrb_about}This package contains the Python module, which takes NumPy arrays.")
 endif()
 

@@ -16,13 +16,13 @@ installed=$(dpkg-query -W -f '${db:Status-Status} ${Package} ${Provides}\n' | se
 missing=()
 part=""
 here=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
-while read -r line release; do
+while read -r line releases; do
   case "$line" in
     "" | "#"*) ;;
     "["*"]") part="${line:1:-1}" ;;
     *)
       for wanted in "$@"; do
-        if [ "$part" = "$wanted" ] && [ "${release:-$here}" = "$here" ] && ! grep -Fqx -- "$line" <<<"$installed"; then
+        if [ "$part" = "$wanted" ] && [[ " ${releases:-$here} " == *" $here "* ]] && ! grep -Fqx -- "$line" <<<"$installed"; then
           missing+=("$line")
         fi
       done

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <thread>
 
-#include <GL/osmesa.h>
 #include <sys/mman.h>
 
+#include "render/gl_backend.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
@@ -53,70 +53,14 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
   return program;
 }
 
-}  // namespace lrb::render
-
-// For builds with the leak sanitizer: Mesa never frees about a kilobyte per process.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define LRB_LEAK_SANITIZER 1
-#endif
-#elif defined(__SANITIZE_ADDRESS__)
-#define LRB_LEAK_SANITIZER 1
-#endif
-
-#ifdef LRB_LEAK_SANITIZER
-extern "C" const char* __lsan_default_suppressions();  // NOLINT: the sanitizer's name
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libOSMesa\n";
-}
-extern "C" const char* __lsan_default_options();  // NOLINT: the sanitizer's name
-extern "C" const char* __lsan_default_options() {
-  return "print_suppressions=0";  // keep stderr for the program's own output
-}
-#endif
-
-namespace lrb::render {
-
-/// The pixel buffer passed to OSMesa. It only serves to make the context current: rendering goes to
-/// framebuffer objects, whose pixels do not depend on the number of threads.
-struct Offscreen::Context {
-  static constexpr int kSide = 16;
-  OSMesaContext handle = nullptr;
-  std::array<std::uint8_t, kSide * kSide * 4> buffer{};
-
-  Context() {
-    const int attributes[] = {OSMESA_FORMAT,
-                              OSMESA_RGBA,
-                              OSMESA_DEPTH_BITS,
-                              0,
-                              OSMESA_STENCIL_BITS,
-                              0,
-                              OSMESA_PROFILE,
-                              OSMESA_CORE_PROFILE,
-                              OSMESA_CONTEXT_MAJOR_VERSION,
-                              3,
-                              OSMESA_CONTEXT_MINOR_VERSION,
-                              3,
-                              0};
-    handle = OSMesaCreateContextAttribs(attributes, nullptr);
-    if (handle == nullptr) {
-      throw EnvironmentError(
-          "OSMesa cannot create an off-screen OpenGL 3.3 context; install libosmesa6 (Mesa 17 to 25.0) and "
-          "try again");
-    }
-  }
-  ~Context() { OSMesaDestroyContext(handle); }
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
-};
-
 namespace {
 
-/// Returns the address space, in bytes, that Mesa takes until it has drawn its first picture: two threads for
-/// each of llvmpipe's and two more, each with a stack and a glibc arena, and the code compiled by LLVM.
+/// Returns the address space, in bytes, that Mesa takes until it has drawn its first picture: its libraries,
+/// two threads for each of llvmpipe's and two more, each with a stack and a glibc arena, and the code
+/// compiled by LLVM.
 std::size_t mesas_address_space() {
   constexpr std::size_t kMiB = std::size_t{1} << 20, kStack = 8 * kMiB, kArena = 64 * kMiB,
-                        kRest = 100 * kMiB;
+                        kLibraries = 200 * kMiB, kRest = 100 * kMiB;
   constexpr std::size_t kMaxRasterThreads = 32, kArenasPerCore = 8;
   // llvmpipe's default number of threads, unless the environment sets it.
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
@@ -124,7 +68,7 @@ std::size_t mesas_address_space() {
   const std::size_t raster =
       given != nullptr ? static_cast<std::size_t>(std::max(0L, std::strtol(given, nullptr, 10))) : cores;
   const std::size_t threads = 2 * std::min(raster, kMaxRasterThreads) + 2;
-  return threads * kStack + std::min(threads, kArenasPerCore * cores) * kArena + kRest;
+  return threads * kStack + std::min(threads, kArenasPerCore * cores) * kArena + kLibraries + kRest;
 }
 
 /// Throws EnvironmentError if a limit leaves less address space than that: LLVM crashes if its allocations
@@ -148,12 +92,11 @@ Offscreen::Offscreen() {
     if (f.level == Finding::Level::error) throw EnvironmentError(f.what + ": " + f.detail);
   }
   require_address_space();
-  context_ = std::make_unique<Context>();
-  make_current();
-#define LRB_GL(TYPE, Name)                                                          \
-  gl_.Name = reinterpret_cast<PFNGL##TYPE##PROC>(OSMesaGetProcAddress("gl" #Name)); \
-  if (gl_.Name == nullptr)                                                          \
-    throw EnvironmentError("OSMesa has no function gl" #Name "; its version is too old");
+  context_ = create_gl_context();
+#define LRB_GL(TYPE, Name)                                                       \
+  gl_.Name = reinterpret_cast<PFNGL##TYPE##PROC>(context_->address("gl" #Name)); \
+  if (gl_.Name == nullptr)                                                       \
+    throw EnvironmentError("OpenGL has no function gl" #Name "; this version of Mesa is too old");
   LRB_GL_FUNCTIONS(LRB_GL)
 #undef LRB_GL
   // A framebuffer is limited by both textures and viewports.
@@ -167,10 +110,12 @@ Offscreen::Offscreen() {
 Offscreen::~Offscreen() = default;
 
 void Offscreen::make_current() const {
-  if (OSMesaMakeCurrent(context_->handle, context_->buffer.data(), GL_UNSIGNED_BYTE, Context::kSide,
-                        Context::kSide) != GL_TRUE) {
+  if (!context_->make_current())
     throw EnvironmentError("the off-screen OpenGL context cannot be used on this thread");
-  }
+}
+
+void Offscreen::release() const {
+  context_->release();
 }
 
 void Offscreen::check(const char* where) const {
@@ -221,7 +166,15 @@ std::vector<Finding> check_rendering() {
   std::vector<Finding> out = check_gl_environment();
   try {
     const Offscreen context;
-    out.push_back({Level::ok, "off-screen OpenGL", context.version()});
+    const std::vector<GlBackendState> backends = gl_backends();
+    for (const GlBackendState& b : backends)
+      if (b.used) out.push_back({Level::ok, "off-screen OpenGL", b.name + ", " + context.version()});
+    for (const GlBackendState& b : backends)
+      if (!b.used)
+        out.push_back({Level::ok, b.name,
+                       b.problem.empty()
+                           ? "installed; LRB_GL=" + b.setting + " draws with it"
+                           : "cannot be loaded, not needed (" + b.problem + "; Debian's " + b.package + ")"});
     out.push_back({Level::ok, "largest picture", std::to_string(context.max_size()) + " pixels per side"});
   } catch (const EnvironmentError& e) {
     out.push_back({Level::error, "off-screen OpenGL", e.what()});

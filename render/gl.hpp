@@ -1,6 +1,5 @@
 #pragma once
-/// The functions of OpenGL 3.3 core used by render, loaded at run time. Only the code that creates the
-/// context (Offscreen) links a library of OpenGL.
+/// The functions of OpenGL 3.3 core used by render, loaded at run time (gl_backend.hpp).
 
 #include <cstddef>
 #include <memory>
@@ -140,8 +139,9 @@ inline GlObject make_vertex_array(const Gl& gl) {
 GlProgram make_program(const Gl& gl, const std::string& name, const std::string& vertex,
                        const std::string& fragment);
 
-// An OpenGL 3.3 core context without a window. Only gl.cpp depends on Mesa's OSMesa. A surfaceless EGL
-// context could replace it by filling in the same function table. (Mesa 25.1 removed OSMesa.)
+// An OpenGL 3.3 core context without a window.
+
+class GlContext;  // gl_backend.hpp
 
 class Offscreen {
  public:
@@ -152,8 +152,10 @@ class Offscreen {
   Offscreen(const Offscreen&) = delete;
   Offscreen& operator=(const Offscreen&) = delete;
 
-  /// Makes the context current on the calling thread.
+  /// Makes the context current on the calling thread. It must not be current on another thread.
   void make_current() const;
+  /// Lets another thread make the context current.
+  void release() const;
   const Gl& gl() const { return gl_; }
   /// Throws EnvironmentError if a call failed since the last check; `where` names the location in the
   /// message.
@@ -162,10 +164,21 @@ class Offscreen {
   std::string version() const;                ///< version and renderer as reported by OpenGL
 
  private:
-  struct Context;
-  std::unique_ptr<Context> context_;
+  std::unique_ptr<GlContext> context_;
   Gl gl_;
   int max_size_ = 0;
+};
+
+/// Makes a context current on the calling thread during its own lifetime.
+class CurrentContext {
+ public:
+  explicit CurrentContext(const Offscreen& context) : context_(context) { context_.make_current(); }
+  ~CurrentContext() { context_.release(); }
+  CurrentContext(const CurrentContext&) = delete;
+  CurrentContext& operator=(const CurrentContext&) = delete;
+
+ private:
+  const Offscreen& context_;
 };
 
 /// One result of checking the environment.

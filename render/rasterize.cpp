@@ -101,6 +101,7 @@ struct Rasterizer::State {
     gl.VertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, l, offset(offsetof(L, colour)));
     for (GLuint i = 0; i < 4; ++i) gl.EnableVertexAttribArray(i);
     context.check("setting up");
+    context.release();
   }
 
   Mesh make_mesh() {
@@ -279,7 +280,7 @@ struct Rasterizer::State {
     if (n < 1 || n > 4) throw InputError("supersampling must be 1 to 4 samples per pixel and axis");
     // Step 1: project everything at the resolution of the samples.
     check_size(options.width * n, options.height * n);
-    context.make_current();
+    const CurrentContext current(context);
     const Projection projection(camera, options.width * n, options.height * n, bounds(list));
     const ScreenMesh mesh =
         make_screen_mesh(list, projection, n * options.unit, options.lighting, options.even_edges);
@@ -304,11 +305,10 @@ struct Rasterizer::State {
     return downsample(samples, options.width, options.height, n);
   }
 
-  /// Begins a pass in which each pixel belongs to one face, for its id or its depth. The target must outlive
-  /// the pass.
+  /// Begins a pass in which each pixel belongs to one face, for its id or its depth. The context must be
+  /// current. The target must outlive the pass.
   std::pair<ScreenMesh, Target> begin_faces(const DrawList& list, const Camera& camera, int w, int h) {
     check_size(w, h);
-    context.make_current();
     const Projection projection(camera, w, h, bounds(list));
     std::pair<ScreenMesh, Target> out{make_screen_mesh(list, projection, 1),
                                       scene_target(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, w, h)};
@@ -318,6 +318,7 @@ struct Rasterizer::State {
   }
 
   IdImage draw_ids(const DrawList& list, const Camera& camera, int w, int h, bool translucent) {
+    const CurrentContext current(context);
     const auto [mesh, target] = begin_faces(list, camera, w, h);
     gl.ClearBufferuiv(GL_COLOR, 0, glm::value_ptr(glm::uvec4(kNoId, 0, 0, 0)));
     gl.UseProgram(id);
@@ -342,6 +343,7 @@ struct Rasterizer::State {
   }
 
   DepthImage draw_depths(const DrawList& list, const Camera& camera, int w, int h) {
+    const CurrentContext current(context);
     const auto [mesh, target] = begin_faces(list, camera, w, h);
     gl.UseProgram(id);
     gl.Enable(GL_DEPTH_TEST);

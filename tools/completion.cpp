@@ -470,6 +470,9 @@ struct Variable {
 };
 constexpr std::array kVariables = {
     Variable{"LRB_FONT", "Font file for text in pictures, if DejaVu Sans is not installed."},
+    Variable{"LRB_GL",
+             "osmesa or egl: the library that draws pictures. Default: OSMesa if it is installed, otherwise "
+             "EGL."},
     Variable{"LRB_SIMD", "avx2 or baseline: use the kernels for older processors. Results do not change."},
     Variable{"LRBSCOPE_METHODS", "Folder with the worker programs of other engines."},
     Variable{"NO_COLOR", "If set, progress is drawn without colours."}};

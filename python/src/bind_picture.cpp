@@ -56,7 +56,7 @@ Wanted wanted(const PictureArguments& given) {
   return out;
 }
 
-/// Returns one frame. OSMesa has one current context, so pictures are drawn one at a time.
+/// Returns one frame. Pictures are drawn one at a time: fonts are shared.
 run::PaintedFrame paint(const Recorded& recorded, std::size_t step, Wanted wanted) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);

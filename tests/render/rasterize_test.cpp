@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <set>
 #include <string>
+#include <thread>
 
 #include <doctest/doctest.h>
 
@@ -389,6 +390,39 @@ TEST_CASE("the number of rasterizer threads does not change a byte") {
     outputs.insert(output);
   }
   CHECK(outputs.size() == 1);
+}
+
+TEST_CASE("threads draw the same pictures, each with its rasterizer or one after another with a shared one") {
+  render::DrawList list;
+  render::DrawTriangle t;
+  t.edges = 7;
+  t.layer = render::Layer::translucent;
+  t.colour = {0, 90, 200, 120};
+  test::add(list, test::sphere_triangles(3), t);
+  const render::Camera camera = render::fit_camera(render::extent_points(list), 160, 120);
+  const render::Image expected = rasterizer().draw(list, camera, size(160, 120));
+  const render::IdImage expected_ids = rasterizer().ids(list, camera, 160, 120, true);
+  constexpr std::size_t kThreads = 4;
+  constexpr int kRounds = 5;
+  std::array<int, kThreads> wrong{};
+  // At the same time.
+  std::vector<std::thread> threads;
+  for (int& count : wrong) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < kRounds; ++i) {
+        render::Rasterizer own;
+        count += own.draw(list, camera, size(160, 120)) != expected;
+        count += own.ids(list, camera, 160, 120, true).ids != expected_ids.ids;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  // Created by this thread, and used by others one after another.
+  render::Rasterizer shared;
+  for (int& count : wrong)
+    std::thread([&] { count += shared.draw(list, camera, size(160, 120)) != expected; }).join();
+  CHECK(shared.draw(list, camera, size(160, 120)) == expected);
+  CHECK(wrong == std::array<int, kThreads>{});
 }
 
 TEST_CASE("labels are written at their points") {

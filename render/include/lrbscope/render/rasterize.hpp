@@ -107,7 +107,7 @@ struct DepthImage {
   float at(int x, int y) const { return depths[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// Keeps the context, programs and buffers between frames. Use it on the thread that made it.
+/// Keeps the context, programs and buffers between frames. One thread at a time may use it.
 class Rasterizer {
  public:
   /// Throws EnvironmentError if off-screen OpenGL is not available.
