@@ -105,16 +105,19 @@ class WhyMarks {
 
   addPair({ meet, points }) {
     const { colours } = this.view;
-    this.addPath(points, points.length > 2, meet === 0 ? colours.selected : colours.underTest, 3);
+    // Under the line a wider white one: contacts are seen on intersecting faces, which have their colour.
+    const colour = meet === 0 ? colours.ink : colours.contact;
+    this.addPath(points, points.length > 2, WHITE, 6);
+    this.addPath(points, points.length > 2, colour, 3);
     const { radius } = this.view.ballOfFaces(this.view.comparedFaces());
     if (meet === 0 && this.view.events.dim === 3) this.addSquare(squareBetween(...points, radius));
     this.view.legend.also(
       meet === 0
         ? [
-            [colours.selected, "between the nearest points"],
-            [colours.refining, "plane that separates the faces"],
+            [colours.ink, "between the nearest points", WHITE],
+            [colours.separationVector, "plane that separates the faces"],
           ]
-        : [[colours.underTest, "intersection"]],
+        : [[colours.contact, "intersection of the two faces", WHITE]],
       "why",
     );
   }
@@ -133,7 +136,7 @@ class WhyMarks {
       [
         ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "closest pair of disjoint boxes"]] : []),
         ...(square.length
-          ? [[colours.refining, plane ? "plane that separates the bodies" : "plane that separates these boxes"]]
+          ? [[colours.separationVector, plane ? "plane that separates the bodies" : "plane that separates these boxes"]]
           : []),
       ],
       "why",
@@ -155,7 +158,7 @@ class WhyMarks {
   }
 
   addSquare(corners) {
-    const colour = this.view.colours.refining,
+    const colour = this.view.colours.separationVector,
       geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(corners.flat()), 3));
     geometry.setIndex([0, 1, 2, 0, 2, 3]);

@@ -357,6 +357,7 @@ class SceneView extends BodiesCanvas {
       scope: "run",
       why: true,
     };
+    this.opened = { ...this.now };
     this.whyMarks = new WhyMarks(this, why);
     this.measured = new MeasuredMarks(this, scene.measured);
     this.keys = {};
@@ -611,9 +612,14 @@ class SceneView extends BodiesCanvas {
       : compared.length
         ? compared
         : this.events.regions(event).flatMap((r) => this.collector(r));
+    this.frame(faces);
+  }
+
+  /** Fills the view with faces; with everything if there are none. */
+  frame(faces) {
     if (!faces.length) return this.frameAll();
     const ball = this.ballOfFaces(faces);
-    this.camera.lookAt(ball.centre, Math.max(ball.radius * 2.2, 0.02 * this.reach().radius));
+    this.camera.lookAt(ball.centre, Math.max(ball.radius * (this.now.isolate ? 1.2 : 2.2), 0.02 * this.reach().radius));
     this.redraw();
   }
 
