@@ -238,12 +238,14 @@ class ViewControls {
   isolate(region) {
     const { view } = this,
       { now, camera } = view;
-    if (region && !now.isolate) this.seenFrom = camera.fitted ? null : camera.json();
+    if (region && !now.isolate) this.seenFrom = { camera: camera.json(), fitted: camera.fitted };
     const ends = !region && now.isolate;
     this.change({ isolate: region });
     if (region) view.frame(view.collector(region));
-    else if (ends && this.seenFrom) camera.set(this.seenFrom);
-    else if (ends) view.frameAll();
+    else if (ends && this.seenFrom) {
+      camera.set(this.seenFrom.camera);
+      camera.fitted = this.seenFrom.fitted;
+    } else if (ends) view.frameAll();
   }
   isolatePicked() {
     const picked = this.selection.picked;

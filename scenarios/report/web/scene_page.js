@@ -12,7 +12,7 @@ function showMore(box) {
     box.classList.toggle("more-below", box.scrollTop + box.clientHeight < box.scrollHeight - slack);
   };
   box.addEventListener("scroll", mark, { passive: true });
-  const watch = new ResizeObserver(mark);
+  const watch = new ResizeObserver(() => requestAnimationFrame(mark));
   for (const part of [box, ...box.children]) watch.observe(part);
   return mark;
 }
@@ -162,7 +162,7 @@ class CostStrip {
     this.box.className = "strip";
     document.querySelector("header").append(this.box);
     this.contactStep = scene.firstContact >= 0 ? this.bars.findIndex((b) => b.step === events.stepNumber(events.at(scene.firstContact))) : -1;
-    new ResizeObserver(() => this.draw()).observe(this.box);
+    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.box);
     selection.listeners.push((what) => {
       if (what === "event") this.mark();
     });
@@ -171,7 +171,11 @@ class CostStrip {
   /** A bar for each step, divided by sorts of work. */
   barsOfSteps(ofStep) {
     this.title = "operations in each step";
-    this.sorts = WORK_SORTS;
+    const [all] = ofStep.values();
+    this.sorts = WORK_SORTS.map((sort) => {
+      const names = [...new Set(all.filter((o) => workSort(o) === sort).map((o) => o.outcome || o.phase))];
+      return names.length === 1 ? { ...sort, name: names[0] } : sort;
+    });
     return [...ofStep].map(([step, outcomes]) => {
       const values = WORK_SORTS.map((sort) =>
         outcomes.reduce((n, o) => n + (workSort(o) === sort ? o.operations : 0), 0),
@@ -200,8 +204,10 @@ class CostStrip {
 
   draw() {
     const { bars, sorts, box } = this,
-      width = Math.max(200, box.clientWidth),
-      height = 46,
+      width = Math.max(200, box.clientWidth);
+    if (width === this.width) return;
+    this.width = width;
+    const height = 46,
       sum = (b) => b.values.reduce((n, v) => n + v, 0),
       most = Math.max(1, ...bars.map(sum)),
       svg = document.createElementNS(SVG, "svg"),

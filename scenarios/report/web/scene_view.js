@@ -144,6 +144,7 @@ class SceneCamera {
   /** Rotates about the target, in radians. */
   turn(azimuth, elevation) {
     if (this.plane) return;
+    this.fitted = false;
     const upright = new THREE.Quaternion().setFromUnitVectors(this.up, new THREE.Vector3(0, 1, 0));
     const s = new THREE.Spherical().setFromVector3(
       this.camera.position.clone().sub(this.controls.target).applyQuaternion(upright),
