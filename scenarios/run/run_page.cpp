@@ -109,7 +109,8 @@ std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace:
                  at + "; brute force: " +
                      render::group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
                                           p.reps[1]->real_simplex_count())});
-  out.push_back({"Refined regions", render::group_digits(r.counters.regions_opened),
+  if (p.trace->header.engine.empty())
+    out.push_back({"Refined regions", render::group_digits(r.counters.regions_opened),
                  "of " + render::group_digits(regions) + ", " + at});
   out.push_back({"Real faces", render::group_digits(faces), each});
   return out;
@@ -134,21 +135,31 @@ double seconds_of_step(const trace::Trace& trace, std::size_t step) {
   return kNanosecond * static_cast<double>(trace.wall_ns[first + count - 1] - trace.wall_ns[first]);
 }
 
+std::string time_text(double seconds) {
+  constexpr double kMillis = 1e3, kMicros = 1e6;
+  return seconds < 1 / kMillis ? render::short_number(kMicros * seconds) + " µs"
+                               : render::short_number(kMillis * seconds) + " ms";
+}
+
+std::uint64_t tests_of(const trace::Step& step) {
+  const Counters& c = step.result.counters;
+  return c.box_tests + c.prefilter_tests + c.face_tests;
+}
+
 /// Returns the answer and the cost of a step in a sentence, and where the work was.
 std::string step_sentence(const RecordedRun& p, const trace::Step& step) {
   using render::counted;
   const trace::StepResult& r = step.result;
   const Counters& c = r.counters;
-  const std::uint64_t tests = c.box_tests + c.prefilter_tests + c.face_tests;
+  const std::uint64_t tests = tests_of(step);
   const std::string relation = io::in_words(name_of(r.relation));
-  const std::size_t index = p.trace->steps.size() - 1;
+  const auto index = static_cast<std::size_t>(&step - p.trace->steps.data());
   const double seconds = p.trace->wall_ns.empty() ? 0 : seconds_of_step(*p.trace, index);
   std::string out = "At step " + std::to_string(step.index) + " the relation is " + relation;
   if (r.pair_count > 0)
     out += " with " + counted(r.pair_count, "intersecting pair of faces", "intersecting pairs of faces");
-  constexpr double kMicros = 1e6;
   out += ". That query takes " +
-         (seconds > 0 ? render::short_number(kMicros * seconds) + " µs and " : std::string()) +
+         (seconds > 0 ? time_text(seconds) + " and " : std::string()) +
          counted(tests, "test", "tests");
   if (tests > c.face_tests)
     out += " (" + whole_percent(c.box_tests, tests) + " of boxes, " + whole_percent(c.prefilter_tests, tests) +
@@ -173,7 +184,13 @@ std::string sentence_of(const RecordedRun& p) {
     else
       out += p.trace->steps.size() > 1 ? ", do not touch in any step" : ", do not touch";
     out += ".";
-    if (const trace::Step* step = last_step(*p.trace)) out += " " + step_sentence(p, *step);
+    // An approach ends with its answer; of other motions the costliest step is told.
+    const trace::Step* step = last_step(*p.trace);
+    if (step != nullptr && !p.trace->header.first_contact)
+      step = &*std::max_element(
+          p.trace->steps.begin(), p.trace->steps.end(),
+          [](const trace::Step& x, const trace::Step& y) { return tests_of(x) < tests_of(y); });
+    if (step != nullptr) out += " " + step_sentence(p, *step);
     return out;
   }
   const LrbRep& rep = *p.reps[0];
