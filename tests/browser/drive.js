@@ -357,7 +357,7 @@
       const { top, bottom, height } = box(part);
       check(top >= 0 && bottom <= innerHeight + 1 && height > 30, `${part.id || part.className} is in the window`, [top, bottom]);
     }
-    check(box(byId("view-canvas")).height > 0.3 * innerHeight, "the view has a third of it", box(byId("view-canvas")).height);
+    check(box(byId("view-canvas")).height > 0.25 * innerHeight, "the view has a quarter of it", box(byId("view-canvas")).height);
     const widest = run.tabs.names.find((name) => {
       run.tabs.show(name);
       return page.scrollHeight > innerHeight || page.scrollWidth > innerWidth;

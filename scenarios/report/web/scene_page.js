@@ -33,6 +33,7 @@ class Tabs {
     this.names = [...groups.keys()]
       .filter((name) => groups.get(name).some((part) => [...part.children].some((child) => !child.hidden)))
       .sort((p, q) => place(p) - place(q));
+    for (const [name, parts] of groups) if (!this.names.includes(name)) for (const part of parts) part.remove();
     this.listeners = [];
     this.bar = document.createElement("div");
     this.bar.className = "tab-bar";
@@ -47,6 +48,7 @@ class Tabs {
     this.taller = textButton("taller", () => this.toggleHeight(), "Tables and charts higher, view lower (T)");
     section.className = "tabs";
     head.className = "tab-head";
+    this.taller.classList.add("taller");
     head.append(this.bar, this.taller);
     section.append(head, this.body);
     byId("scene").append(section);
