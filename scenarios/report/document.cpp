@@ -225,11 +225,12 @@ Document& Document::table(const Table& t) {
     for (const std::string& cell : t.rows[r]) rows += cell_html(cell);
     rows += "</tr>\n";
   }
-  return add(fill(R"(<section><h2>{}</h2>
+  return add(
+      fill(R"(<section><h2>{}</h2>
 <div class="scroll{!}"><table><thead><tr>{!}</tr></thead><tbody>
 {!}</tbody></table></div>{!}</section>
 )",
-                  {t.title, t.rows.size() > kLong ? " long\" tabindex=\"0" : "", head, rows, note_html(t.note)}));
+           {t.title, t.rows.size() > kLong ? " long\" tabindex=\"0" : "", head, rows, note_html(t.note)}));
 }
 
 Document& Document::grid(const Grid& grid, const std::string& folder) {
@@ -275,8 +276,8 @@ Document& Document::scene(const std::string& json) {
   scene_ = json;
   for (const char* name : {"three.min.js", "OrbitControls.js"}) libraries_ += "\n" + embedded(name);
   // Each follows those that it depends on.
-  for (const char* name :
-       {"scene_run", "scene_panels", "scene_bodies", "scene_marks", "scene_view", "scene_controls", "scene_page", "scene"})
+  for (const char* name : {"scene_run", "scene_panels", "scene_bodies", "scene_marks", "scene_view",
+                           "scene_controls", "scene_page", "scene"})
     scripts_ += embedded(name + std::string(".js"));
   styles_ += render::scene_root_css() + embedded("scene.css");
   return add(embedded("scene.html"));

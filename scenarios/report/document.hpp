@@ -29,8 +29,8 @@ struct Table {
   std::vector<std::vector<std::string>> rows = {};  ///< numeric cells are aligned right
   std::string note = {};
   /// The items that the rows are about, for as many of the first rows: a click on such a row selects the item
-  /// in the view of the run. "step NUMBER", "region SIDE NUMBER" (side 0 or 1), "boxes DEPTH" (of tree nodes),
-  /// "pair STEP A B" (simplices of A and B), or empty.
+  /// in the view of the run. "step NUMBER", "region SIDE NUMBER" (side 0 or 1), "boxes DEPTH" (of tree
+  /// nodes), "pair STEP A B" (simplices of A and B), or empty.
   std::vector<std::string> targets = {};
 };
 
@@ -143,8 +143,8 @@ class Document {
   Document& command(std::string command);   ///< the command that made the report
   Document& link(const Link& link);
   Document& summary(std::string sentence);  ///< the run in a sentence, under the title
-  /// Sets the function that explains column titles and labels of key figures, in their tooltips. It returns an
-  /// empty text for a name that needs no explanation.
+  /// Sets the function that explains column titles and labels of key figures, in their tooltips. It returns
+  /// an empty text for a name that needs no explanation.
   Document& explain(std::string_view (*meaning_of)(std::string_view name));
   /// Puts the parts that are added from now on into a tab of the page of a run. Tabs of one name are one.
   Document& tab(const std::string& name);

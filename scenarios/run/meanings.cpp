@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     // Key figures.
-    {"Relation", "how the bodies are to each other at the last step: separate, touching, crossing, or one inside the other"},
+    {"Relation",
+     "how the bodies are to each other at the last step: separate, touching, crossing, or one inside the other"},
     {"Intersecting pairs", "pairs of intersecting faces, one of A and one of B; none is missed"},
     {"Contact regions", "connected groups of intersecting pairs"},
     {"First contact", "the step, with fraction, at which the surfaces first touch; proven"},

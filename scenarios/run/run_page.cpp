@@ -111,7 +111,7 @@ std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace:
                                           p.reps[1]->real_simplex_count())});
   if (p.trace->header.engine.empty())
     out.push_back({"Refined regions", render::group_digits(r.counters.regions_opened),
-                 "of " + render::group_digits(regions) + ", " + at});
+                   "of " + render::group_digits(regions) + ", " + at});
   out.push_back({"Real faces", render::group_digits(faces), each});
   return out;
 }
@@ -119,8 +119,11 @@ std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace:
 std::string body_text(const RecordedRun& p, std::size_t side) {
   const LrbRep& rep = *p.reps[side];
   const std::string& name = p.trace->header.bodies[side].name;
-  return std::string(p.reps.size() == 1 ? "" : side == 0 ? "A, " : "B, ") + (name.empty() ? "the body" : name) +
-         " (" + render::counted(rep.real_face_count(), "face", "faces") + ")";
+  return std::string(p.reps.size() == 1 ? ""
+                     : side == 0        ? "A, "
+                                        : "B, ") +
+         (name.empty() ? "the body" : name) + " (" + render::counted(rep.real_face_count(), "face", "faces") +
+         ")";
 }
 
 std::string whole_percent(std::uint64_t part, std::uint64_t whole) {
@@ -158,24 +161,23 @@ std::string step_sentence(const RecordedRun& p, const trace::Step& step) {
   std::string out = "At step " + std::to_string(step.index) + " the relation is " + relation;
   if (r.pair_count > 0)
     out += " with " + counted(r.pair_count, "intersecting pair of faces", "intersecting pairs of faces");
-  out += ". That query takes " +
-         (seconds > 0 ? time_text(seconds) + " and " : std::string()) +
+  out += ". That query takes " + (seconds > 0 ? time_text(seconds) + " and " : std::string()) +
          counted(tests, "test", "tests");
   if (tests > c.face_tests)
-    out += " (" + whole_percent(c.box_tests, tests) + " of boxes, " + whole_percent(c.prefilter_tests, tests) +
-           " of planes, " + whole_percent(c.face_tests, tests) + " of faces)";
-  const std::uint64_t all =
-      std::uint64_t{p.reps[0]->real_simplex_count()} * p.reps[1]->real_simplex_count();
+    out += " (" + whole_percent(c.box_tests, tests) + " of boxes, " +
+           whole_percent(c.prefilter_tests, tests) + " of planes, " + whole_percent(c.face_tests, tests) +
+           " of faces)";
+  const std::uint64_t all = std::uint64_t{p.reps[0]->real_simplex_count()} * p.reps[1]->real_simplex_count();
   return out + " of " + counted(all, "possible pair", "possible pairs") + ".";
 }
 
-/// Returns which bodies are shown, when they meet, and what the last query cost and on what, in a sentence
-/// or two.
+/// Returns the bodies, their first contact, and the cost of a query by sort of work, in a few sentences.
 std::string sentence_of(const RecordedRun& p) {
   using render::counted;
   if (p.reps.size() == 2) {
     const std::string both = body_text(p, 0) + ", and " + body_text(p, 1);
-    if (p.trace->has_engine_reports()) return "For " + both + ", " + p.trace->header.engine + " " + engine_sentence(p);
+    if (p.trace->has_engine_reports())
+      return "For " + both + ", " + p.trace->header.engine + " " + engine_sentence(p);
     std::string out = both;
     if (const auto& search = p.trace->header.first_contact; search && search->step)
       out += ", first touch at " + contact_step(*search);
@@ -184,7 +186,7 @@ std::string sentence_of(const RecordedRun& p) {
     else
       out += p.trace->steps.size() > 1 ? ", do not touch in any step" : ", do not touch";
     out += ".";
-    // An approach ends with its answer; of other motions the costliest step is told.
+    // An approach ends with its answer; for other motions, the costliest step is reported.
     const trace::Step* step = last_step(*p.trace);
     if (step != nullptr && !p.trace->header.first_contact)
       step = &*std::max_element(
@@ -250,15 +252,14 @@ void add_charts_of(report::Document& doc, const RecordedRun& p, const trace::Cha
   const report::Axis x{std::string(chart.x_name)};
   report::Chart faces{faces_title, x, {"faces"}, {}, {}, cursor};
   report::Chart counts{counts_title, x, {"number in the step"}, {}, {}, cursor};
-  const report::Line line =
-      cursor == report::Cursor::event ? report::Line::steps : report::Line::straight;
+  const report::Line line = cursor == report::Cursor::event ? report::Line::steps : report::Line::straight;
   for (const trace::Series& s : chart.series) {
     if (s.unit == "ms" || is_of_no_wrapper(s, p)) continue;
     if (s.name == "hits" && same_as_contacts(s, chart)) continue;
     // A curve is missing if its body is missing, or if its kind of event did not occur.
     if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;
-    (s.unit == "faces" ? faces : counts).series.push_back(
-        {std::string(s.name), chart.x, s.values, {line, colour_of(s.name)}});
+    (s.unit == "faces" ? faces : counts)
+        .series.push_back({std::string(s.name), chart.x, s.values, {line, colour_of(s.name)}});
   }
   if (!faces.series.empty()) doc.chart(faces);
   if (!counts.series.empty() && p.reps.size() == 2) doc.chart(counts);
@@ -336,8 +337,8 @@ report::Table steps_table(const trace::Trace& trace) {
     constexpr double kMicros = 1e6;
     if (timed) row.push_back(render::short_number(kMicros * seconds_of_step(trace, i)));
     if (has_trees)
-      row.insert(row.end(), {render::group_digits(counters.box_tests),
-                             render::group_digits(counters.prefilter_tests)});
+      row.insert(row.end(),
+                 {render::group_digits(counters.box_tests), render::group_digits(counters.prefilter_tests)});
     row.insert(row.end(), {render::group_digits(counters.face_tests),
                            render::group_digits(counters.refinements), trace::to_hex(s.result.fingerprint)});
     if (request.is_coarse())
@@ -457,9 +458,9 @@ report::Document run_page(const RecordedRun& p, const DrawnFrames& drawn, const 
   add_frames(doc, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
   if (drawn.proved != nullptr)
     doc.tab("Proof").picture(kSeparationFile, io::read_text(folder + "/" + kSeparationFile),
-                "Proof of separation at step " + std::to_string(drawn.proved->index),
-                "(a) The outermost wrappers. (b) Refined until they have no point in common: " +
-                    faces_text(*drawn.proved->result.separation) + ". Each contains its body.");
+                             "Proof of separation at step " + std::to_string(drawn.proved->index),
+                             "(a) The outermost wrappers. (b) Refined until they have no point in common: " +
+                                 faces_text(*drawn.proved->result.separation) + ". Each contains its body.");
   doc.tab("");
   return doc.version(p.trace->header.lrbscope);
 }

@@ -107,8 +107,7 @@ report::Table region_table(const RecordedRun& p, Side side) {
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
     return groups.sums[x].tests > groups.sums[y].tests;
   });
-  report::Table t{"Counters of " + std::string(name_of(side)) + " by region",
-                  {"region", "layer", "depth"}};
+  report::Table t{"Counters of " + std::string(name_of(side)) + " by region", {"region", "layer", "depth"}};
   append(t.columns, groups.columns());
   t.columns.emplace_back("refined");
   const auto add = [&](std::vector<std::string> first, const GroupSums& s) {

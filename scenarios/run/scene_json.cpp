@@ -417,11 +417,10 @@ json work_json(const trace::Trace& trace, const trace::WorkChart& chart) {
                    {"events", o.events},
                    {"operations", o.operations},
                    {"micros", kMicros * o.seconds}});
-  return {
-      {"outcomes", std::move(out)},
-      // At EventLevel::faces, the times of box and plane tests are unknown.
-      {"timed", !trace.wall_ns.empty() && !counts_work(trace)},
-      {"steps", work_by_step(trace, chart)}};
+  return {{"outcomes", std::move(out)},
+          // At EventLevel::faces, the times of box and plane tests are unknown.
+          {"timed", !trace.wall_ns.empty() && !counts_work(trace)},
+          {"steps", work_by_step(trace, chart)}};
 }
 
 json events_json(const trace::Trace& trace, const trace::WorkChart& chart,

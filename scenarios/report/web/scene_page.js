@@ -138,7 +138,7 @@ function printView(view) {
   picture.alt = "";
   byId("view-canvas").after(picture);
   window.addEventListener("beforeprint", () => {
-    view.draw(); // what was drawn is kept until this task ends
+    view.draw(); // the drawing buffer keeps its content until this task ends
     picture.src = view.canvas.toDataURL();
   });
 }

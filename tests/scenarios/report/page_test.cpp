@@ -92,7 +92,8 @@ TEST_CASE("parts of a run's page are in tabs, rows name what they lead to, and n
        {"<p class=\"lead\">A &lt; B</p>", "<div class=\"tab\" data-tab=\"Answer\">\n<dl class=\"numbers\">",
         "<div class=\"tab\" data-tab=\"Charts\">\n<section class=\"charts\">",
         "</section>\n</div>\n<div class=\"tab\" data-tab=\"Steps\">", "<tr data-to=\"step 3\">",
-        "<div title=\"pairs of &quot;faces&quot;\"><dt>pairs", "title=\"pairs of &quot;faces&quot;\">pairs</th>",
+        "<div title=\"pairs of &quot;faces&quot;\"><dt>pairs",
+        "title=\"pairs of &quot;faces&quot;\">pairs</th>",
         "<div class=\"tab\" data-tab=\"Run\">\n<section><h2>Made by"})
     CHECK_MESSAGE(count(html, part) == 1, part);
   CHECK(count(html, "data-to=") == 1);
