@@ -27,6 +27,7 @@ struct CollideOptions {
   PictureOptions picture;
   spec::StepQuestions more;
   std::optional<EventLevel> events;
+  std::optional<trace::Clock> clock;
   bool live = false, json = false;
 };
 
@@ -57,6 +58,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   s.request.contacts = o.request.mode == Mode::all_pairs;
   s.more = o.more;
   if (o.events) s.events = *o.events;
+  if (o.clock) s.clock = *o.clock;
   s.frames.montage = 6;
   s.frames.views = whole_and_contact();
   if (!o.poses.empty()) {
@@ -139,6 +141,7 @@ Command add_collide(CLI::App& root, const Globals& globals) {
                   "distance, in mesh units")
       ->type_name("D");
   add_events_option(*app, o->events);
+  add_clock_option(*app, o->clock);
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
   add_live_option(*app, o->live);

@@ -70,6 +70,13 @@ void add_events_option(CLI::App& app, std::optional<EventLevel>& level) {
       "all: also face pairs rejected by a separating plane");
 }
 
+void add_clock_option(CLI::App& app, std::optional<trace::Clock>& clock) {
+  add_choice<trace::Clock>(
+      app, "--clock", clock,
+      "Time in the trace. event: event numbers, the same bytes in every run; wall: nanoseconds, and "
+      "microseconds of each step on the page");
+}
+
 void add_request_options(CLI::App& app, CollideRequest& request) {
   add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
                    "all: every pair; first: one pair, a crossing one if there is any; any: stop at the first "

@@ -19,6 +19,7 @@
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/camera.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::cli {
 
@@ -117,6 +118,8 @@ void add_coarse_options(CLI::App& app, CollideRequest& request);
 void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
 /// Adds --events, which overrides the scenario.
 void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
+/// Adds --clock, which overrides the scenario.
+void add_clock_option(CLI::App& app, std::optional<trace::Clock>& clock);
 /// Adds --no-join.
 void add_join_option(CLI::App& app, bodies::Corners& corners);
 /// Adds --repeat. what: the unit of a query, such as "pose".

@@ -109,6 +109,7 @@ struct RunCommandOptions {
   PictureOptions picture;
   std::optional<Recursion> recursion;
   std::optional<EventLevel> events;
+  std::optional<trace::Clock> clock;
   bool live = false, json = false;
 };
 
@@ -117,6 +118,7 @@ int run_run(const RunCommandOptions& o, const Globals& globals) {
   apply(o.picture, scenario.frames);
   if (o.recursion) scenario.request.recursion = *o.recursion;
   if (o.events) scenario.events = *o.events;
+  if (o.clock) scenario.clock = *o.clock;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   if (o.folder.empty()) io::reject_run_of_another(folder, o.scenario);
   run::RunOutcome outcome =
@@ -144,6 +146,7 @@ Command add_run(CLI::App& root, const Globals& globals) {
   app->add_option("-o,--output", o->folder, "Output folder [out/NAME]")->type_name("DIR");
   add_recursion_option(*app, o->recursion);
   add_events_option(*app, o->events);
+  add_clock_option(*app, o->clock);
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
   add_live_option(*app, o->live);

@@ -34,19 +34,8 @@ std::string cell_html(const std::string& cell) {
   return fill("<td{!}>{}</td>", {kind, cell});
 }
 
-/// Returns the attribute that links a table's rows to the view in the page's script.
-const char* rows_attribute(Rows rows) {
-  switch (rows) {
-    case Rows::regions_of_a:
-      return " data-rows=\"region 0\"";
-    case Rows::regions_of_b:
-      return " data-rows=\"region 1\"";
-    case Rows::steps:
-      return " data-rows=\"step\"";
-    case Rows::plain:
-      break;
-  }
-  return "";
+std::string tab_html(const std::string& name, const std::string& html) {
+  return html.empty() ? "" : fill("<div class=\"tab\" data-tab=\"{}\">\n{!}</div>\n", {name, html});
 }
 
 /// Returns JSON that is safe inside a script element: it cannot close the element.
@@ -83,6 +72,11 @@ std::string note_html(const std::string& note) {
 std::string command_html(const std::string& command) {
   return fill("<pre class=\"command\"><code>{}</code></pre>", {command});
 }
+
+/// Without scripts, the page of a run has its texts and tables; its pictures are files.
+constexpr const char* kNoScript =
+    R"(<noscript><style>.scene, .frames, .charts { display: none; }</style><p class="note">The view, the charts and the events of this page need JavaScript. The pictures of the run are in <a href="frames/">frames/</a>.</p></noscript>
+)";
 
 constexpr const char* kModes =
     R"(<div class="modes" role="group" aria-label="How to compare">
@@ -170,6 +164,30 @@ Document& Document::link(const Link& link) {
   return *this;
 }
 
+Document& Document::summary(std::string sentence) {
+  summary_ = std::move(sentence);
+  return *this;
+}
+
+Document& Document::explain(std::string_view (*meaning_of)(std::string_view name)) {
+  meaning_of_ = meaning_of;
+  return *this;
+}
+
+Document& Document::tab(const std::string& name) {
+  if (name == tab_) return *this;
+  close_charts();
+  if (!tab_.empty()) body_ += "</div>\n";
+  tab_ = name;
+  if (!name.empty()) body_ += fill("<div class=\"tab\" data-tab=\"{}\">\n", {name});
+  return *this;
+}
+
+std::string Document::tooltip(std::string_view name) const {
+  const std::string_view meaning = meaning_of_ == nullptr ? std::string_view() : meaning_of_(name);
+  return meaning.empty() ? "" : fill(" title=\"{}\"", {std::string(meaning)});
+}
+
 Document& Document::text(const Text& text) {
   texts_ += fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
   return *this;
@@ -177,7 +195,8 @@ Document& Document::text(const Text& text) {
 
 Document& Document::number(const Number& number) {
   const std::string note = number.note.empty() ? "" : fill("<small>{}</small>", {number.note});
-  numbers_ += fill("<div><dt>{}</dt><dd>{}{!}</dd></div>\n", {number.label, number.value, note});
+  numbers_ += fill("<div{!}><dt>{}</dt><dd>{}{!}</dd></div>\n",
+                   {tooltip(number.label), number.label, number.value, note});
   return *this;
 }
 
@@ -198,19 +217,20 @@ Document& Document::table(const Table& t) {
   std::string head, rows;
   for (std::size_t c = 0; c < t.columns.size(); ++c) {
     const bool numeric = !t.rows.empty() && c < t.rows[0].size() && looks_numeric(t.rows[0][c]);
-    head += fill("<th{!}>{}</th>", {numeric ? " class=\"n\"" : "", t.columns[c]});
+    head += fill("<th{!}{!}>{}</th>", {numeric ? " class=\"n\"" : "", tooltip(t.columns[c]), t.columns[c]});
   }
-  for (const auto& row : t.rows) {
-    rows += "<tr>";
-    for (const std::string& cell : row) rows += cell_html(cell);
+  for (std::size_t r = 0; r < t.rows.size(); ++r) {
+    const bool leads = r < t.targets.size() && !t.targets[r].empty();
+    rows += leads ? fill("<tr data-to=\"{}\">", {t.targets[r]}) : "<tr>";
+    for (const std::string& cell : t.rows[r]) rows += cell_html(cell);
     rows += "</tr>\n";
   }
-  return add(fill(R"(<section><h2>{}</h2>
-<div class="scroll{!}"><table{!}><thead><tr>{!}</tr></thead><tbody>
+  return add(
+      fill(R"(<section><h2>{}</h2>
+<div class="scroll{!}"><table><thead><tr>{!}</tr></thead><tbody>
 {!}</tbody></table></div>{!}</section>
 )",
-                  {t.title, t.rows.size() > kLong ? " long\" tabindex=\"0" : "", rows_attribute(t.rows_are),
-                   head, rows, note_html(t.note)}));
+           {t.title, t.rows.size() > kLong ? " long\" tabindex=\"0" : "", head, rows, note_html(t.note)}));
 }
 
 Document& Document::grid(const Grid& grid, const std::string& folder) {
@@ -256,8 +276,8 @@ Document& Document::scene(const std::string& json) {
   scene_ = json;
   for (const char* name : {"three.min.js", "OrbitControls.js"}) libraries_ += "\n" + embedded(name);
   // Each follows those that it depends on.
-  for (const char* name :
-       {"scene_run", "scene_panels", "scene_bodies", "scene_marks", "scene_view", "scene_controls", "scene"})
+  for (const char* name : {"scene_run", "scene_panels", "scene_bodies", "scene_marks", "scene_view",
+                           "scene_controls", "scene_page", "scene"})
     scripts_ += embedded(name + std::string(".js"));
   styles_ += render::scene_root_css() + embedded("scene.css");
   return add(embedded("scene.html"));
@@ -323,10 +343,16 @@ std::string Document::print(const std::string& name, const std::string& note, co
 }
 
 Document& Document::add(std::string_view html, bool is_chart) {
-  if (is_chart != in_charts_) body_ += is_chart ? "<section class=\"charts\">\n" : "</section>\n";
+  if (!is_chart) close_charts();
+  if (is_chart && !in_charts_) body_ += "<section class=\"charts\">\n";
   in_charts_ = is_chart;
   body_ += html;
   return *this;
+}
+
+void Document::close_charts() {
+  if (in_charts_) body_ += "</section>\n";
+  in_charts_ = false;
 }
 
 void Document::use(const std::string& style, std::string_view script) {
@@ -345,18 +371,25 @@ std::string Document::html() const {
   if (!files.empty())
     source += "<section><h2>Files</h2>\n<ul class=\"links\">\n" + files + "</ul></section>\n";
   const std::string texts = texts_.empty() ? "" : "<div class=\"texts\">\n" + texts_ + "</div>\n";
-  const std::string numbers = numbers_.empty() ? "" : "<dl class=\"numbers\">\n" + numbers_ + "</dl>\n";
+  std::string numbers = numbers_.empty() ? "" : "<dl class=\"numbers\">\n" + numbers_ + "</dl>\n";
+  if (!scene_.empty()) {
+    numbers = tab_html("Answer", numbers);
+    source = tab_html("Run", source);
+  }
   const std::string scene_data = scene_.empty() ? ""
                                                 : "<script type=\"application/json\" id=\"scene-data\">" +
                                                       script_safe(scene_) + "</script>\n";
   return filled(io::embedded_file("page.html"),
                 {{"title", render::escape_markup(title_)},
                  {"verdict", verdict_},
-                 {"purpose", purpose_.empty() ? "" : fill("<p class=\"purpose\">{}</p>", {purpose_})},
+                 {"purpose", (summary_.empty() ? "" : fill("<p class=\"lead\">{}</p>\n", {summary_})) +
+                                 (purpose_.empty() ? "" : fill("<p class=\"purpose\">{}</p>", {purpose_}))},
+                 {"noscript", scene_.empty() ? "" : kNoScript},
                  {"style", styles_},
                  {"layout", scene_.empty() ? "" : " class=\"wide\""},
                  {"frames", framing_ ? "; frame-src file: 'self'" : ""},
-                 {"body", texts + numbers + body_ + (in_charts_ ? "</section>\n" : "") + source},
+                 {"body", texts + numbers + body_ + (in_charts_ ? "</section>\n" : "") +
+                              (tab_.empty() ? "" : "</div>\n") + source},
                  {"footer", render::escape_markup(footer_)},
                  {"data", script_safe("{\"frames\":" + frames_ + ",\"charts\":[" + charts_ + "]}")},
                  {"scene_data", scene_data},

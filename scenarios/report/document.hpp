@@ -23,16 +23,15 @@ struct Number {
   std::string note = {};
 };
 
-/// Meaning of the numbers in a table's first column: a click on a row leads to that item in the view of the
-/// run.
-enum class Rows : std::uint8_t { plain, regions_of_a, regions_of_b, steps };
-
 struct Table {
   std::string title;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows = {};  ///< numeric cells are aligned right
   std::string note = {};
-  Rows rows_are = Rows::plain;
+  /// The items that the rows are about, for as many of the first rows: a click on such a row selects the item
+  /// in the view of the run. "step NUMBER", "region SIDE NUMBER" (side 0 or 1), "boxes DEPTH" (of tree
+  /// nodes), "pair STEP A B" (simplices of A and B), or empty.
+  std::vector<std::string> targets = {};
 };
 
 /// Returns columns and rows of a table as CSV (RFC 4180), for other programs. Cells with a comma, a quote or
@@ -143,6 +142,12 @@ class Document {
   Document& version(std::string lrbscope);  ///< in the footer, instead of this program's version
   Document& command(std::string command);   ///< the command that made the report
   Document& link(const Link& link);
+  Document& summary(std::string sentence);  ///< the run in a sentence, under the title
+  /// Sets the function that explains column titles and labels of key figures, in their tooltips. It returns
+  /// an empty text for a name that needs no explanation.
+  Document& explain(std::string_view (*meaning_of)(std::string_view name));
+  /// Puts the parts that are added from now on into a tab of the page of a run. Tabs of one name are one.
+  Document& tab(const std::string& name);
 
   Document& text(const Text& text);        ///< at the top, side by side
   Document& number(const Number& number);  ///< below the texts, in a row
@@ -186,10 +191,14 @@ class Document {
  private:
   /// Appends to the body. Consecutive charts are side by side.
   Document& add(std::string_view html, bool is_chart = false);
+  void close_charts();
+  /// Returns the attribute that explains a name, or an empty text.
+  std::string tooltip(std::string_view name) const;
   /// Adds a style sheet and a script, each once.
   void use(const std::string& style, std::string_view script);
 
-  std::string title_, purpose_, verdict_, footer_, command_;
+  std::string title_, purpose_, summary_, verdict_, footer_, command_, tab_;
+  std::string_view (*meaning_of_)(std::string_view) = nullptr;
   std::string texts_, numbers_, body_;
   std::string styles_, libraries_, scripts_, scene_, charts_, frames_ = "[]";
   bool framing_ = false, in_charts_ = false;

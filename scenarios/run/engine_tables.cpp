@@ -52,6 +52,18 @@ EngineTotals totals_of(const RecordedRun& p) {
 
 }  // namespace
 
+std::string engine_sentence(const RecordedRun& p) {
+  using render::counted, render::group_digits;
+  const EngineTotals t = totals_of(p);
+  const std::uint64_t tests = t.box_tests + t.face_tests;
+  std::string out = "asks " + counted(p.trace->steps.size(), "query", "queries") + ", of which " +
+                    group_digits(t.intersecting) + (t.intersecting == 1 ? " is" : " are") +
+                    " intersecting by its answer, at a cost of " + counted(tests, "test", "tests");
+  if (tests > 0)
+    out += ": " + group_digits(t.box_tests) + " of volumes, " + group_digits(t.face_tests) + " of triangles";
+  return out + ".";
+}
+
 void add_engine_answer(report::Document& doc, const RecordedRun& p) {
   using render::counted, render::group_digits;
   const EngineTotals t = totals_of(p);
@@ -150,7 +162,7 @@ report::Table engine_table(const RecordedRun& p) {
   const bool has_threads = any([&](const auto& r) { return r.thread != first->thread; });
   const bool has_times = any([](const auto& r) { return r.duration_ns > 0; });
   const bool checked = is_checked(p);
-  report::Table t{"Every query", {"query"}, {}, {}, report::Rows::steps};
+  report::Table t{"Every query", {"query"}};
   const auto column = [&](bool is_shown, const char* name) {
     if (is_shown) t.columns.emplace_back(name);
   };
@@ -183,6 +195,7 @@ report::Table engine_table(const RecordedRun& p) {
     const trace::EngineReport report = r.engine.value_or(trace::EngineReport());
     std::vector<std::string>& row = t.rows.emplace_back();
     row.push_back(std::to_string(trace.steps[i].index));
+    t.targets.push_back("step " + row.back());
     const auto cell = [&](bool is_shown, std::string text) {
       if (is_shown) row.push_back(std::move(text));
     };

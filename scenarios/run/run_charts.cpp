@@ -137,9 +137,9 @@ void add_construction(report::Document& doc, const RecordedRun& p) {
   doc.chart(front);
   if (tried) {
     doc.chart(chart_of(trace::chart_over_passes(*p.trace), "Caps by pass", "caps", report::Line::straight));
-    doc.table(rejection_table(passes));
   }
-  doc.table(pass_table(passes));
+  doc.tab("Passes").table(pass_table(passes));
+  if (tried) doc.tab("Caps").table(rejection_table(passes));
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 /// The charts and tables of a run's page.
 
+#include <string_view>
 #include <vector>
 
 #include "scenarios/frames/frames.hpp"
@@ -8,6 +9,9 @@
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb::run {
+
+/// Returns the meaning of a column or a key figure of a run's page; empty: unknown.
+std::string_view meaning_of(std::string_view name);
 
 /// Adds a construction: its key figures, charts of the front and of caps, and tables of passes and of
 /// verdicts on caps.
@@ -33,6 +37,8 @@ std::vector<report::Table> group_tables(const RecordedRun& run);
 /// the expectation of the surface area heuristic. Returns an empty list for a trace without these events.
 std::vector<report::Table> work_tables(const RecordedRun& run);
 
+/// Returns the run of another engine in a sentence, for the top of its page.
+std::string engine_sentence(const RecordedRun& recorded);
 /// Adds the verdict and the key figures of a run of another engine that reported its answers.
 void add_engine_answer(report::Document& doc, const RecordedRun& recorded);
 /// Returns charts of tests, pairs and times by query; empty for a single query.

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "render/page_palette.hpp"
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/approach.hpp"
+#include "scenarios/record/moments.hpp"
 #include "scenarios/run/run_charts.hpp"
 #include "scenarios/run/scene_json.hpp"
 #include <lrbscope/core/strings.hpp>
@@ -107,10 +109,101 @@ std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace:
                  at + "; brute force: " +
                      render::group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
                                           p.reps[1]->real_simplex_count())});
-  out.push_back({"Refined regions", render::group_digits(r.counters.regions_opened),
-                 "of " + render::group_digits(regions) + ", " + at});
+  if (p.trace->header.engine.empty())
+    out.push_back({"Refined regions", render::group_digits(r.counters.regions_opened),
+                   "of " + render::group_digits(regions) + ", " + at});
   out.push_back({"Real faces", render::group_digits(faces), each});
   return out;
+}
+
+std::string body_text(const RecordedRun& p, std::size_t side) {
+  const LrbRep& rep = *p.reps[side];
+  const std::string& name = p.trace->header.bodies[side].name;
+  return std::string(p.reps.size() == 1 ? ""
+                     : side == 0        ? "A, "
+                                        : "B, ") +
+         (name.empty() ? "the body" : name) + " (" + render::counted(rep.real_face_count(), "face", "faces") +
+         ")";
+}
+
+std::string whole_percent(std::uint64_t part, std::uint64_t whole) {
+  return std::to_string((100 * part + whole / 2) / std::max<std::uint64_t>(whole, 1)) + " %";
+}
+
+/// Returns the time from the first to the last event of a step; 0 on the event clock.
+double seconds_of_step(const trace::Trace& trace, std::size_t step) {
+  const std::size_t count = trace.events_of(step).size(), first = trace.steps[step].first_event;
+  if (trace.wall_ns.empty() || count == 0) return 0;
+  constexpr double kNanosecond = 1e-9;
+  return kNanosecond * static_cast<double>(trace.wall_ns[first + count - 1] - trace.wall_ns[first]);
+}
+
+std::string time_text(double seconds) {
+  constexpr double kMillis = 1e3, kMicros = 1e6;
+  return seconds < 1 / kMillis ? render::short_number(kMicros * seconds) + " µs"
+                               : render::short_number(kMillis * seconds) + " ms";
+}
+
+std::uint64_t tests_of(const trace::Step& step) {
+  const Counters& c = step.result.counters;
+  return c.box_tests + c.prefilter_tests + c.face_tests;
+}
+
+/// Returns the answer and the cost of a step in a sentence, and where the work was.
+std::string step_sentence(const RecordedRun& p, const trace::Step& step) {
+  using render::counted;
+  const trace::StepResult& r = step.result;
+  const Counters& c = r.counters;
+  const std::uint64_t tests = tests_of(step);
+  const std::string relation = io::in_words(name_of(r.relation));
+  const auto index = static_cast<std::size_t>(&step - p.trace->steps.data());
+  const double seconds = p.trace->wall_ns.empty() ? 0 : seconds_of_step(*p.trace, index);
+  std::string out = "At step " + std::to_string(step.index) + " the relation is " + relation;
+  if (r.pair_count > 0)
+    out += " with " + counted(r.pair_count, "intersecting pair of faces", "intersecting pairs of faces");
+  out += ". That query takes " + (seconds > 0 ? time_text(seconds) + " and " : std::string()) +
+         counted(tests, "test", "tests");
+  if (tests > c.face_tests)
+    out += " (" + whole_percent(c.box_tests, tests) + " of boxes, " +
+           whole_percent(c.prefilter_tests, tests) + " of planes, " + whole_percent(c.face_tests, tests) +
+           " of faces)";
+  const std::uint64_t all = std::uint64_t{p.reps[0]->real_simplex_count()} * p.reps[1]->real_simplex_count();
+  return out + " of " + counted(all, "possible pair", "possible pairs") + ".";
+}
+
+/// Returns the bodies, their first contact, and the cost of a query by sort of work, in a few sentences.
+std::string sentence_of(const RecordedRun& p) {
+  using render::counted;
+  if (p.reps.size() == 2) {
+    const std::string both = body_text(p, 0) + ", and " + body_text(p, 1);
+    if (p.trace->has_engine_reports())
+      return "For " + both + ", " + p.trace->header.engine + " " + engine_sentence(p);
+    std::string out = both;
+    if (const auto& search = p.trace->header.first_contact; search && search->step)
+      out += ", first touch at " + contact_step(*search);
+    else if (const trace::EventId at = first_contact(*p.trace); at != kNull)
+      out += ", intersect from step " + std::to_string(p.trace->steps[p.trace->step_of(at)].index);
+    else
+      out += p.trace->steps.size() > 1 ? ", do not touch in any step" : ", do not touch";
+    out += ".";
+    // An approach ends with its answer; for other motions, the costliest step is reported.
+    const trace::Step* step = last_step(*p.trace);
+    if (step != nullptr && !p.trace->header.first_contact)
+      step = &*std::max_element(
+          p.trace->steps.begin(), p.trace->steps.end(),
+          [](const trace::Step& x, const trace::Step& y) { return tests_of(x) < tests_of(y); });
+    if (step != nullptr) out += " " + step_sentence(p, *step);
+    return out;
+  }
+  const LrbRep& rep = *p.reps[0];
+  std::string name = body_text(p, 0);
+  if (rep.region_count() == 0) return name + " has no wrapper.";
+  return name + ", has " + counted(rep.region_count(), "region", "regions") + " in " +
+         counted(rep.layer_count(), "layer", "layers") + ": " +
+         (p.trace->header.construction ? "passes of caps replace its surface until the outermost wrapper has "
+                                       : "refined one by one, they lead from the outermost wrapper of ") +
+         counted(rep.outermost_faces().size(), "face", "faces") +
+         (p.trace->header.construction ? "." : " to the body.");
 }
 
 std::vector<report::Number> wrapper_numbers(const LrbRep& rep) {
@@ -134,6 +227,17 @@ bool same_as_contacts(const trace::Series& hits, const trace::Chart& chart) {
   return std::any_of(chart.series.begin(), chart.series.end(), same);
 }
 
+/// Returns the colour of a curve: that of its body or event in the view; empty: the palette's next.
+std::string colour_of(std::string_view curve) {
+  namespace palette = render::palette;
+  if (curve.ends_with(" A")) return render::css(palette::body(Side::a));
+  if (curve.ends_with(" B")) return render::css(palette::body(Side::b));
+  if (curve == "face tests") return render::css(palette::kUnderTest);
+  if (curve == "refinements") return render::css(palette::kRefining);
+  if (curve == "contacts") return render::css(palette::kContact);
+  return {};
+}
+
 /// Returns true for the curve of a wrapper if its body has no wrapper.
 bool is_of_no_wrapper(const trace::Series& s, const RecordedRun& p) {
   return s.unit == "faces" &&
@@ -148,14 +252,14 @@ void add_charts_of(report::Document& doc, const RecordedRun& p, const trace::Cha
   const report::Axis x{std::string(chart.x_name)};
   report::Chart faces{faces_title, x, {"faces"}, {}, {}, cursor};
   report::Chart counts{counts_title, x, {"number in the step"}, {}, {}, cursor};
-  const report::SeriesStyle style{cursor == report::Cursor::event ? report::Line::steps
-                                                                  : report::Line::straight};
+  const report::Line line = cursor == report::Cursor::event ? report::Line::steps : report::Line::straight;
   for (const trace::Series& s : chart.series) {
     if (s.unit == "ms" || is_of_no_wrapper(s, p)) continue;
     if (s.name == "hits" && same_as_contacts(s, chart)) continue;
     // A curve is missing if its body is missing, or if its kind of event did not occur.
     if (std::none_of(s.values.begin(), s.values.end(), [](double v) { return v > 0; })) continue;
-    (s.unit == "faces" ? faces : counts).series.push_back({std::string(s.name), chart.x, s.values, style});
+    (s.unit == "faces" ? faces : counts)
+        .series.push_back({std::string(s.name), chart.x, s.values, {line, colour_of(s.name)}});
   }
   if (!faces.series.empty()) doc.chart(faces);
   if (!counts.series.empty() && p.reps.size() == 2) doc.chart(counts);
@@ -176,10 +280,15 @@ report::Table contact_table(const CollideResult& result, std::uint32_t step) {
                       render::short_number(r.length), render::short_number(r.area),
                       render::short_number(r.depth_estimate), vector_text(r.centroid),
                       vector_text(r.normal)});
+    if (r.pairs.empty()) continue;
+    const SimplexPair& pair = result.pairs[r.pairs.front()];
+    t.targets.resize(t.rows.size());
+    t.targets.back() = "pair " + std::to_string(step) + " " + std::to_string(pair.a.value()) + " " +
+                       std::to_string(pair.b.value());
   }
   t.note =
       "World frame; lengths in the meshes' unit. Depth: estimated translation of B along the normal that separates the "
-      "region.";
+      "region. A click on a row selects the region's first pair in the view.";
   if (result.regions.size() > kMaxRows)
     t.note += " " + std::to_string(result.regions.size() - kMaxRows) + " more are left out here.";
   return t;
@@ -201,12 +310,13 @@ std::string coarse_text(const CollideRequest& request) {
 }
 
 report::Table steps_table(const trace::Trace& trace) {
-  report::Table t{"Every time step",
-                  {"step", "relation", "pairs", "face tests", "refinements", "fingerprint"},
-                  {},
-                  {},
-                  report::Rows::steps};
+  report::Table t{"Every time step", {"step", "relation", "pairs"}};
   const CollideRequest& request = trace.header.request;
+  const bool timed = !trace.wall_ns.empty();
+  const bool has_trees = request.recursion == Recursion::complete;
+  if (timed) t.columns.emplace_back("microseconds");
+  if (has_trees) t.columns.insert(t.columns.end(), {"box tests", "plane tests"});
+  t.columns.insert(t.columns.end(), {"face tests", "refinements", "fingerprint"});
   if (request.is_coarse()) t.columns.insert(t.columns.end(), {"error bound", "finished"});
   if (request.separation) t.columns.emplace_back("proof of separation");
   const bool has_distance = was_measured(trace, &trace::StepResult::distance);
@@ -217,12 +327,20 @@ report::Table steps_table(const trace::Trace& trace) {
   const bool has_manifold = was_measured(trace, &trace::StepResult::manifold);
   if (has_near) t.columns.emplace_back("near pairs");
   if (has_manifold) t.columns.insert(t.columns.end(), {"contact manifolds", "points"});
-  for (const trace::Step& s : trace.steps) {
-    t.rows.push_back(
-        {std::to_string(s.index), io::in_words(name_of(s.result.relation)),
-         render::group_digits(s.result.pair_count), render::group_digits(s.result.counters.face_tests),
-         render::group_digits(s.result.counters.refinements), trace::to_hex(s.result.fingerprint)});
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    const trace::Step& s = trace.steps[i];
+    const Counters& counters = s.result.counters;
+    t.rows.push_back({std::to_string(s.index), io::in_words(name_of(s.result.relation)),
+                      render::group_digits(s.result.pair_count)});
+    t.targets.push_back("step " + t.rows.back()[0]);
     std::vector<std::string>& row = t.rows.back();
+    constexpr double kMicros = 1e6;
+    if (timed) row.push_back(render::short_number(kMicros * seconds_of_step(trace, i)));
+    if (has_trees)
+      row.insert(row.end(),
+                 {render::group_digits(counters.box_tests), render::group_digits(counters.prefilter_tests)});
+    row.insert(row.end(), {render::group_digits(counters.face_tests),
+                           render::group_digits(counters.refinements), trace::to_hex(s.result.fingerprint)});
     if (request.is_coarse())
       row.insert(row.end(), {s.result.error_bound == 0 ? "0" : error_bound_text(s.result.error_bound),
                              s.result.finished ? "yes" : "no"});
@@ -238,6 +356,7 @@ report::Table steps_table(const trace::Trace& trace) {
                  {m ? render::group_digits(m->manifolds) : "", m ? render::group_digits(m->found) : ""});
   }
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
+  if (timed) t.note += " Microseconds: from the first to the last event of the step, recording included.";
   if (request.is_coarse()) t.note += " An error bound of 0: the answer is exact.";
   return t;
 }
@@ -282,17 +401,19 @@ void add_charts(report::Document& doc, const RecordedRun& p) {
 /// Tables of a run of two bodies: contacts of the last step, and all steps unless there are too many.
 void add_tables(report::Document& doc, const RecordedRun& p) {
   if (p.reps.size() != 2) return;
-  if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
-    doc.table(contact_table(p.results->back(), p.trace->steps.back().index));
   if (p.trace->has_engine_reports()) {
-    doc.table(engine_table(p)).each(engine_counter_tables(p), &report::Document::table);
+    doc.tab("Queries").table(engine_table(p));
+    doc.tab("Work").each(engine_counter_tables(p), &report::Document::table);
     doc.each(work_tables(p), &report::Document::table);
     return;
   }
   constexpr std::size_t kMaxSteps = 200;
-  doc.each(work_tables(p), &report::Document::table).each(group_tables(p), &report::Document::table);
-  if (p.trace->steps.size() <= kMaxSteps) doc.table(steps_table(*p.trace));
-  doc.table(quality_table(p));
+  if (p.trace->steps.size() <= kMaxSteps) doc.tab("Steps").table(steps_table(*p.trace));
+  if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
+    doc.tab("Contacts").table(contact_table(p.results->back(), p.trace->steps.back().index));
+  doc.tab("Work").each(work_tables(p), &report::Document::table);
+  doc.tab("Regions").each(group_tables(p), &report::Document::table);
+  doc.tab("Bodies").table(quality_table(p));
 }
 
 }  // namespace
@@ -312,31 +433,35 @@ void add_frames(report::Document& doc, const DrawnFrames& drawn, const std::stri
 report::Document run_page(const RecordedRun& p, const DrawnFrames& drawn, const std::string& folder,
                           const ReportText& text) {
   report::Document doc(text.title, text.purpose);
+  doc.explain(meaning_of).summary(sentence_of(p));
   add_answer(doc, p, text);
   doc.scene(scene_json(p, {text.trace_file, text.why}));
   doc.each(text.links, &report::Document::link);
   for (const std::string& file : drawn.montage)
     doc.link({file, file.ends_with(".txt") ? "caption of the montage"
                                            : "panels (a), (b), (c), ... as one picture"});
-  // Frames may be smaller beside the 3D view, which not every browser shows.
-  constexpr std::size_t kBesideView = 2'500'000;
-  add_frames(doc, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
   if (!text.mismatches.empty()) {
     report::Table t{"Not as expected", {"expectation"}};
     for (const std::string& m : text.mismatches) t.rows.push_back({m});
-    doc.table(t);
+    doc.tab("Not as expected").table(t);
   }
+  doc.tab("Charts");
   if (p.trace->header.construction) {
     add_construction(doc, p);
   } else {
     add_charts(doc, p);
     add_tables(doc, p);
   }
+  // Frames may be smaller beside the 3D view, which not every browser shows.
+  constexpr std::size_t kBesideView = 2'500'000;
+  doc.tab("Frames");
+  add_frames(doc, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
   if (drawn.proved != nullptr)
-    doc.picture(kSeparationFile, io::read_text(folder + "/" + kSeparationFile),
-                "Proof of separation at step " + std::to_string(drawn.proved->index),
-                "(a) The outermost wrappers. (b) Refined until they have no point in common: " +
-                    faces_text(*drawn.proved->result.separation) + ". Each contains its body.");
+    doc.tab("Proof").picture(kSeparationFile, io::read_text(folder + "/" + kSeparationFile),
+                             "Proof of separation at step " + std::to_string(drawn.proved->index),
+                             "(a) The outermost wrappers. (b) Refined until they have no point in common: " +
+                                 faces_text(*drawn.proved->result.separation) + ". Each contains its body.");
+  doc.tab("");
   return doc.version(p.trace->header.lrbscope);
 }
 

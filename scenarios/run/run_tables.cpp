@@ -107,11 +107,7 @@ report::Table region_table(const RecordedRun& p, Side side) {
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t x, std::uint32_t y) {
     return groups.sums[x].tests > groups.sums[y].tests;
   });
-  report::Table t{"Counters of " + std::string(name_of(side)) + " by region",
-                  {"region", "layer", "depth"},
-                  {},
-                  {},
-                  side == Side::a ? report::Rows::regions_of_a : report::Rows::regions_of_b};
+  report::Table t{"Counters of " + std::string(name_of(side)) + " by region", {"region", "layer", "depth"}};
   append(t.columns, groups.columns());
   t.columns.emplace_back("refined");
   const auto add = [&](std::vector<std::string> first, const GroupSums& s) {
@@ -123,6 +119,7 @@ report::Table region_table(const RecordedRun& p, Side side) {
     const RegionId r(order[i]);
     add({std::to_string(order[i]), std::to_string(rep.layer(r)), std::to_string(rep.depth(r))},
         groups.sums[order[i]]);
+    t.targets.push_back((side == Side::a ? "region 0 " : "region 1 ") + std::to_string(order[i]));
   }
   if (order.size() > kMaxRows) {
     GroupSums rest;
@@ -188,10 +185,12 @@ report::Table depth_table(const RecordedRun& p, Side side) {
     t.rows.push_back({std::to_string(d), group_digits(w.nodes), short_number(w.expected),
                       group_digits(w.nodes_visited), group_digits(w.visits), group_digits(w.ended),
                       group_digits(w.box_tests)});
+    t.targets.push_back("boxes " + std::to_string(d));
   }
   t.note =
       "Over all time steps; walks of levels are left out. Expected: nodes that a random line through the root's box "
-      "meets, by the surface area heuristic. Visited: different nodes; visits: pairs of nodes, a node once with each of the other body's.";
+      "meets, by the surface area heuristic. Visited: different nodes; visits: pairs of nodes, a node once with each of the other body's. A click on a row shows the boxes of this "
+      "depth in the view.";
   return t;
 }
 

@@ -44,14 +44,21 @@ drive() {
 failed=0
 page "$here/meet.json"
 drive 1600 1200 'page.html?drive=all' "${webgl[@]}"
-# The camera copied by the page is valid in a scenario.
+# The address that the page made leads to the same state in a page that opens with it.
 camera=$(sed -n 's/^camera //p' "$work/driven")
+command=$(sed -n 's/^command lrbscope //p' "$work/driven")
+verdict=$(sed -n 's/^verdict .*Decided by \(.*\)\./\1/p' "$work/driven")
+hash=$(sed -n 's/^hash //p' "$work/driven")
+drive 1400 900 "page.html?drive=reload$hash" "${webgl[@]}"
+for size in "1400 900" "1920 1080" "1000 800"; do
+  # shellcheck disable=SC2086
+  drive $size 'page.html?drive=screen' "${webgl[@]}"
+done
+# The camera copied by the page is valid in a scenario.
 scenario=$(cat "$here/meet.json")
 printf '%s\n' "${scenario/'"frames": {'/"\"frames\": { \"most\": 1, \"views\": [$camera],"}" >"$work/copied.json"
 "$lrbscope" --quiet run "$work/copied.json" -o "$work/copied" >/dev/null
 # The command shown by the page gives the page's verdict.
-command=$(sed -n 's/^command lrbscope //p' "$work/driven")
-verdict=$(sed -n 's/^verdict .*Decided by \(.*\)\./\1/p' "$work/driven")
 if ! eval "\"$lrbscope\" $command" | grep -qxF "decided by $verdict"; then
   echo "browser.sh: \"$command\" does not print \"decided by $verdict\"" >&2
   failed=1

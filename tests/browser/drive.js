@@ -103,6 +103,7 @@
     for (const word of ["layer", "lids", "floor", "tests", "hits", "misses"])
       check(byId("picked-facts").textContent.includes(word), `with ${word}`);
     byId("picked-events").click();
+    equal(run.tabs.shown, "Events", "its button shows the events");
     check(run.table.rows.length < run.events.count, "its button filters the table", run.table.rows.length);
     byId("filter-clear").click();
   }
@@ -160,13 +161,16 @@
       "i isolates the selected region",
     );
     press("i");
+    equal(byId("explode").value, "0", "nothing is exploded at first");
     press("x");
     await frame();
     check(
       view.views.every((v) => v.pieces.some((p) => p.triangles > 0)),
       "x takes the wrappers apart",
     );
-    press("x");
+    equal(byId("explode").value, "0.1", "by a little");
+    press("x", true);
+    equal(view.now.explode, 0, "shift x takes it back");
     press("n");
     await frame();
     check(
@@ -312,7 +316,7 @@
   /** Rows of tables lead to regions and steps, and are marked where these are selected otherwise. */
   async function rowsLead() {
     const { selection, events } = run,
-      rows = (what) => [...document.querySelectorAll(`table[data-rows="${what}"] tr.leads`)],
+      rows = (what) => [...document.querySelectorAll(`tr.leads[data-to^="${what} "]`)],
       current = () => [...document.querySelectorAll("tr[aria-current]")];
     const [row, other] = rows("region 1");
     row.click();
@@ -327,6 +331,135 @@
     const last = rows("step").at(-1);
     last.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true }));
     equal(digits(events.stepNumber(selection.event)), last.cells[0].textContent, "a row of a step leads to it");
+    const [pair] = rows("pair");
+    pair.click();
+    await frame();
+    const [step, a, b] = pair.dataset.to.split(" ").slice(1).map(Number);
+    equal(events.stepNumber(selection.event), step, "a row of a contact region leads to its step");
+    equal(selection.chosen.join(), `${a},${b}`, "and selects its first pair");
+    check(byId("why-title").textContent.startsWith("Why"), "which is explained", byId("why-title").textContent);
+    check(pair.hasAttribute("aria-current"), "and marks the row");
+    const [boxes] = rows("boxes").slice(2);
+    boxes.click();
+    await frame();
+    equal(run.view.now.boxes, 2, "a row of a depth shows its boxes");
+    check(boxes.hasAttribute("aria-current") && byId("boxes").value === "2", "and is marked, and so is the list");
+    run.controls.change({ boxes: -1 });
+    press("Escape");
+  }
+
+  /** The window has no scroll bar, and neither has the header. */
+  function fitsOneScreen() {
+    const page = document.documentElement;
+    check(page.scrollHeight <= innerHeight, `the page fits ${innerWidth} x ${innerHeight}`, page.scrollHeight);
+    const box = (of) => of.getBoundingClientRect();
+    for (const part of [byId("view-canvas"), document.querySelector(".timeline"), document.querySelector(".panel"), document.querySelector(".tab-body")]) {
+      const { top, bottom, height } = box(part);
+      check(top >= 0 && bottom <= innerHeight + 1 && height > 30, `${part.id || part.className} is in the window`, [top, bottom]);
+    }
+    check(box(byId("view-canvas")).height > 0.25 * innerHeight, "the view has a quarter of it", box(byId("view-canvas")).height);
+    const widest = run.tabs.names.find((name) => {
+      run.tabs.show(name);
+      return page.scrollHeight > innerHeight || page.scrollWidth > innerWidth;
+    });
+    equal(widest, undefined, "whichever tab is shown");
+    run.tabs.show(run.tabs.names[0]);
+  }
+
+  /** One thing is selected everywhere: view, panel, table of events, tables, charts, picture at the top. */
+  async function selectsEverywhere() {
+    const { events, selection, view, tabs } = run,
+      test = events.kind.indexOf(events.CONTACT),
+      face = events.faces(test)[0];
+    selection.goTo(test);
+    selection.pickFace(face.side, face.face);
+    await frame();
+    check(view.marks.shown.get("picked").parts.length > 0, "the view marks a selected face");
+    check(byId("picked-title").textContent.includes(digits(face.face)), "the panel names it", byId("picked-title").textContent);
+    check(byId("picked").getBoundingClientRect().top < byId("event-title").getBoundingClientRect().top, "before the event");
+    tabs.show("Events");
+    await frame();
+    check(document.querySelector("#event-body .row.concerned"), "the table of events marks its events");
+    check(moment.about.event.includes(events.id(test)), "and so do the charts", moment.about.event.length);
+    check(moment.about.step.includes(events.stepNumber(test)), "over steps too");
+    press("l");
+    equal(tabs.shown, "Events", "l lists its events");
+    check(run.table.rows.length < events.count, "and only these", run.table.rows.length);
+    byId("filter-clear").click();
+    press("Escape");
+    equal(moment.about.event.length, 0, "Esc selects nothing, on charts as well");
+    const bars = document.querySelectorAll(".strip .bar");
+    equal(bars.length, events.firstOfStep.length, "the picture at the top has a bar for each step");
+    bars[1].dispatchEvent(new MouseEvent("click", { bubbles: true }));
+    equal(events.step(selection.event), 1, "a click on one leads to its step");
+    equal(Number(byId("step").value), 1, "and so does the slider");
+    selection.pickRegion(0, events.bodies[0].regionCount - 1);
+    const fitted = JSON.stringify(view.camera.json());
+    press("i");
+    await frame();
+    const seen = view.ballOfFaces(view.collector(selection.picked));
+    check(seen.radius / view.camera.halfHeight > 0.4, "an isolated region fills the view", seen.radius / view.camera.halfHeight);
+    press("i");
+    await frame();
+    equal(JSON.stringify(view.camera.json()), fitted, "and then everything is seen as before");
+    press("Escape");
+    for (const cell of document.querySelectorAll(".tab td.n")) {
+      const head = cell.closest("table").tHead.rows[0].cells[cell.cellIndex];
+      if (head.title) continue;
+      check(false, "every column of numbers says what it counts", head.textContent);
+      break;
+    }
+    for (const tile of document.querySelectorAll(".numbers div")) check(tile.title, `${tile.textContent} has a tooltip`);
+  }
+
+  /** The address has the state, and another page of it shows the same. */
+  async function keepsItsState() {
+    const { events, selection, view, controls, tabs, address } = run,
+      at = events.kind.indexOf(events.CONTACT) + 3;
+    selection.goTo(at);
+    selection.pickRegion(1, 0);
+    press("3");
+    equal(tabs.shown, tabs.names[2], "a digit shows a tab");
+    controls.change({ ghost: true, boxes: 3, by: "tests", per: "region" });
+    view.camera.turn(0.4, 0.1);
+    await wait(400);
+    const hash = location.hash,
+      camera = view.camera.json().eye;
+    for (const part of [`e${events.id(at)}`, "tab=", "pick=B.region.0", "camera=perspective", "ghost", "boxes:3", "by:tests", "per:region"])
+      check(hash.includes(part), `the address has ${part}`, hash);
+    selection.goTo(0);
+    press("Escape");
+    tabs.show(tabs.names[0]);
+    controls.change({ ghost: false, boxes: -1, by: "kind", per: "face" });
+    view.frameAll(view.camera.from);
+    history.replaceState(null, "", hash);
+    address.read();
+    await frame();
+    equal(selection.event, at, "which leads to its event");
+    equal(`${selection.picked.side} ${selection.picked.region}`, "1 0", "its selection");
+    equal(tabs.shown, tabs.names[2], "its tab");
+    equal(`${view.now.ghost} ${view.now.boxes} ${view.now.by} ${view.now.per}`, "true 3 tests region", "its layers");
+    const off = view.camera.json().eye.reduce((m, x, i) => Math.max(m, Math.abs(x - camera[i])), 0);
+    check(off < 1e-4, "and its camera", off);
+    controls.change({ ...view.opened });
+    press("Escape");
+    view.frameAll(view.camera.from);
+    press("t");
+    check(tabs.tall, "t makes tabs taller");
+    press("t");
+    await wait(400);
+    lines.push(`hash ${hash}`);
+  }
+
+  /** Opened with an address that drive.js has made, the page shows that state. */
+  async function opensAtItsAddress() {
+    const { events, selection, view, tabs } = run,
+      [, id] = /^#e(\d+)/.exec(location.hash);
+    equal(events.id(selection.event), Number(id), "the page opens at the event of its address");
+    equal(selection.picked && selection.picked.region, 0, "with the selection");
+    equal(`${view.now.ghost} ${view.now.boxes} ${view.now.by}`, "true 3 tests", "the layers");
+    equal(tabs.shown, tabs.names[2], "and the tab");
+    check(!view.camera.fitted, "and the camera");
   }
 
   /** A page that has a part of the events takes all of them from the trace. */
@@ -439,6 +572,7 @@
       many[name] = Uint32Array.from({ length: count }, (_, i) => events[name][i % events.count]);
     Object.assign(many, { count, ids: null });
     const { table } = run;
+    run.tabs.show("Events");
     table.events = many;
     table.refilter();
     table.box.scrollTop = 1e9;
@@ -471,7 +605,7 @@
       byId("no-view").textContent,
     );
     equal(
-      byId("frames").open && byId("stage").contains(byId("frames")),
+      byId("frames").open && byId("stage").contains(byId("frames")) && byId("frame").clientHeight > 100,
       true,
       "and shows frames in its place",
     );
@@ -653,6 +787,8 @@
     open: [opensAtFirstContact, showsTheOpenBody, looksAsFramesDo, fitsTheWidth],
     plane: [opensAtFirstContact, replaysAsRecorded, liesFlat, fitsTheWidth],
     build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, fitsTheWidth],
+    reload: [opensAtItsAddress],
+    screen: [fitsOneScreen],
     all: [
       opensAtFirstContact,
       replaysAsRecorded,
@@ -665,6 +801,8 @@
       shares,
       sharesOfSteps,
       rowsLead,
+      selectsEverywhere,
+      keepsItsState,
       colours,
       plays,
       largeTable,

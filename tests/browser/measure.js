@@ -221,6 +221,7 @@
     }
     if (typeof Chart === "undefined") return;
     for (const chart of Object.values(Chart.instances)) {
+      if (!isShown(chart.canvas)) continue; // in another tab
       const ground = behind(chart.canvas, -1, -1);
       if (chart.canvas.clientHeight < 80) fail("a chart without height", path(chart.canvas));
       for (const set of chart.data.datasets) {
@@ -288,6 +289,11 @@
       await wait(60);
       if (isRun && run.view) run.view.draw();
       measureAll(name === "as it opens" ? document.body : byId("scene"));
+    }
+    for (const name of isRun ? run.tabs.names.slice(1) : []) {
+      run.tabs.show(name);
+      await wait(120); // charts take the size of their tab
+      measureAll(document.querySelector(".tabs"));
     }
     measureDialogs();
   } catch (e) {

@@ -6,7 +6,7 @@ const style = (name) => getComputedStyle(document.documentElement).getPropertyVa
 // ---- the current frame or event: a frame, or an event of the run with the frame that shows it best; and its
 // listeners
 let current = 0; // index of the frame
-const moment = { event: -1, step: -1 }; // negative: unknown
+const moment = { event: -1, step: -1, about: { event: [], step: [] } }; // negative: unknown; about: of the selection
 const listeners = [];
 function tell() { for (const listener of listeners) listener(data.frames[current], current); }
 function show(index) {
@@ -96,6 +96,12 @@ const marksPlugin = {
       if (p.from !== undefined) line(set.borderColor, [2, 3], x.getPixelForValue(p.from), py, px, py);
     }
     const at = chart.config.options.cursorAt, px = x.getPixelForValue(at);
+    for (const about of chart.config.options.aboutAt || []) { // below the axis' line
+      const ax = x.getPixelForValue(about);
+      if (ax < left - 1 || ax > right + 1) continue;
+      c.fillStyle = style("--selected");
+      c.fillRect(ax - 1, bottom - 6, 2, 6);
+    }
     if (at >= 0 && px > left - 1 && px < right + 1) line(style("--soft"), [4, 3], px, top, px, bottom);
     c.restore();
   },
@@ -226,6 +232,7 @@ function startCharts() {
     charts.forEach((c, i) => {
       if (!data.charts[i].cursor) return;
       c.options.cursorAt = moment[data.charts[i].cursor];
+      c.options.aboutAt = moment.about[data.charts[i].cursor];
       c.draw();
     });
   };

@@ -210,7 +210,16 @@ function startScene() {
   selection.listeners.push((what) => {
     if (what === "event") byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
   });
-  new RowLinks(events, selection);
+  new RowLinks(events, selection, controls);
+  const strip = new CostStrip(scene, events, selection, work.ofStep || new Map());
+  const tabs = new Tabs();
+  explainCells();
+  if (view) printView(view);
+  const panelMark = showMore(document.querySelector(".panel"));
+  selection.listeners.push((what) => {
+    if (what === "pick") markAbout(events, selection);
+    panelMark();
+  });
   const loader = new TraceLoader(scene, events, (poses) => {
     if (wrappers) wrappers.at = -1;
     if (view) view.takePoses(poses);
@@ -222,19 +231,26 @@ function startScene() {
   selection.listeners.push((what) => {
     if (what === "event") shownId = events.id(selection.event);
   });
-  byId("picked-events").onclick = () => {
+  const listPicked = () => {
+    if (!selection.picked) return;
     form.showPicked(selection.picked);
+    tabs.show("Events");
     byId("events").scrollIntoView({ block: "nearest" });
   };
+  byId("picked-events").onclick = listPicked;
+  byId("help-open").onclick = toggleHelp;
   followPage(events, selection);
-  listenToKeys(keysOf(timeline, table, selection, controls));
-  const first = scene.firstContact >= 0 ? scene.firstContact : 0,
-    requested = /^#e(\d+)$/.exec(location.hash);
-  selection.goTo(events.at(requested ? Number(requested[1]) : first));
+  listenToKeys({ ...keysOf(timeline, table, selection, controls), ...keysOfTabs(tabs, listPicked) });
+  if (controls && events.passes) {
+    controls.colourBy("region");
+    view.opened = { ...view.now };
+  }
+  selection.goTo(events.at(Math.max(0, scene.firstContact)));
   if (view) view.frameAll(view.camera.from);
-  if (controls && events.passes) controls.colourBy("region");
+  const address = new PageAddress({ events, selection, view, controls, tabs });
+  if (location.hash.length > 1) address.read();
   if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events);
-  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls, loader };
+  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls, loader, strip, tabs, address };
 }
 
 /** Removes the elements about queries if a construction is shown, and vice versa. */
@@ -250,10 +266,7 @@ function openView(scene, selection, wrappers, why) {
     byId("no-view").textContent = reason;
     byId("no-view").hidden = false;
     const pictures = byId("frames");
-    if (pictures) {
-      pictures.open = true;
-      byId("no-view").after(pictures); // to the position of the view
-    }
+    if (pictures) byId("no-view").after(pictures); // to the position of the view
     return null;
   };
   const frames = data.frames.length ? " These frames show the run." : "";
@@ -265,20 +278,37 @@ function openView(scene, selection, wrappers, why) {
 }
 
 
-/** Links frames and charts to events, and vice versa; the address names the event. */
+/** Marks the events of the selected face or region on the charts. */
+function markAbout(events, selection) {
+  const { picked } = selection,
+    about = [];
+  for (let i = 0; picked && i < events.count; i++) if (concernsPicked(events, i, picked)) about.push(i);
+  moment.about = { event: about.map((i) => events.id(i)), step: [...new Set(about.map((i) => events.stepNumber(i)))] };
+  tell();
+}
+
+/** Links frames and charts to events, and vice versa. */
 function followPage(events, selection) {
-  let timer = 0;
   listeners.push(() => {
     if (moment.event >= 0 && events.at(moment.event) !== selection.event)
       selection.standAt(events.at(moment.event)); // set by a frame
-    clearTimeout(timer);
-    timer = setTimeout(() => history.replaceState(null, "", `#e${events.id(selection.event)}`), 300);
   });
   seek = (key, value) => {
     if (key === "event") return selection.goTo(events.at(Math.max(0, Math.round(value))));
     const step = Math.max(0, lastAtMost(events.stepNumbers, Math.round(value)));
     selection.goTo(events.endOfStep(step) - 1);
   };
+}
+
+function toggleHelp() {
+  const help = byId("help");
+  if (help.open) help.close();
+  else help.showModal();
+}
+
+function keysOfTabs(tabs, listPicked) {
+  const numbered = tabs.names.slice(0, 9).map((name, i) => [String(i + 1), () => tabs.show(name)]);
+  return { ...Object.fromEntries(numbered), t: () => tabs.toggleHeight(), l: listPicked };
 }
 
 function keysOf(timeline, table, selection, controls) {
@@ -294,14 +324,10 @@ function keysOf(timeline, table, selection, controls) {
     " ": () => timeline.toggle(),
     r: (shift) => timeline.go(() => timeline.toChange(shift ? -1 : 1)),
     c: (shift) => timeline.go(() => timeline.toContact(shift ? -1 : 1)),
-    "?": () => {
-      const help = byId("help");
-      if (help.open) help.close();
-      else help.showModal();
-    },
+    "?": toggleHelp,
     Escape: () => {
       selection.pick(null);
-      if (controls) controls.isolate(null);
+      if (controls && controls.view.now.isolate) controls.isolate(null);
     },
   };
   return controls ? { ...keys, ...controls.keys() } : keys;

@@ -152,17 +152,18 @@ function listenToKeys(actions) {
 }
 
 // ---- buttons and keys of the 3D view
-const EXPLODED = 0.6; // the value set by the key; the slider goes from 0 to 2
+const EXPLODE_BY = 0.1; // by which the key changes the slider, which goes from 0 to 1
 
 class ViewControls {
   constructor(view, selection) {
     Object.assign(this, { view, selection });
     this.listDepths();
+    for (const id of ["lids", "isolate"]) byId(id).hidden = Boolean(view.events.engine); // another engine has no wrappers
     const change = (id, action) => byId(id).addEventListener("input", () => action(byId(id)));
     change("colour-by", (e) => this.colourBy(e.value));
-    change("colour-per", (e) => view.look({ per: e.value }));
-    change("colour-scope", (e) => view.look({ scope: e.value }));
-    change("boxes", (e) => view.look({ boxes: Number(e.value) }));
+    change("colour-per", (e) => this.change({ per: e.value }));
+    change("colour-scope", (e) => this.change({ scope: e.value }));
+    change("boxes", (e) => this.change({ boxes: Number(e.value) }));
     change("explode", (e) => this.explode(Number(e.value)));
     byId("ghost").onclick = () => this.toggle("ghost");
     byId("lids").onclick = () => this.toggle("lids");
@@ -207,12 +208,15 @@ class ViewControls {
     byId("explode").value = now.explode;
     byId("boxes").value = now.boxes;
     byId("colour-by").value = now.by;
+    byId("colour-per").value = now.per;
+    byId("colour-scope").value = now.scope;
     for (const id of ["colour-per", "colour-scope"]) byId(id).hidden = !COUNTERS.includes(now.by);
   }
 
+  /** Changes the view's display state; listeners of the selection are notified. */
   change(what) {
     this.view.look(what);
-    this.show();
+    this.selection.tell("look");
   }
   toggle(name) {
     this.change({ [name]: !this.view.now[name] });
@@ -225,19 +229,29 @@ class ViewControls {
     this.change(was === is ? { by } : { by, ghost: is });
   }
   explode(share) {
-    this.change({ explode: share, isolate: null });
-    this.view.draw(); // the framed objects must exist
-    this.view.frameAll();
+    const { view } = this,
+      { fitted } = view.camera;
+    this.change({ explode: Math.max(0, Math.min(1, Number(share.toFixed(2)))), isolate: null });
+    view.draw(); // the framed objects must exist
+    if (fitted) view.frameAll();
   }
+  /** Shows a region alone and fills the view with it; null: everything again, from where it was seen before. */
   isolate(region) {
+    const { view } = this,
+      { now, camera } = view;
+    if (region && !now.isolate) this.seenFrom = { camera: camera.json(), fitted: camera.fitted };
+    const ends = !region && now.isolate;
     this.change({ isolate: region });
+    if (region) view.frame(view.collector(region));
+    else if (ends && this.seenFrom) {
+      camera.set(this.seenFrom.camera);
+      camera.fitted = this.seenFrom.fitted;
+    } else if (ends) view.frameAll();
   }
   isolatePicked() {
     const picked = this.selection.picked;
     if (this.view.now.isolate) return this.isolate(null);
-    if (!picked || picked.region === NONE) return;
-    this.isolate({ side: picked.side, region: picked.region });
-    this.view.frameSelection();
+    if (picked && picked.region !== NONE) this.isolate({ side: picked.side, region: picked.region });
   }
   orthographic() {
     this.view.camera.setOrthographic(!this.view.camera.orthographic);
@@ -276,10 +290,12 @@ class ViewControls {
       ...ofSolids,
       g: () => this.toggle("ghost"),
       w: () => this.toggle("lids"),
-      x: () => this.explode(view.now.explode > 0 ? 0 : EXPLODED),
+      x: (shift) => this.explode(view.now.explode + (shift ? -EXPLODE_BY : EXPLODE_BY)),
       i: () => this.isolatePicked(),
       n: (shift) => this.cycle("boxes", shift ? -1 : 1),
       k: (shift) => this.cycle("colour-by", shift ? -1 : 1),
+      j: () => this.cycle("colour-per", 1),
+      u: () => this.cycle("colour-scope", 1),
       f: (shift) => (shift ? view.frameAll() : view.frameSelection()),
       y: () => this.toggle("why"),
       "+": () => view.camera.zoom(1.2),

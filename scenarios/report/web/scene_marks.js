@@ -82,6 +82,7 @@ class Marks {
 }
 
 // ---- in the view: where two faces intersect, or what separates them; and what separates the bodies
+const PLANE = [0.5, 0.53, 0.57]; // seen on light and dark pages; no face has it
 class WhyMarks {
   /** `why`: the panel with the same explanation in words. */
   constructor(view, why) {
@@ -105,16 +106,19 @@ class WhyMarks {
 
   addPair({ meet, points }) {
     const { colours } = this.view;
-    this.addPath(points, points.length > 2, meet === 0 ? colours.selected : colours.underTest, 3);
+    // Under the line a wider white one: contacts are seen on intersecting faces, which have their colour.
+    const colour = meet === 0 ? colours.ink : colours.contact;
+    this.addPath(points, points.length > 2, WHITE, 6);
+    this.addPath(points, points.length > 2, colour, 3);
     const { radius } = this.view.ballOfFaces(this.view.comparedFaces());
     if (meet === 0 && this.view.events.dim === 3) this.addSquare(squareBetween(...points, radius));
     this.view.legend.also(
       meet === 0
         ? [
-            [colours.selected, "between the nearest points"],
-            [colours.refining, "plane that separates the faces"],
+            [colours.ink, "between the nearest points", WHITE],
+            [PLANE, "plane that separates the faces"],
           ]
-        : [[colours.underTest, "intersection"]],
+        : [[colours.contact, "intersection of the two faces", WHITE]],
       "why",
     );
   }
@@ -133,7 +137,7 @@ class WhyMarks {
       [
         ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "closest pair of disjoint boxes"]] : []),
         ...(square.length
-          ? [[colours.refining, plane ? "plane that separates the bodies" : "plane that separates these boxes"]]
+          ? [[PLANE, plane ? "plane that separates the bodies" : "plane that separates these boxes"]]
           : []),
       ],
       "why",
@@ -155,7 +159,7 @@ class WhyMarks {
   }
 
   addSquare(corners) {
-    const colour = this.view.colours.refining,
+    const colour = PLANE,
       geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(corners.flat()), 3));
     geometry.setIndex([0, 1, 2, 0, 2, 3]);
@@ -201,9 +205,9 @@ function squareBetween(p, q, half) {
 // near pairs and contact manifolds
 const MEASURED = [
   { colour: "ink", key: "between the nearest points of the bodies", width: 3.5, isArrow: false },
-  { colour: "separationVector", key: "B leaves A this way", width: 3.5, isArrow: true },
+  { colour: "ink", key: "B leaves A this way", width: 3.5, isArrow: true },
   { colour: "ink", key: "between the closest points of near pairs", width: 1.5, isArrow: false },
-  { colour: "separationVector", key: "normals of contacts, from A to B", width: 2.5, isArrow: true },
+  { colour: "ink", key: "normals of contacts, from A to B", width: 2.5, isArrow: true },
 ];
 
 class MeasuredMarks {
@@ -236,7 +240,7 @@ class MeasuredMarks {
       if (marks.length === 0) return;
       const lines = marks.flatMap(({ from, to }) => (isArrow ? arrowOf(from, to, events.dim) : [from, to]));
       this.addLines(lines, colours[colour], width);
-      key.push(colour === "ink" ? [colours.ink, text, WHITE] : [colours[colour], text]);
+      key.push([colours[colour], text, WHITE]);
     });
     legend.also(key, "measured");
   }
@@ -332,7 +336,7 @@ class Legend {
         `${name}, real faces${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
         key ? css(colours.edge(b.side)) : "",
       ]);
-      if (!key && now.by === "kind" && b.regionCount)
+      if (!key && now.by === "kind" && b.regionCount && !this.view.events?.engine)
         items.push([css(colours.lid(b.side)), `${name}, pseudo faces`, css(colours.edge(b.side))]);
     });
     if (now.by === "region")
@@ -341,7 +345,7 @@ class Legend {
     else
       items.push(
         [css(colours.contact), "intersecting faces", ""],
-        [css(colours.refining), "region being refined", ""],
+        ...(this.view.events.engine ? [] : [[css(colours.refining), "region being refined", ""]]),
         [css(colours.underTest), "pair under test", ""],
       );
     items.push([css(colours.selected), "selected", ""]);

@@ -9,6 +9,29 @@ function textButton(text, action, title = "") {
   return button;
 }
 
+/** What the terms of lists count or name; lists give titles of their own to others. */
+const TERMS = {
+  kind: "sort of the event",
+  what: "elements that the event concerns",
+  result: "outcome of the event",
+  cause: "event that led to it",
+  wrapper: "visible faces of each wrapper after the event",
+  front: "faces of the surface under construction after the event",
+  sort: "real faces are the body's own; pseudo faces hide detail",
+  "behind it": "region behind the face, or the body",
+  "in front": "region that hides the face, or the outside",
+  region: "region that the face belongs to",
+  parent: "region that hides this one",
+  "bounding boxes": "gap or overlap of the boxes at the roots of both trees",
+  "pairs of nodes": "pairs of tree nodes that the query visited",
+  "pairs of faces": "pairs of faces whose boxes were compared",
+  "nearest boxes": "the two boxes found disjoint that are closest to each other",
+  plane: "plane with one body on each side; the gap is a lower bound of the distance",
+  "nearest faces": "the pair of compared faces that is closest",
+  distance: "between the two faces, in mesh units of the page's frame",
+  contact: "common points of the two faces, world frame",
+};
+
 /** Fills a list of terms: [[term, value or element, title of the term]]. */
 function fillList(list, rows) {
   list.replaceChildren(
@@ -16,7 +39,8 @@ function fillList(list, rows) {
       const dt = document.createElement("dt"),
         dd = document.createElement("dd");
       dt.textContent = term;
-      if (title) dt.title = title;
+      const meaning = title || TERMS[term];
+      if (meaning) dt.title = dd.title = meaning;
       dd.append(value);
       return [dt, dd];
     }),
@@ -153,15 +177,26 @@ class EventFilter {
 
   /** Returns true if an event changes the region, or compares one of its faces. */
   concernsRegion(events, i) {
-    const { side, region } = this;
-    if (events.regions(i).some((r) => r.region === region && (side < 0 || r.side === side))) return true;
-    return events.faces(i).some((f) => {
-      const body = events.bodies[f.side];
-      return (
-        (side < 0 || f.side === side) && (body.inner[f.face] === region || body.outer[f.face] === region)
-      );
-    });
+    return concernsRegion(events, i, this.side, this.region);
   }
+}
+
+/** Returns true if an event changes a region, or compares one of its faces. `side`: -1: of any body. */
+function concernsRegion(events, i, side, region) {
+  if (events.regions(i).some((r) => r.region === region && (side < 0 || r.side === side))) return true;
+  return events.faces(i).some((f) => {
+    const body = events.bodies[f.side];
+    return (
+      (side < 0 || f.side === side) && (body.inner[f.face] === region || body.outer[f.face] === region)
+    );
+  });
+}
+
+/** Returns true if an event concerns the selected face or region. */
+function concernsPicked(events, i, picked) {
+  if (!picked) return false;
+  if (picked.face === NONE) return concernsRegion(events, i, picked.side, picked.region);
+  return events.faces(i).some((f) => f.side === picked.side && f.face === picked.face);
 }
 
 // ---- the events as a table. The document has only the visible rows, so that a million is as fast as ten.
@@ -188,6 +223,7 @@ class EventTable {
     });
     selection.listeners.push((what) => {
       if (what === "event") this.follow();
+      if (what === "pick") this.draw();
     });
     new ResizeObserver(() => this.resize()).observe(this.box);
     this.refilter();
@@ -268,6 +304,7 @@ class EventTable {
     line.setAttribute("role", "row");
     line.setAttribute("aria-rowindex", row + 1);
     line.setAttribute("aria-selected", i === this.selection.event);
+    line.classList.toggle("concerned", concernsPicked(events, i, this.selection.picked));
     line.dataset.event = i;
     const cause = events.cause[i];
     const cells = [
@@ -367,7 +404,11 @@ class Panel {
     this.selection = selection;
     this.wrappers = wrappers;
     this.filterBy = () => {}; // called with a face or region, to list its events
-    selection.listeners.push((what) => (what === "event" ? this.showEvent() : this.showPicked()));
+    selection.listeners.push((what) => {
+      if (what === "event") this.showEvent();
+      if (what === "pick") this.showPicked();
+    });
+    byId("picked-none").onclick = () => selection.pick(null);
   }
 
   name(side) {
@@ -434,8 +475,8 @@ class Panel {
   showPicked() {
     const picked = this.selection.picked;
     byId("picked").hidden = !picked;
-    byId("nothing-picked").hidden = Boolean(picked);
     if (!picked) return;
+    document.querySelector(".panel").scrollTop = 0;
     const body = this.bodies[picked.side],
       hasFace = picked.face !== NONE;
     const name = hasFace ? body.faceText(picked.face) : `region ${digits(picked.region)}`;
@@ -513,7 +554,10 @@ class WhyPanel {
     this.row = -1; // of the path, whose boxes the view shows
     byId("why-copy").onclick = () => this.copy();
     byId("why-way").addEventListener("click", (e) => this.point(e.target.closest("[data-row]")));
-    if (!explanations.none) selection.listeners.push(() => this.show());
+    if (!explanations.none)
+      selection.listeners.push((what) => {
+        if (what !== "look") this.show();
+      });
   }
 
   tell() {
@@ -839,14 +883,13 @@ class WorkIcicle {
     svg.setAttribute("role", "group");
     svg.setAttribute("aria-label", "Parts of the query by their work");
     const all = this.outcomes.reduce((n, o) => n + o[measure], 0);
-    const phases = [...new Set(this.outcomes.map((o) => o.phase))];
     rows.forEach((row, depth) => {
       for (const part of row) {
         if (!(part.value > 0)) continue;
         const x = (part.from / shown) * width,
           w = Math.max(1.5, (part.value / shown) * width - gap);
-        const phase = phases.indexOf(this.outcomes[part.parts[0]].phase),
-          colour = depth === 0 ? "" : `var(--s${phase % 7})`;
+        const first = this.outcomes[part.parts[0]],
+          colour = depth === 2 || (depth === 1 && !first.outcome) ? workSort(first).colour : "";
         svg.append(this.part(depth === 0 ? { ...part, value: all } : part, all, { x, y: depth * (height + gap), w, height, colour, depth }));
       }
     });
@@ -864,11 +907,12 @@ class WorkIcicle {
       events = part.parts.reduce((n, i) => n + this.outcomes[i].events, 0),
       micros = byId("work-measure").value === "micros",
       amount = micros ? `${short(part.value)} \u00b5s` : plural(part.value, "operation");
-    title.textContent = `${part.name}: ${amount}, ${share}; ${plural(events, "event")}`;
+    const recorded = events ? plural(events, "event") : "no events: record the run with --events nodes";
+    title.textContent = `${part.name}: ${amount}, ${share}; ${recorded}`;
     for (const [name, value] of Object.entries({ x, y, width: w, height, rx: 3 }))
       rect.setAttribute(name, value);
     if (colour) rect.style.fill = colour;
-    rect.style.fillOpacity = depth === 2 ? 0.18 : 0.38;
+    rect.style.fillOpacity = colour ? 0.5 : 0.25;
     text.setAttribute("x", x + 7);
     text.setAttribute("y", y + height / 2);
     const fits = (words) => 7.2 * words.length + 14 <= w;
@@ -909,48 +953,52 @@ class WorkIcicle {
   }
 }
 
-// ---- rows of the page's tables link to regions and time steps, and show which of them is selected
+// ---- rows of the page's tables link to regions, time steps, pairs and boxes, and show which of them is selected
 class RowLinks {
-  constructor(events, selection) {
-    Object.assign(this, { events, selection, rows: [] });
-    for (const table of document.querySelectorAll("table[data-rows]")) this.take(table);
+  /** `controls`: of the view; null: there is none. */
+  constructor(events, selection, controls) {
+    Object.assign(this, { events, selection, controls, rows: [] });
+    for (const row of document.querySelectorAll("tr[data-to]")) this.take(row);
     selection.listeners.push(() => this.mark());
     this.mark();
   }
 
-  take(table) {
-    const [sort, side] = table.dataset.rows.split(" ");
-    if (sort === "region" && !this.events.bodies[side].complete) return;
-    for (const row of table.tBodies[0].rows) {
-      const text = row.cells[0].textContent;
-      if (!/^[\d\u202f]+$/.test(text)) continue; // sums of others
-      const link = { row, sort, side: Number(side), number: Number(text.replaceAll("\u202f", "")) };
-      row.className = "leads";
-      row.tabIndex = 0;
-      row.addEventListener("click", () => this.follow(link));
-      row.addEventListener("keydown", (e) => {
-        if (e.key !== "Enter") return;
-        e.preventDefault();
-        this.follow(link);
-      });
-      this.rows.push(link);
-    }
+  take(row) {
+    const [sort, ...numbers] = row.dataset.to.split(" "),
+      link = { row, sort, numbers: numbers.map(Number) };
+    if (sort === "region" && !this.events.bodies[link.numbers[0]].complete) return;
+    if (sort === "boxes" && !this.controls) return;
+    row.className = "leads";
+    row.tabIndex = 0;
+    row.addEventListener("click", () => this.follow(link));
+    row.addEventListener("keydown", (e) => {
+      if (e.key !== "Enter") return;
+      e.preventDefault();
+      this.follow(link);
+    });
+    this.rows.push(link);
   }
 
-  follow({ sort, side, number }) {
-    if (sort === "region") this.selection.pickRegion(side, number);
-    else seek("step", number);
+  follow({ sort, numbers }) {
+    if (sort === "region") this.selection.pickRegion(...numbers);
+    else if (sort === "boxes") this.controls.change({ boxes: numbers[0] });
+    else seek("step", numbers[0]);
+    if (sort === "pair") this.selection.choose(numbers.slice(1));
     byId("stage").scrollIntoView({ block: "nearest" });
   }
 
+  isCurrent({ sort, numbers }) {
+    const { picked, chosen, event } = this.selection;
+    if (sort === "region") return picked && picked.side === numbers[0] && picked.region === numbers[1];
+    if (sort === "boxes") return this.controls.view.now.boxes === numbers[0];
+    if (this.events.stepNumber(event) !== numbers[0]) return false;
+    return sort === "step" || chosen.every((s, side) => s === numbers[side + 1]);
+  }
+
   mark() {
-    const { picked, event } = this.selection,
-      step = this.events.stepNumber(event);
-    for (const { row, sort, side, number } of this.rows) {
-      const is =
-        sort === "region" ? picked && picked.side === side && picked.region === number : step === number;
-      if (is) row.setAttribute("aria-current", "true");
-      else row.removeAttribute("aria-current");
+    for (const link of this.rows) {
+      if (this.isCurrent(link)) link.row.setAttribute("aria-current", "true");
+      else link.row.removeAttribute("aria-current");
     }
   }
 }

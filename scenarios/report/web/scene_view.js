@@ -144,6 +144,7 @@ class SceneCamera {
   /** Rotates about the target, in radians. */
   turn(azimuth, elevation) {
     if (this.plane) return;
+    this.fitted = false;
     const upright = new THREE.Quaternion().setFromUnitVectors(this.up, new THREE.Vector3(0, 1, 0));
     const s = new THREE.Spherical().setFromVector3(
       this.camera.position.clone().sub(this.controls.target).applyQuaternion(upright),
@@ -357,6 +358,7 @@ class SceneView extends BodiesCanvas {
       scope: "run",
       why: true,
     };
+    this.opened = { ...this.now };
     this.whyMarks = new WhyMarks(this, why);
     this.measured = new MeasuredMarks(this, scene.measured);
     this.keys = {};
@@ -611,9 +613,14 @@ class SceneView extends BodiesCanvas {
       : compared.length
         ? compared
         : this.events.regions(event).flatMap((r) => this.collector(r));
+    this.frame(faces);
+  }
+
+  /** Fills the view with faces; with everything if there are none. */
+  frame(faces) {
     if (!faces.length) return this.frameAll();
     const ball = this.ballOfFaces(faces);
-    this.camera.lookAt(ball.centre, Math.max(ball.radius * 2.2, 0.02 * this.reach().radius));
+    this.camera.lookAt(ball.centre, Math.max(ball.radius * (this.now.isolate ? 1.2 : 2.2), 0.02 * this.reach().radius));
     this.redraw();
   }
 

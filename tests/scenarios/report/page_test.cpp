@@ -78,6 +78,27 @@ TEST_CASE("a page with a run's data contains the 3D view without external files"
   CHECK(count(html, "<script") == count(html, "</script>"));
 }
 
+TEST_CASE("parts of a run's page are in tabs, rows name what they lead to, and numbers say what they count") {
+  report::Document doc("t");
+  doc.explain([](std::string_view name) {
+    return name == "pairs" ? std::string_view("pairs of \"faces\"") : std::string_view();
+  });
+  doc.summary("A < B").number({"pairs", "12"}).scene("{}").tab("Charts");
+  doc.chart({"chart", {"event"}, {"y"}, {{"s", {0, 1}, {3, 4}}}}).tab("Steps");
+  report::Table table{"steps", {"step", "pairs"}, {{"3", "4"}, {"all", "5"}}};
+  table.targets = {"step 3"};
+  const std::string html = doc.table(table).tab("").command("lrbscope run x").html();
+  for (const char* part :
+       {"<p class=\"lead\">A &lt; B</p>", "<div class=\"tab\" data-tab=\"Answer\">\n<dl class=\"numbers\">",
+        "<div class=\"tab\" data-tab=\"Charts\">\n<section class=\"charts\">",
+        "</section>\n</div>\n<div class=\"tab\" data-tab=\"Steps\">", "<tr data-to=\"step 3\">",
+        "<div title=\"pairs of &quot;faces&quot;\"><dt>pairs",
+        "title=\"pairs of &quot;faces&quot;\">pairs</th>",
+        "<div class=\"tab\" data-tab=\"Run\">\n<section><h2>Made by"})
+    CHECK_MESSAGE(count(html, part) == 1, part);
+  CHECK(count(html, "data-to=") == 1);
+}
+
 TEST_CASE("every script of the view is in the page once") {
   const std::string html = report::Document("t").scene("{}").html();
   for (const io::EmbeddedFile& file : io::embedded_files())

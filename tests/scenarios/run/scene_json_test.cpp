@@ -219,9 +219,28 @@ TEST_CASE("page data of a run has the outcome of each event") {
   CHECK(expected.count(std::string(name_of(NodeStep::leaves))) == 1);
 }
 
-TEST_CASE("page data of a run has no chart of the work without recorded node pairs") {
+TEST_CASE("without recorded node pairs, page data takes tests of boxes and planes from the counters") {
   const run::Recording r = rocks_that_meet();
-  CHECK(json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["work"].is_null());
+  const json scene = json::parse(run::scene_json(run_of(r), {"trace.json", ""}));
+  const json& work = scene["work"];
+  Counters all;
+  for (const trace::Step& step : r.trace.steps) {
+    all.box_tests += step.result.counters.box_tests;
+    all.prefilter_tests += step.result.counters.prefilter_tests;
+    all.face_tests += step.result.counters.face_tests;
+  }
+  std::map<std::string, std::uint64_t> operations, events;
+  for (const json& part : work["outcomes"]) {
+    operations[part["outcome"]] = part["operations"];
+    events[part["outcome"]] = part["events"];
+  }
+  CHECK(all.box_tests > 0);
+  CHECK(operations["boxes"] == all.box_tests);
+  CHECK(operations["planes of faces"] == all.prefilter_tests);
+  CHECK(operations["face tests"] == all.face_tests);
+  CHECK(events["boxes"] == 0);
+  CHECK(events["face tests"] == all.face_tests);
+  CHECK(work["timed"] == false);
 }
 
 TEST_CASE("page data of a run explains each pair of a step once, and each step without pairs") {

@@ -1,0 +1,384 @@
+// ---- the parts of the page of a run around its view: tabs, signs of scrolling, the picture of the cost, the address
+const TAB_ORDER = ["Not as expected", "Answer", "Events", "Work", "Steps", "Queries", "Charts"], // then all others
+  LAST_TABS = ["Frames", "Words", "Run"];
+
+/** Fades the edges of a box beyond which it can be scrolled. */
+function showMore(box) {
+  box.classList.add("scrolls");
+  const mark = () => {
+    const slack = 1;
+    box.classList.toggle("more-left", box.scrollLeft > slack);
+    box.classList.toggle("more-right", box.scrollLeft + box.clientWidth < box.scrollWidth - slack);
+    box.classList.toggle("more-below", box.scrollTop + box.clientHeight < box.scrollHeight - slack);
+  };
+  box.addEventListener("scroll", mark, { passive: true });
+  const watch = new ResizeObserver(() => requestAnimationFrame(mark));
+  for (const part of [box, ...box.children]) watch.observe(part);
+  return mark;
+}
+
+/** The parts of the page below the view, one at a time. Without scripts, and in print, they follow each other. */
+class Tabs {
+  constructor() {
+    const groups = new Map();
+    for (const part of document.querySelectorAll(".tab")) {
+      const { tab } = part.dataset;
+      groups.set(tab, [...(groups.get(tab) || []), part]);
+    }
+    const place = (name) => {
+      const first = TAB_ORDER.indexOf(name),
+        last = LAST_TABS.indexOf(name);
+      return first >= 0 ? first : last >= 0 ? 1000 + last : TAB_ORDER.length;
+    };
+    this.names = [...groups.keys()]
+      .filter((name) => groups.get(name).some((part) => [...part.children].some((child) => !child.hidden)))
+      .sort((p, q) => place(p) - place(q));
+    for (const [name, parts] of groups) if (!this.names.includes(name)) for (const part of parts) part.remove();
+    this.listeners = [];
+    this.bar = document.createElement("div");
+    this.bar.className = "tab-bar";
+    this.bar.setAttribute("role", "tablist");
+    this.body = document.createElement("div");
+    this.body.className = "tab-body";
+    this.buttons = new Map();
+    this.panels = new Map();
+    this.names.forEach((name, i) => this.add(name, groups.get(name), i));
+    const section = document.createElement("section"),
+      head = document.createElement("div");
+    this.taller = textButton("taller", () => this.toggleHeight(), "Tables and charts higher, view lower (T)");
+    section.className = "tabs";
+    head.className = "tab-head";
+    this.taller.classList.add("taller");
+    head.append(this.bar, this.taller);
+    section.append(head, this.body);
+    byId("scene").append(section);
+    this.panels.get("Run")?.append(document.querySelector("footer"));
+    document.documentElement.classList.add("instrument");
+    this.bar.addEventListener("keydown", (e) => {
+      const way = { ArrowLeft: -1, ArrowRight: 1 }[e.key];
+      if (!way) return;
+      e.preventDefault();
+      e.stopPropagation();
+      this.show(this.names[(this.names.indexOf(this.shown) + way + this.names.length) % this.names.length]);
+      this.buttons.get(this.shown).focus();
+    });
+    this.marks = [this.bar, this.body, ...this.body.querySelectorAll(".scroll, .charts, .event-rows")].map(showMore);
+    if (byId("frames")) byId("frames").open = true;
+    this.show(this.names[0]);
+  }
+
+  add(name, parts, i) {
+    const button = document.createElement("button"),
+      panel = document.createElement("div");
+    button.type = "button";
+    button.id = `tab-${i}`;
+    button.setAttribute("role", "tab");
+    button.textContent = name;
+    button.title = i < 9 ? `Key ${i + 1}` : "";
+    button.onclick = () => this.show(name);
+    panel.className = "tab-panel";
+    panel.setAttribute("role", "tabpanel");
+    panel.setAttribute("aria-labelledby", button.id);
+    panel.append(...parts);
+    this.bar.append(button);
+    this.body.append(panel);
+    this.buttons.set(name, button);
+    this.panels.set(name, panel);
+  }
+
+  has(name) {
+    return this.panels.has(name);
+  }
+  show(name) {
+    if (!this.has(name)) return;
+    this.shown = name;
+    for (const [other, button] of this.buttons) {
+      const is = other === name;
+      button.setAttribute("aria-selected", is);
+      button.tabIndex = is ? 0 : -1;
+      this.panels.get(other).hidden = !is;
+    }
+    this.body.scrollTop = this.body.scrollLeft = 0;
+    const { bar } = this,
+      button = this.buttons.get(name);
+    if (button.offsetLeft < bar.scrollLeft || button.offsetLeft + button.offsetWidth > bar.scrollLeft + bar.clientWidth)
+      bar.scrollLeft = button.offsetLeft - 24;
+    for (const mark of this.marks || []) mark();
+    for (const listener of this.listeners) listener();
+  }
+
+  get tall() {
+    return byId("scene").classList.contains("tall");
+  }
+  toggleHeight() {
+    byId("scene").classList.toggle("tall");
+    this.taller.textContent = this.tall ? "lower" : "taller";
+    for (const listener of this.listeners) listener();
+  }
+}
+
+/** The tooltip of a number in a table: its row and column, and the meaning of the column. */
+function explainCells() {
+  document.addEventListener("pointerover", (e) => {
+    const cell = e.target.closest && e.target.closest("td");
+    if (!cell || cell.title || cell.closest(".why")) return;
+    const row = cell.parentElement,
+      head = row.closest("table").tHead?.rows[0].cells[cell.cellIndex];
+    if (!head) return;
+    const meaning = head.title ? `: ${head.title}` : "",
+      first = cell.cellIndex > 0 ? `, ${row.closest("table").tHead.rows[0].cells[0].textContent} ${row.cells[0].textContent}` : "";
+    cell.title = `${head.textContent}${first}${meaning}`;
+  });
+}
+
+/** Puts the view into print as it is on the screen. */
+function printView(view) {
+  const picture = new Image();
+  picture.className = "printed";
+  picture.alt = "";
+  byId("view-canvas").after(picture);
+  window.addEventListener("beforeprint", () => {
+    view.draw(); // the drawing buffer keeps its content until this task ends
+    picture.src = view.canvas.toDataURL();
+  });
+}
+
+// ---- the sorts of work, as the picture at the top and the icicle colour them
+const WORK_SORTS = [
+  { name: "boxes", of: /^boxes( of nodes)?$/, colour: "var(--work-boxes)" },
+  { name: "boxes and planes of faces", of: /planes/, colour: "var(--work-planes)" },
+  { name: "face tests", of: /^face tests/, colour: "var(--work-tests)" },
+  { name: "refinements", of: /^wrappers refined/, colour: "var(--work-refined)" },
+  { name: "others", of: /./, colour: "var(--work-others)" },
+];
+/** Returns the sort of a part of the work. */
+const workSort = ({ phase, outcome }) => WORK_SORTS.find((s) => s.of.test(outcome || phase));
+
+// ---- at the top: what each step cost, and when the bodies meet; of a single body, how many faces it shows
+class CostStrip {
+  constructor(scene, events, selection, ofStep) {
+    Object.assign(this, { events, selection });
+    this.bars = scene.work && !events.passes ? this.barsOfSteps(ofStep) : this.barsOfFaces();
+    if (!this.bars.length) return;
+    this.box = document.createElement("div");
+    this.box.className = "strip";
+    document.querySelector("header").append(this.box);
+    this.contactStep = scene.firstContact >= 0 ? this.bars.findIndex((b) => b.step === events.stepNumber(events.at(scene.firstContact))) : -1;
+    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.box);
+    selection.listeners.push((what) => {
+      if (what === "event") this.mark();
+    });
+  }
+
+  /** A bar for each step, divided by sorts of work. */
+  barsOfSteps(ofStep) {
+    this.title = "operations in each step";
+    const [all] = ofStep.values();
+    this.sorts = WORK_SORTS.map((sort) => {
+      const names = [...new Set(all.filter((o) => workSort(o) === sort).map((o) => o.outcome || o.phase))];
+      return names.length === 1 ? { ...sort, name: names[0] } : sort;
+    });
+    return [...ofStep].map(([step, outcomes]) => {
+      const values = WORK_SORTS.map((sort) =>
+        outcomes.reduce((n, o) => n + (workSort(o) === sort ? o.operations : 0), 0),
+      );
+      return { step, values, words: `step ${digits(step)}`, go: () => seek("step", step) };
+    });
+  }
+
+  /** A bar for each pass of a construction, or each refinement. */
+  barsOfFaces() {
+    const { events } = this,
+      ends = [...events.kind.keys()].filter((i) =>
+        events.passes ? events.kind[i] === events.PASS_END : events.changesWrapper(i),
+      );
+    this.title = events.passes ? "faces of the front after each pass" : "faces of the wrapper after each refinement";
+    this.sorts = [{ name: "faces", colour: "var(--work-boxes)" }];
+    return events.bodies.length > 1
+      ? []
+      : ends.map((i) => ({
+          event: i,
+          values: [events.boundary[i]],
+          words: eventText(events, i),
+          go: () => this.selection.goTo(i),
+        }));
+  }
+
+  draw() {
+    const { bars, sorts, box } = this,
+      width = Math.max(200, box.clientWidth);
+    if (width === this.width) return;
+    this.width = width;
+    const height = 46,
+      sum = (b) => b.values.reduce((n, v) => n + v, 0),
+      most = Math.max(1, ...bars.map(sum)),
+      svg = document.createElementNS(SVG, "svg"),
+      step = width / bars.length;
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    svg.setAttribute("role", "img");
+    svg.setAttribute("aria-label", `${this.title}; a click selects one`);
+    const make = (name, parent, attributes) => {
+      const part = document.createElementNS(SVG, name);
+      for (const [key, value] of Object.entries(attributes)) part.setAttribute(key, value);
+      parent.append(part);
+      return part;
+    };
+    bars.forEach((bar, i) => {
+      const group = make("g", svg, { class: "bar" }),
+        gap = step > 4 ? Math.min(2, step / 5) : 0;
+      make("title", group, {}).textContent =
+        `${bar.words}: ` +
+        sorts
+          .map((s, k) => (bar.values[k] ? `${digits(bar.values[k])} ${s.name}` : ""))
+          .filter(Boolean)
+          .join(", ");
+      make("rect", group, { x: i * step, y: 0, width: step, height, class: "hit" });
+      let top = height;
+      bar.values.forEach((value, k) => {
+        const h = (value / most) * (height - 4);
+        top -= h;
+        if (h > 0) make("rect", group, { x: i * step, y: top, width: step - gap, height: h }).style.fill = sorts[k].colour;
+      });
+      group.addEventListener("click", bar.go);
+    });
+    if (this.contactStep > 0)
+      make("line", svg, { x1: this.contactStep * step, x2: this.contactStep * step, y1: 0, y2: height, class: "contact" });
+    this.cursor = make("rect", svg, { y: 1, height: height - 2, width: Math.max(3, step), class: "cursor" });
+    const words = document.createElement("p");
+    words.append(`${this.title}, up to ${digits(most)}: `);
+    sorts.forEach((s, k) => {
+      if (!bars.some((b) => b.values[k] > 0)) return;
+      const key = document.createElement("span"),
+        dot = document.createElement("i");
+      dot.style.background = s.colour;
+      key.append(dot, s.name);
+      words.append(key);
+    });
+    if (this.contactStep > 0) {
+      const key = document.createElement("span"),
+        dot = document.createElement("i");
+      dot.className = "contact";
+      key.append(dot, "first contact");
+      words.append(key);
+    }
+    box.replaceChildren(svg, words);
+    this.mark();
+  }
+
+  mark() {
+    if (!this.cursor) return;
+    const { events, selection, bars } = this,
+      at = bars[0].step === undefined
+          ? lastAtMost(bars.map((b) => b.event), selection.event)
+          : bars.findIndex((b) => b.step === events.stepNumber(selection.event));
+    this.cursor.style.visibility = at < 0 ? "hidden" : "";
+    this.cursor.setAttribute("x", at < 0 ? 0 : (at * Math.max(200, this.box.clientWidth)) / bars.length);
+  }
+}
+
+// ---- the state of the page in its address, so that a view can be linked:
+// #e59&tab=Charts&pick=A.face.12&camera=perspective,EYE,TARGET&show=ghost,boxes:3
+class PageAddress {
+  constructor({ events, selection, view, controls, tabs }) {
+    Object.assign(this, { events, selection, view, controls, tabs });
+    this.timer = 0;
+    selection.listeners.push(() => this.later());
+    tabs.listeners.push(() => this.later());
+    if (view) view.camera.controls.addEventListener("change", () => this.later());
+    window.addEventListener("hashchange", () => this.read());
+  }
+
+  /** Writes the state once nothing has changed for a moment. */
+  later() {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => history.replaceState(null, "", `#${this.text()}`), 300);
+  }
+
+  text() {
+    const { events, selection, view, tabs } = this,
+      parts = [`e${events.id(selection.event)}`],
+      { picked, chosen } = selection;
+    if (tabs.shown !== tabs.names[0]) parts.push(`tab=${encodeURIComponent(tabs.shown)}`);
+    if (picked)
+      parts.push(`pick=${SIDES[picked.side]}.${picked.face !== NONE ? `face.${picked.face}` : `region.${picked.region}`}`);
+    if (chosen.every((s) => s !== NONE)) parts.push(`pair=${chosen.join(",")}`);
+    if (view && !view.camera.fitted) {
+      const { projection, eye, target } = view.camera.json();
+      parts.push(`camera=${projection},${[...eye, ...target].map((x) => Number(x.toPrecision(6))).join(",")}`);
+    }
+    const show = view ? this.layers() : [];
+    if (tabs.tall) show.push("tall");
+    if (show.length) parts.push(`show=${show.join(",")}`);
+    return parts.join("&");
+  }
+
+  /** Returns what differs from the view as it opens. */
+  layers() {
+    const { now, opened, camera } = this.view,
+      out = [];
+    for (const name of Object.keys(opened)) {
+      if (now[name] === opened[name]) continue;
+      if (name === "isolate") out.push(`isolate:${SIDES[now.isolate.side]}.${now.isolate.region}`);
+      else out.push(typeof now[name] === "boolean" ? `${now[name] ? "" : "no-"}${name}` : `${name}:${now[name]}`);
+    }
+    if (camera.fitted && camera.orthographic && !camera.plane) out.push("orthographic");
+    return out;
+  }
+
+  /** Takes the state from the address. Unknown parts are ignored. Returns true if it has an event. */
+  read() {
+    const { events, selection, view, controls, tabs } = this,
+      [first, ...rest] = location.hash.slice(1).split("&"),
+      value = Object.fromEntries(rest.map((part) => part.split("=").map(decodeURIComponent))),
+      event = /^e(\d+)$/.exec(first);
+    if (event) selection.goTo(events.at(Number(event[1])));
+    if (value.tab) tabs.show(value.tab);
+    const pick = /^([AB])\.(face|region)\.(\d+)$/.exec(value.pick || "");
+    if (pick) this.pick(SIDES.indexOf(pick[1]), pick[2], Number(pick[3]));
+    const pair = (value.pair || "").split(",").map(Number);
+    if (pair.length === 2 && this.exist(pair)) selection.choose(pair);
+    const show = (value.show || "").split(",").filter(Boolean);
+    if (show.includes("tall") !== tabs.tall) tabs.toggleHeight();
+    if (view) this.show(show, controls);
+    if (view && value.camera) this.look(value.camera.split(","));
+    return Boolean(event);
+  }
+
+  exist(pair) {
+    return pair.every((s, side) => {
+      const body = this.events.bodies[side];
+      return body && body.complete && s < body.firstSimplex.at(-1);
+    });
+  }
+
+  pick(side, sort, number) {
+    const body = this.events.bodies[side];
+    if (!body || !body.complete) return;
+    if (sort === "face" && number < body.faceCount) this.selection.pickFace(side, number);
+    if (sort === "region" && number < body.regionCount) this.selection.pickRegion(side, number);
+  }
+
+  show(words, controls) {
+    const change = { ...this.view.opened };
+    for (const word of words) {
+      const [name, text] = word.split(":"),
+        plain = name.replace(/^no-/, "");
+      const isolate = /^([AB])\.(\d+)$/.exec(text || "");
+      if (name === "isolate" && isolate) change.isolate = { side: SIDES.indexOf(isolate[1]), region: Number(isolate[2]) };
+      else if (typeof change[plain] === "boolean") change[plain] = plain === name;
+      else if (typeof change[name] === "number" && Number.isFinite(Number(text))) change[name] = Number(text);
+      else if (typeof change[name] === "string" && text) change[name] = text;
+    }
+    const body = change.isolate && this.events.bodies[change.isolate.side];
+    if (change.isolate && !(body && change.isolate.region < body.regionCount)) change.isolate = null;
+    controls.change(change);
+    if (words.includes("orthographic") && !this.view.camera.orthographic) controls.orthographic();
+  }
+
+  look([projection, ...numbers]) {
+    const values = numbers.map(Number);
+    if (values.length !== 6 || !values.every(Number.isFinite)) return;
+    this.view.camera.set({ projection, eye: values.slice(0, 3), target: values.slice(3) });
+    this.view.redraw();
+  }
+}
