@@ -1,6 +1,7 @@
 #include "scenarios/run/run_page.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "render/page_palette.hpp"
 #include "render/pictures/marks.hpp"
@@ -118,7 +119,7 @@ std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace:
 
 std::string body_text(const RecordedRun& p, std::size_t side) {
   const LrbRep& rep = *p.reps[side];
-  const std::string& name = p.trace->header.bodies[side].name;
+  const std::string name = std::filesystem::path(p.trace->header.bodies[side].name).stem().string();
   return std::string(p.reps.size() == 1 ? ""
                      : side == 0        ? "A, "
                                         : "B, ") +

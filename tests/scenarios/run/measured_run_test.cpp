@@ -108,7 +108,7 @@ TEST_CASE("measured runs: only their pages have the numbers, columns and charts"
   CHECK_FALSE(number(page, "Penetration depth").empty());
   CHECK(number(plain, "Distance").empty());
   for (const char* part :
-       {">distance</th>", "<th>contact kind</th>", "<h2>Distance and depth by step</h2>",
+       {">distance</th>", ">contact kind</th>", "<h2>Distance and depth by step</h2>",
         "<h2>Convergence of the distance bounds, step ", "<h2>Convergence of the depth bounds, step "}) {
     CHECK_MESSAGE(count(page, part) == 1, std::string(part));
     CHECK_MESSAGE(count(plain, part) == 0, std::string(part));
