@@ -598,14 +598,13 @@ void contact_manifolds_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b
   NearPairsRequest pairs;
   pairs.within = request.margin;
   pairs.max_pairs = request.max_pairs > 0 ? request.max_pairs : kMaxPairsWithContacts;
-  near_pairs_into(a, pose_a, b, pose_b, pairs, workers, query, near, context.near);
+  near_pairs_into(a, pose_a, b, pose_b, pairs, workers, near, context.near);
   result.pairs = context.near.pairs;
   result.manifolds.clear();
   result.pose[0] = pose_a;
   result.pose[1] = pose_b;
   double reach = 0;
   if (!result.pairs.empty()) {
-    // The search may have used copies of the bodies.
     query.body[0].world.begin(a, pose_a);
     query.body[1].world.begin(b, pose_b);
     for (QueryBody& body : query.body) body.query_body();

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <tuple>
 
 #include "engine/collide/candidate_cache.hpp"
 #include "engine/collide/tree_query.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/distance/near_kernel.hpp"
 #include "engine/distance/near_pairs_context.hpp"
-#include "engine/distance/pair_bounds.hpp"
 #include "engine/exact/pair_distance.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/error.hpp>
@@ -25,7 +26,7 @@ namespace {
 constexpr double kMaxDefect = 0x1p-6;
 /// Capacity of the kernel's buffer, number of candidates that are found before they are measured, which
 /// bounds the memory, and number that one thread measures at a time.
-constexpr std::size_t kBuffered = 4096, kCandidatesAtOnce = 1U << 22, kCandidatesOfChunk = 512;
+constexpr std::size_t kBuffered = 512, kCandidatesAtOnce = 1U << 22, kCandidatesOfChunk = 512;
 
 /// Returns the body with its world coordinates as the coordinates of its vertices.
 LrbRep in_world(const LrbRep& rep, const Pose& pose) {
@@ -39,62 +40,107 @@ LrbRep in_world(const LrbRep& rep, const Pose& pose) {
 /// Measures pairs; one for each thread.
 class PairMeter {
  public:
-  PairMeter(WorldVertices& a, WorldVertices& b, double within)
-      : dim_(a.rep().dim()), within_(within), world_{&a, &b} {}
+  PairMeter(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, double within)
+      : rep_{&a, &b}, pose_{&pose_a, &pose_b} {
+    kernel_.within = within;
+    const int dim = a.dim();
+    for (int side = 0; side < 2; ++side)
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+          kernel_.r[side][row][column] = row < dim ? pose_[side]->r(row, column) : 0;
+        kernel_.t[side][row] = row < dim ? pose_[side]->t[row] : 0;
+      }
+  }
 
-  /// Writes the pair to `out`. Returns false if its distance exceeds `within`.
-  bool measure(SimplexPair pair, NearPair& out) {
-    const double *of_a[3], *of_b[3];
-    world_[0]->corners(pair.a, of_a);
-    world_[1]->corners(pair.b, of_b);
-    // Neighbouring candidates often have the same separating slab.
-    if (distance_along(direction_, within_, of_a, of_b, dim_) > within_) return false;
-    const PairBounds bounds = bound_distance(of_a, of_b, dim_);
-    const bool is_measured = std::isfinite(bounds.upper) && bounds.lower > 0;
-    if (is_measured && bounds.lower > within_) {
-      direction_ = bounds.direction;
-      return false;
-    }
-    out = {pair.a,       pair.b,       exact::Meet::disjoint,
-           bounds.lower, bounds.upper, {bounds.point[0], bounds.point[1]}};
-    return (is_measured && bounds.upper <= within_) || decide(of_a, of_b, is_measured, out);
+  /// Calls near(pair) for the pairs whose distance is at most `within`, in their order.
+  template <class Near>
+  void measure(std::span<const SimplexPair> pairs, Near&& near) {
+    for (; !pairs.empty(); pairs = pairs.subspan(std::min(pairs.size(), kAtOnce)))
+      measure_some(pairs.first(std::min(pairs.size(), kAtOnce)), near);
   }
 
   std::uint64_t pairs_exact() const { return pairs_exact_; }
 
  private:
-  /// Decides a pair in integers, and completes it. is_measured: the bounds exclude contact.
-  bool decide(const double* const* of_a, const double* const* of_b, bool is_measured, NearPair& out) {
+  static constexpr std::size_t kEights = 8, kAtOnce = 8 * kEights;
+
+  template <class Near>
+  void measure_some(std::span<const SimplexPair> pairs, Near&& near) {
+    kernel_.pairs = eights_;
+    kernel_.block_count = static_cast<std::uint32_t>((pairs.size() + 7) / 8);
+    for (std::size_t i = 0; i < 8 * kernel_.block_count; ++i) {
+      // The last pair fills up the last eight.
+      const SimplexPair& pair = pairs[std::min(i, pairs.size() - 1)];
+      load(0, pair.a, i);
+      load(1, pair.b, i);
+    }
+    run_pair_bounds_kernel(kernel_);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const EightPairsMeasured& eight = eights_[i / 8];
+      const double lower = eight.lower[i % 8], upper = eight.upper[i % 8];
+      if (lower > kernel_.within) continue;
+      NearPair pair{pairs[i].a, pairs[i].b, exact::Meet::disjoint, lower, upper, {}};
+      for (int side = 0; side < 2; ++side)
+        for (int x = 0; x < 3; ++x) pair.point[side][x] = eight.point[side][x][i % 8];
+      if ((lower > 0 && upper <= kernel_.within) || decide(lower > 0 && std::isfinite(upper), pair))
+        near(pair);
+    }
+  }
+
+  void load(int side, SimplexId s, std::size_t i) {
+    VertexId v[3] = {};
+    rep_[side]->simplex(s, v);
+    if (rep_[side]->dim() == 2) v[2] = v[1];
+    for (int corner = 0; corner < 3; ++corner) {
+      const Eigen::Vector3d& x = rep_[side]->vertices()[v[corner]];
+      for (int axis = 0; axis < 3; ++axis) eights_[i / 8].corner[side][corner][axis][i % 8] = x[axis];
+    }
+  }
+
+  /// Decides a pair in integers, and completes it. is_measured: the bounds exclude contact. Returns false if
+  /// its distance exceeds `within`.
+  bool decide(bool is_measured, NearPair& out) {
     ++pairs_exact_;
+    const int dim = rep_[0]->dim();
+    Eigen::Vector3d world[2][3];
+    const double *of_a[3], *of_b[3];
+    for (int side = 0; side < 2; ++side) {
+      VertexId v[3] = {};
+      rep_[side]->simplex(side == 0 ? out.a : out.b, v);
+      for (int corner = 0; corner < dim; ++corner) {
+        world[side][corner] = pose_[side]->apply(rep_[side]->vertices()[v[corner]]);
+        (side == 0 ? of_a : of_b)[corner] = world[side][corner].data();
+      }
+    }
     if (!is_measured) {
-      out.meet = dim_ == 3 ? exact::meet_triangles(of_a, of_b) : exact::meet_segments(of_a, of_b);
+      out.meet = dim == 3 ? exact::meet_triangles(of_a, of_b) : exact::meet_segments(of_a, of_b);
       if (out.meet != exact::Meet::disjoint) {
         // Both closest points are a corner of the intersection.
         const exact::PairContact contact =
-            dim_ == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
+            dim == 3 ? exact::contact_of_triangles(of_a, of_b) : exact::contact_of_segments(of_a, of_b);
         out.lower = out.upper = 0;
         out.point[0] = out.point[1] = contact.corners[0].x;
         return true;
       }
     }
-    if (exact::compare_distance(of_a, of_b, dim_, within_) > 0) return false;
+    if (exact::compare_distance(of_a, of_b, dim, kernel_.within) > 0) return false;
     if (is_measured) {
-      out.upper = within_;
+      out.upper = kernel_.within;
       return true;
     }
-    const exact::PairDistance exact = exact::distance_of_simplices(of_a, of_b, dim_);
+    const exact::PairDistance exact = exact::distance_of_simplices(of_a, of_b, dim);
     out.lower = exact.lower;
-    out.upper = std::min(exact.upper, within_);
+    out.upper = std::min(exact.upper, kernel_.within);
     out.point[0] = exact.point[0];
     out.point[1] = exact.point[1];
     return true;
   }
 
-  int dim_;
-  double within_;
-  WorldVertices* world_[2];
-  Eigen::Vector3d direction_{0, 0, 0};  ///< normal of a slab that was wide enough
+  const LrbRep* rep_[2];
+  const Pose* pose_[2];
   std::uint64_t pairs_exact_ = 0;
+  PairBoundsKernel kernel_;
+  EightPairsMeasured eights_[kEights];
 };
 
 /// Orders pairs by their lower bounds, then by their ids.
@@ -106,35 +152,22 @@ bool is_nearer(const NearPair& x, const NearPair& y) {
 class NearPairsSearch {
  public:
   NearPairsSearch(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const NearPairsRequest& request, Workers& workers, QueryContext& query,
-                  NearPairsContext& context, NearPairsResult& result)
+                  const NearPairsRequest& request, Workers& workers, NearPairsContext& context,
+                  NearPairsResult& result)
       : a_(a),
         b_(b),
         pose_a_(pose_a),
         pose_b_(pose_b),
         request_(request),
         workers_(workers),
-        query_(query),
         context_(context),
         result_(result) {
-    // Wrappers are not needed: only the poses and the trees of the bodies are set.
-    for (int side = 0; side < 2; ++side) {
-      query.body[side].world.begin(side == 0 ? a : b, side == 0 ? pose_a : pose_b);
-      query.body[side].query_body();
-    }
-    // The calling thread uses the vertices of the query.
-    context.worlds.resize(2 * (workers.count() - 1));
-    for (std::size_t i = 0; i < context.worlds.size(); ++i)
-      context.worlds[i].begin(i % 2 == 0 ? a : b, i % 2 == 0 ? pose_a : pose_b);
-    meters_.emplace_back(query.body[0].world, query.body[1].world, request.within);
-    for (std::size_t i = 0; i < context.worlds.size(); i += 2)
-      meters_.emplace_back(context.worlds[i], context.worlds[i + 1], request.within);
+    for (unsigned i = 0; i < workers.count(); ++i) meters_.emplace_back(a, pose_a, b, pose_b, request.within);
   }
 
   void run() {
     context_.candidates.clear();
-    TreeKernel k = start_rigid_kernel(query_, pose_a_, pose_b_, kBuffered);
-    aim(k);
+    TreeKernel k = start();
     // An infinite margin would cull nothing, and a NaN would be ignored.
     k.margin < std::numeric_limits<float>::infinity() ? traverse(k) : take_all();
     measure();
@@ -150,8 +183,16 @@ class NearPairsSearch {
   }
 
  private:
-  /// Makes the kernel keep all pairs that are at most `within` apart in the world.
-  void aim(TreeKernel& k) const {
+  /// Returns a kernel that keeps all pairs that are at most `within` apart in the world.
+  TreeKernel start() {
+    TreeKernel k = set_up_kernel(a_.tree(), pose_a_, b_.tree(), pose_b_);
+    const std::size_t room = near_stack_room(a_.tree().height(), b_.tree().height());
+    if (context_.stack.size() < room) context_.stack.resize(room);
+    k.stack = context_.stack.data();
+    start_at(k, {0, 0});
+    context_.found.resize(kBuffered);
+    k.out = context_.found.data();
+    k.out_capacity = static_cast<std::uint32_t>(kBuffered);
     const Eigen::Matrix3d to_a = pose_a_.r.transpose();
     Sweep sweep;
     sweep.mid_pose = {to_a * pose_b_.r, to_a * (pose_b_.t - pose_a_.t)};
@@ -162,12 +203,13 @@ class NearPairsSearch {
     const double rounding = wrapper_margin(pose_a_, a_.tree(), pose_b_, b_.tree()) +
                             2 * rotation_defect(pose_a_.r) * a_.tree().extent();
     aim_at(sweep, rounding, query_unit(a_.tree(), b_.tree()), k);
+    return k;
   }
 
   void traverse(TreeKernel& k) {
     while (!is_done(k)) {
       k.out_size = 0;
-      run_tree_kernel(k);
+      run_near_kernel(k);
       for (std::uint32_t i = 0; i < k.out_size; ++i) take({k.out[i].a, k.out[i].b});
     }
     result_.counters.node_pairs = k.node_pairs;
@@ -190,9 +232,7 @@ class NearPairsSearch {
     result_.counters.candidates += candidates.size();
     context_.order.sort(candidates);
     if (workers_.count() == 1) {
-      NearPair pair;
-      for (const SimplexPair& candidate : candidates)
-        if (meters_[0].measure(candidate, pair)) add(pair);
+      meters_[0].measure(candidates, [&](const NearPair& pair) { add(pair); });
     } else {
       measure_in_chunks();
     }
@@ -206,10 +246,10 @@ class NearPairsSearch {
     if (near.size() < chunks) near.resize(chunks);
     workers_.for_each(chunks, [&](std::size_t i, unsigned worker) {
       near[i].clear();
-      NearPair pair;
-      const std::size_t end = std::min(candidates.size(), (i + 1) * kCandidatesOfChunk);
-      for (std::size_t c = i * kCandidatesOfChunk; c < end; ++c)
-        if (meters_[worker].measure(candidates[c], pair)) near[i].push_back(pair);
+      const std::size_t begin = i * kCandidatesOfChunk;
+      meters_[worker].measure(
+          std::span(candidates).subspan(begin, std::min(candidates.size() - begin, kCandidatesOfChunk)),
+          [&](const NearPair& pair) { near[i].push_back(pair); });
     });
     for (std::size_t i = 0; i < chunks; ++i)
       for (const NearPair& pair : near[i]) add(pair);
@@ -241,7 +281,6 @@ class NearPairsSearch {
   const Pose &pose_a_, &pose_b_;
   const NearPairsRequest& request_;
   Workers& workers_;
-  QueryContext& query_;
   NearPairsContext& context_;
   NearPairsResult& result_;
   std::vector<PairMeter> meters_;  ///< (threads)
@@ -256,8 +295,8 @@ void check_request(const NearPairsRequest& request) {
 }
 
 void near_pairs_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                     const NearPairsRequest& request, Workers& workers, QueryContext& query,
-                     NearPairsContext& context, NearPairsResult& result) {
+                     const NearPairsRequest& request, Workers& workers, NearPairsContext& context,
+                     NearPairsResult& result) {
   check_query(a, pose_a, b, pose_b);
   check_request(request);
   result.pairs.clear();
@@ -266,22 +305,21 @@ void near_pairs_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
   if (a.tree().empty() || b.tree().empty()) return;
   if (rotation_defect(pose_a.r) <= kMaxDefect &&
       rotation_defect(pose_a.r.transpose() * pose_b.r) <= kMaxDefect) {
-    NearPairsSearch(a, pose_a, b, pose_b, request, workers, query, context, result).run();
+    NearPairsSearch(a, pose_a, b, pose_b, request, workers, context, result).run();
     return;
   }
   // Scaled or sheared bodies: the kernel has no margin for their poses.
   const LrbRep world_a = in_world(a, pose_a), world_b = in_world(b, pose_b);
   const Pose identity;
-  NearPairsSearch(world_a, identity, world_b, identity, request, workers, query, context, result).run();
+  NearPairsSearch(world_a, identity, world_b, identity, request, workers, context, result).run();
 }
 
 NearPairsResult near_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                            const NearPairsRequest& request, unsigned threads) {
   Workers workers(threads);
-  QueryContext query;
   NearPairsContext context;
   NearPairsResult result;
-  near_pairs_into(a, pose_a, b, pose_b, request, workers, query, context, result);
+  near_pairs_into(a, pose_a, b, pose_b, request, workers, context, result);
   return result;
 }
 

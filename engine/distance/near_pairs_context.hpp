@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "engine/collide/pair_order.hpp"
-#include "engine/collide/query_context.hpp"
+#include "engine/tree/tree_kernel.hpp"
+#include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/parallel.hpp>
 
@@ -13,17 +14,16 @@ namespace lrb {
 
 /// Buffers of a search.
 struct NearPairsContext {
+  std::vector<NodePair> stack;   ///< of the traversal
+  std::vector<Candidate> found;  ///< by the traversal since it last stopped
   std::vector<SimplexPair> candidates;
   PairOrder order;
-  // With several threads:
-  std::vector<WorldVertices> worlds;        ///< (2 x threads)
-  std::vector<std::vector<NearPair>> near;  ///< (chunks of candidates)
+  std::vector<std::vector<NearPair>> near;  ///< (chunks of candidates) with several threads
 };
 
-/// Finds the pairs as near_pairs() does. `query`, `context`: buffers. `result`: overwritten; its memory is
-/// reused.
+/// Finds the pairs as near_pairs() does. `context`: buffers. `result`: overwritten; its memory is reused.
 void near_pairs_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                     const NearPairsRequest& request, Workers& workers, QueryContext& query,
-                     NearPairsContext& context, NearPairsResult& result);
+                     const NearPairsRequest& request, Workers& workers, NearPairsContext& context,
+                     NearPairsResult& result);
 
 }  // namespace lrb

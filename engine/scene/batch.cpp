@@ -77,8 +77,7 @@ Expected<NearPairsResult&> near_pairs(const LrbRep& a, const Pose& pose_a, const
                                       const Pose& pose_b, const NearPairsRequest& request,
                                       Workspace& workspace) try {
   Workspace::Memory& memory = workspace.memory();
-  near_pairs_into(a, pose_a, b, pose_b, request, memory.alone, memory.of_collision(), memory.near,
-                  memory.pairs);
+  near_pairs_into(a, pose_a, b, pose_b, request, memory.alone, memory.near, memory.pairs);
   return memory.pairs;
 } catch (const InputError& e) {
   return Error{e.what()};

@@ -229,6 +229,11 @@ struct AffineWalk {
   static float size(const TreeKernel& k, const TreeNode& n, Side side) {
     return n.radius * k.affine->span[static_cast<int>(side)];
   }
+  static Lanes apart(const Float8* centre, const Float8* half, const float* other_centre,
+                     const float* other_half, const Skewed&) {
+    return lrb::apart(centre, half, other_centre, other_half);
+  }
+  static void leaves(TreeKernel& k, const TreeNode& a, const TreeNode& b) { leaf_pair<AffineWalk>(k, a, b); }
 };
 
 }  // namespace

@@ -7,10 +7,14 @@
 namespace lrb {
 namespace {
 
-/// The corners of eight simplices in A's leaf frame, query units.
-struct Corners {
-  Float8 x[3][3];  // [corner][axis]
+/// The corners of some simplices, one in each lane of V.
+template <class V>
+struct CornersOf {
+  V x[3][3];  // [corner][axis]
 };
+
+/// The corners of eight simplices in A's leaf frame, query units.
+using Corners = CornersOf<Float8>;
 
 /// Computes (u x v) . d in float arithmetic, lane by lane, with an error bound. u and v are each a difference
 /// of two corners of one body; d is a difference of corners of both.
@@ -47,7 +51,8 @@ struct Normal {
   Float8 dot(const Float8* d) const { return n[0] * d[0] + n[1] * d[1] + n[2] * d[2]; }
 };
 
-inline void subtract(const Float8* x, const Float8* y, Float8* difference) {
+template <class V>
+inline void subtract(const V* x, const V* y, V* difference) {
   for (int axis = 0; axis < 3; ++axis) difference[axis] = x[axis] - y[axis];
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// Part of tree_kernel.inl and affine_kernel.inl: the dual traversal of two trees. The type Walk computes the
-// relative position of two nodes.
+// Part of tree_kernel.inl, affine_kernel.inl and near_kernel.inl: the dual traversal of two trees. The type
+// Walk computes the relative position of two nodes, decides which boxes are dropped, and compares the
+// simplices of two leaves.
 
 #include "engine/tree/kernel_triangles.inl"
 #include "engine/tree/kernel_whole.inl"
@@ -48,21 +49,24 @@ inline Float8 gaps_of(const Row& row, const Boxes& own_b, const Turned& bt) {
 /// B. The separating axes are the six face normals, without cross products of edges ("SAT lite", van den
 /// Bergen 1997). Most pairs of nodes are disjoint, and the first test rejects most of these. kGaps: also
 /// computes the gaps.
-template <bool kMargin, bool kGaps, class Lie>
+template <class Walk, bool kGaps, class Lie>
 inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNode& nb, const Lie& w,
                                 Gaps* gaps = nullptr) {
+  constexpr bool kMargin = Walk::kMargin;
   // Step 1: B's boxes against the node box of A, on A's axes.
   k.box_tests += na.count + nb.count;
   const Whole whole_a = whole_on_own(whole_of(na, k.ratio_a), Side::a, w);
   const Boxes b = decode(nb, k.ratio_b);
   const Turned bt = turn_b<kMargin>(b, w);
-  const std::uint32_t mask_b = ~bits(apart(bt.centre, bt.half, whole_a.centre, whole_a.half)) & present(nb);
+  const std::uint32_t mask_b =
+      ~bits(Walk::apart(bt.centre, bt.half, whole_a.centre, whole_a.half, w)) & present(nb);
   if (mask_b == 0) return 0;
   // Step 2: A's boxes against the node box of B, on B's axes.
   const Whole whole_b = whole_on_own(whole_of(nb, k.ratio_b), Side::b, w);
   const Boxes a = decode(na, k.ratio_a);
   const Turned at = turn_a<kMargin>(a, w);
-  const std::uint32_t mask_a = ~bits(apart(at.centre, at.half, whole_b.centre, whole_b.half)) & present(na);
+  const std::uint32_t mask_a =
+      ~bits(Walk::apart(at.centre, at.half, whole_b.centre, whole_b.half, w)) & present(na);
   // Step 3: each remaining box of A against all boxes of B at once, on the axes of both.
   const Boxes &own_a = boxes_on_own(a, Side::a, w), &own_b = boxes_on_own(b, Side::b, w);
   const auto in_mask_b = static_cast<unsigned>(__builtin_popcount(mask_b));
@@ -72,8 +76,8 @@ inline std::uint64_t pair_masks(TreeKernel& k, const TreeNode& na, const TreeNod
   for (std::uint32_t todo = mask_a; todo != 0; todo &= todo - 1) {
     const int i = __builtin_ctz(todo);
     const Row row = row_of(own_a, at, i);
-    const Lanes gap = either(apart(bt.centre, bt.half, row.own_centre, row.own_half),
-                             apart(own_b.centre, own_b.half, row.turned_centre, row.turned_half));
+    const Lanes gap = either(Walk::apart(bt.centre, bt.half, row.own_centre, row.own_half, w),
+                             Walk::apart(own_b.centre, own_b.half, row.turned_centre, row.turned_half, w));
     // Boxes of B that step 1 rejected stay rejected.
     const std::uint32_t mask = ~bits(gap) & mask_b;
     k.box_tests += in_mask_b;
@@ -163,7 +167,7 @@ template <class Walk, bool kNearest>
 inline void descend_both(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   // All 64 combinations of children are decided before any is pushed.
   Gaps gaps;
-  const std::uint64_t pairs = pair_masks<Walk::kMargin, kNearest>(k, na, nb, Walk::between(k, na, nb), &gaps);
+  const std::uint64_t pairs = pair_masks<Walk, kNearest>(k, na, nb, Walk::between(k, na, nb), &gaps);
   float gap_of[64];
   const std::uint32_t bottom = k.stack_size;
   for (std::uint64_t c = pairs; c != 0; c &= c - 1) {
@@ -184,8 +188,8 @@ inline void descend_a(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
   const Whole bt = turn_whole_b<Walk::kMargin>(b, w), own_b = whole_on_own(b, Side::b, w);
   const Boxes& own_a = boxes_on_own(a, Side::a, w);
   // Six separating axes for each of A's boxes, in one pass over eight lanes.
-  const Lanes gap = either(apart(at.centre, at.half, own_b.centre, own_b.half),
-                           apart(own_a.centre, own_a.half, bt.centre, bt.half));
+  const Lanes gap = either(Walk::apart(at.centre, at.half, own_b.centre, own_b.half, w),
+                           Walk::apart(own_a.centre, own_a.half, bt.centre, bt.half, w));
   k.box_tests += na.count;
   for (std::uint32_t c = ~bits(gap) & present(na); c != 0; c &= c - 1)
     push(k, na.first + static_cast<std::uint32_t>(__builtin_ctz(c)), b_index);
@@ -200,8 +204,8 @@ inline void descend_b(TreeKernel& k, const TreeNode& na, const TreeNode& nb, std
   const Turned bt = turn_b<Walk::kMargin>(b, w);
   const Whole at = turn_whole_a<Walk::kMargin>(a, w), own_a = whole_on_own(a, Side::a, w);
   const Boxes& own_b = boxes_on_own(b, Side::b, w);
-  const Lanes gap = either(apart(bt.centre, bt.half, own_a.centre, own_a.half),
-                           apart(own_b.centre, own_b.half, at.centre, at.half));
+  const Lanes gap = either(Walk::apart(bt.centre, bt.half, own_a.centre, own_a.half, w),
+                           Walk::apart(own_b.centre, own_b.half, at.centre, at.half, w));
   k.box_tests += nb.count;
   for (std::uint32_t c = ~bits(gap) & present(nb); c != 0; c &= c - 1)
     push(k, a_index, nb.first + static_cast<std::uint32_t>(__builtin_ctz(c)));
@@ -241,7 +245,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
   constexpr bool kMargin = Walk::kMargin;
   const auto w = Walk::between(k, na, nb);
   // Pass 1: boxes of the simplices.
-  const std::uint64_t pairs = pair_masks<kMargin, false>(k, na, nb, w);
+  const std::uint64_t pairs = pair_masks<Walk, false>(k, na, nb, w);
   if (pairs == 0) return;
   // Pass 2: list the remaining pairs, so that the lanes of the next passes are full.
   const LeafBlock& block_a = k.blocks_a[na.first];
@@ -289,7 +293,7 @@ inline void open(TreeKernel& k, const NodePair& pair) {
   const bool hold_a = a.is_leaf || size_b > kMuchLarger * size_a;
   const bool hold_b = b.is_leaf || size_a > kMuchLarger * size_b;
   if (a.is_leaf && b.is_leaf)
-    leaf_pair<Walk>(k, a, b);
+    Walk::leaves(k, a, b);
   else if (!a.is_leaf && hold_b)
     descend_a<Walk>(k, a, b, pair.b);
   else if (!b.is_leaf && hold_a)

@@ -20,6 +20,11 @@ struct RigidWalk {
   static float size(const TreeKernel& k, const TreeNode& n, Side side) {
     return n.radius * (side == Side::a ? k.ratio_a : k.ratio_b);
   }
+  static Lanes apart(const Float8* centre, const Float8* half, const float* other_centre,
+                     const float* other_half, const Between&) {
+    return lrb::apart(centre, half, other_centre, other_half);
+  }
+  static void leaves(TreeKernel& k, const TreeNode& a, const TreeNode& b) { leaf_pair<RigidWalk>(k, a, b); }
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/stability/rational_oracles.hpp"
+#include "engine/distance/near_kernel.hpp"
 #include "engine/distance/pair_bounds.hpp"
 #include "tests/support/random_simplices.hpp"
 
@@ -26,7 +27,7 @@ oracle::Corners corners_of(const double* const* x, int n) {
 }
 
 struct PairTally {
-  int pairs = 0, meet = 0, proved_apart = 0, narrow = 0;
+  int pairs = 0, meet = 0, proved_apart = 0, narrow = 0, eight_apart = 0, eight_narrow = 0;
 };
 
 /// Compares with a distance beside the exact one.
@@ -35,6 +36,37 @@ void check_comparison(const double* const* a, const double* const* b, int n, dou
   if (!std::isfinite(distance)) return;
   const Rational given = oracle::square(distance);
   CHECK(exact::compare_distance(a, b, n, distance) == (sq > given) - (sq < given));
+}
+
+/// Measures the pair eight at a time, in all places of the eight, of which the others have another pair.
+/// Checks that the intervals contain the distance.
+void check_eight(const double* const* a, const double* const* b, int n, const Rational& sq, PairTally& t) {
+  EightPairsMeasured eight;
+  PairBoundsKernel kernel{};
+  for (int side = 0; side < 2; ++side)
+    for (int axis = 0; axis < n; ++axis) kernel.r[side][axis][axis] = 1;
+  kernel.within = INFINITY;
+  kernel.pairs = &eight;
+  kernel.block_count = 1;
+  for (int at = 0; at < 8; ++at) {
+    for (int lane = 0; lane < 8; ++lane)
+      for (int corner = 0; corner < 3; ++corner)
+        for (int axis = 0; axis < 3; ++axis) {
+          // A segment repeats its second corner.
+          const int k = std::min(corner, n - 1);
+          const bool here = axis < n && (lane == at || axis == 0);
+          eight.corner[0][corner][axis][lane] = here ? a[k][axis] : lane;
+          eight.corner[1][corner][axis][lane] = here ? b[k][axis] : corner;
+        }
+    run_pair_bounds_kernel(kernel);
+    REQUIRE(eight.lower[at] <= eight.upper[at]);
+    REQUIRE(oracle::square(eight.lower[at]) <= sq);
+    if (!std::isfinite(eight.upper[at])) continue;
+    REQUIRE(oracle::square(eight.upper[at]) >= sq);
+    if (at != 0) continue;
+    t.eight_apart += eight.lower[0] > 0;
+    t.eight_narrow += eight.upper[0] - eight.lower[0] <= 1e-12 * std::max(1.0, eight.upper[0]);
+  }
 }
 
 void check_pair(const test::SimplexPair& pair, int n, PairTally& t) {
@@ -51,6 +83,7 @@ void check_pair(const test::SimplexPair& pair, int n, PairTally& t) {
     t.proved_apart += bounds.lower > 0;
     t.narrow += bounds.upper - bounds.lower <= 1e-12 * std::max(1.0, bounds.upper);
   }
+  check_eight(a, b, n, sq, t);
   if (sq == 0) {
     ++t.meet;
     return;
@@ -81,6 +114,8 @@ TEST_CASE("distances of triangles and of segments contain the rational one, dege
     if (kind == Kind::real) {
       CHECK(t.proved_apart + t.meet > t.pairs * 9 / 10);
       CHECK(t.narrow + t.meet > t.pairs * 9 / 10);
+      CHECK(t.eight_apart + t.meet > t.pairs * 9 / 10);
+      CHECK(t.eight_narrow + t.meet > t.pairs * 9 / 10);
     }
     if (kind == Kind::grid) CHECK(t.meet > 3);
   }
@@ -105,6 +140,7 @@ TEST_CASE("distances of pairs that are parallel, coplanar, 1e-12 apart or 1e12 a
     check_pair(pair, 2, t);
   }
   CHECK(t.narrow > t.pairs / 2);
+  CHECK(t.eight_narrow > t.pairs / 2);
 }
 
 TEST_CASE("closest features, and points on them") {

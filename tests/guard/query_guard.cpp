@@ -9,6 +9,8 @@
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/build.hpp>
+#include <lrbscope/near_pairs.hpp>
+#include <lrbscope/workspace.hpp>
 
 using namespace lrb;
 
@@ -67,6 +69,25 @@ void ask(const Guarded& g, const LrbRep& a, const LrbRep& b) {
   std::printf("%s %zu\n", g.name, pairs);
 }
 
+/// Near pairs of shallow poses, within about 1 % of the diagonal.
+void ask_near(const LrbRep& a, const LrbRep& b) {
+  NearPairsRequest request;
+  request.within = 0.03;
+  Workspace workspace;
+  shapes::RandomEngine random(1);
+  std::size_t pairs = 0;
+  CALLGRIND_ZERO_STATS;
+  for (int i = 0; i < kPoses; ++i) {
+    const Pose pose = shapes::random_pose(random, a, b, 0.55 * 0.85);
+    near_pairs(a, Pose{}, b, pose, request, workspace).value();
+    CALLGRIND_START_INSTRUMENTATION;
+    pairs += near_pairs(a, Pose{}, b, pose, request, workspace).value().pairs.size();
+    CALLGRIND_STOP_INSTRUMENTATION;
+  }
+  CALLGRIND_DUMP_STATS_AT("near");
+  std::printf("near %zu\n", pairs);
+}
+
 /// Reports a build to callgrind. The builds before it have filled the caches of the allocator.
 template <class Build>
 void count_build(const char* name, const Build& build) {
@@ -89,6 +110,7 @@ int main() {
 #endif
   const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 1)), b = build_lrb(shapes::bumpy_sphere(4, 2));
   for (const Guarded& g : kGuarded) g.watched ? ask<IdleProbe>(g, a, b) : ask<NullProbe>(g, a, b);
+  ask_near(a, b);
   const Mesh small = shapes::bumpy_sphere(3, 1);
   count_build("build_tree", [&]() -> std::size_t { return ObbTree(a.simplices(), 1).height(); });
   count_build("build_lrb", [&]() -> std::size_t { return build_lrb(small).face_count(); });

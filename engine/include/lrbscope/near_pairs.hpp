@@ -7,9 +7,9 @@
 /// cross are at distance 0, so that `within` = 0 lists what collide() lists.
 ///
 /// Algorithm:
-/// 1. One traversal of both BVHs, whose boxes and triangles are kept up to the given distance, finds the
-///    candidates (cf. Verlet's neighbour lists, 1967).
-/// 2. Each candidate is measured in doubles with proven errors (pair_bounds.hpp).
+/// 1. One traversal of both BVHs drops boxes, and triangles by slabs, that floats prove to be farther apart
+///    than the given distance. The other pairs of triangles are the candidates (near_kernel.inl).
+/// 2. The candidates are measured in doubles with proven errors, eight at a time (pair_bounds_kernel.inl).
 /// 3. Where the interval contains 0 or `within`, integers decide (exact/pair_distance.hpp).
 
 #include <cstdint>
@@ -47,7 +47,7 @@ struct NearPair {
 struct NearPairsCounters {
   std::uint64_t node_pairs = 0;   ///< pairs of tree nodes expanded
   std::uint64_t box_tests = 0;    ///< tests of two boxes
-  std::uint64_t candidates = 0;   ///< pairs that boxes and planes kept
+  std::uint64_t candidates = 0;   ///< pairs that boxes and slabs kept
   std::uint64_t pairs_exact = 0;  ///< pairs decided in integers
   friend bool operator==(const NearPairsCounters&, const NearPairsCounters&) = default;
 };

@@ -1,0 +1,125 @@
+// Compiled once per instruction set by cmake/kernels.cmake, which defines LRB_NEAR_KERNEL_NAME. See
+// tree_kernel.inl.
+//
+// The traversal for near pairs: finds the pairs of simplices that may be at most TreeKernel::margin apart.
+// Boxes are dropped by their distance on the axes of both nodes, pairs of triangles by slabs.
+//
+// Errors. On the axes of either node, the error of the difference of two points of both bodies is at most
+// Between::error in each coordinate. The margin includes the deviations of the poses from rotations
+// (aim_at()). A computed length has a relative error of up to kDistanceRounding, which covers the axes'
+// deviation from orthonormality and rounding: see distance_kernel.inl. `NearBetween::square` allows for twice
+// that, and for underflow. NaN (an overflow) compares false and keeps a pair.
+
+#include "engine/distance/kernel_distances.inl"
+#include "engine/tree/kernel_walk.inl"
+
+namespace lrb {
+namespace {
+
+/// Two nodes, and the squared distance above which parts of them are dropped.
+struct NearBetween : Between {
+  float square;
+};
+
+/// Number of slabs that are tried for each pair of triangles. With four, the candidates within 5 % of the
+/// diagonal are 1 to 4 % more than the near pairs, on the classes of `bench`. Fewer: more pairs are measured
+/// in doubles. More: each pair takes longer.
+constexpr int kSlabs = 4;
+
+/// Returns the lanes whose triangles are proven to be farther apart than allowed. The direction of a slab
+/// runs from the origin to a point p of the Minkowski difference B - A; p approaches the point of least
+/// length (Gilbert, "An Iterative Procedure for Computing the Minimum of a Quadratic Form on a Convex Set",
+/// 1966):
+/// 1. p: the difference of the centroids.
+/// 2. v: the corner of B - A that is least along p. The slab normal to p is p . v / |p| wide.
+/// 3. Replace p by the point of least length between p and v, and continue with 2.
+inline Lanes proven_far(const Corners& a, const Corners& b, const NearBetween& w) {
+  Float8 p[3];
+  for (int x = 0; x < 3; ++x)
+    p[x] = ((b.x[0][x] + b.x[1][x] + b.x[2][x]) - (a.x[0][x] + a.x[1][x] + a.x[2][x])) * splat(1.0F / 3);
+  Lanes far = kNoLanes;
+  for (int i = 0;; ++i) {
+    Float8 v[3], ends[2];
+    for (int side = 0; side < 2; ++side) {
+      const Corners& t = side == 0 ? a : b;
+      // The corner of A that is farthest along p, and the corner of B that is least far.
+      Float8 end = dot(p, t.x[0]), corner[3] = {t.x[0][0], t.x[0][1], t.x[0][2]};
+      for (int c = 1; c < 3; ++c) {
+        const Float8 along = dot(p, t.x[c]);
+        const Lanes beyond = side == 0 ? greater(along, end) : greater(end, along);
+        end = select(beyond, along, end);
+        for (int x = 0; x < 3; ++x) corner[x] = select(beyond, t.x[c][x], corner[x]);
+      }
+      ends[side] = end;
+      for (int x = 0; x < 3; ++x) v[x] = side == 0 ? corner[x] : corner[x] - v[x];
+    }
+    // The slab's width times |p|, less the errors of the corners, which include the rounding of the products
+    // as in Normal.
+    const Float8 errors = splat(2 * w.error) * (abs8(p[0]) + abs8(p[1]) + abs8(p[2])) + splat(kKernelTiny);
+    const Float8 sure = ends[1] - ends[0] - errors, pp = dot(p, p);
+    far = either(far, both(greater(sure, Float8{}), greater(sure * sure, splat(w.square) * pp)));
+    if (i == kSlabs - 1 || bits(far) == 255U) return far;
+    // The point of least length between p and v.
+    Float8 way[3];
+    subtract(v, p, way);
+    const Float8 share = clamp_share(-dot(p, way) / dot(way, way));
+    for (int x = 0; x < 3; ++x) p[x] += share * way[x];
+  }
+}
+
+struct NearWalk {
+  static constexpr bool kMargin = false;  // boxes are not grown
+
+  static NearBetween between(const TreeKernel& k, const TreeNode& a, const TreeNode& b) {
+    const float length = k.margin * (1 + 2 * kDistanceRounding);
+    return {lrb::between<false>(k, a, b), length * length * (1 + 2 * kDistanceRounding) + kKernelTiny};
+  }
+
+  static float size(const TreeKernel& k, const TreeNode& n, Side side) {
+    return n.radius * (side == Side::a ? k.ratio_a : k.ratio_b);
+  }
+
+  /// Compares the squared distance of boxes on the same axes: the sum of the squares of the positive gaps.
+  static Lanes apart(const Float8* centre, const Float8* half, const float* other_centre,
+                     const float* other_half, const NearBetween& w) {
+    Float8 square{};
+    for (int i = 0; i < 3; ++i) {
+      const Float8 gap =
+          larger(abs8(centre[i] - splat(other_centre[i])) - (half[i] + splat(other_half[i])), Float8{});
+      square += gap * gap;
+    }
+    return greater(square, splat(w.square));
+  }
+
+  /// Writes the pairs of simplices of two leaves that may be near.
+  static void leaves(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
+    const NearBetween w = between(k, na, nb);
+    // Pass 1: boxes.
+    const std::uint64_t pairs = pair_masks<NearWalk, false>(k, na, nb, w);
+    if (pairs == 0) return;
+    PairList list;
+    list_pairs(pairs, list);
+    k.prefilter_tests += list.size;
+    // Pass 2: triangles, eight pairs at a time.
+    Corners a, b;
+    corners_of(k, na, nb, w, a, b);
+    const LeafBlock &block_a = k.blocks_a[na.first], &block_b = k.blocks_b[nb.first];
+    for (std::uint32_t begin = 0; begin < list.size; begin += 8) {
+      const Lanes far = proven_far(pick(a, list.a + begin), pick(b, list.b + begin), w);
+      const std::uint32_t here = list.size - begin < 8 ? (1U << (list.size - begin)) - 1 : 255U;
+      for (std::uint32_t c = ~bits(far) & here; c != 0; c &= c - 1) {
+        const std::uint32_t pair = begin + static_cast<std::uint32_t>(__builtin_ctz(c));
+        k.out[k.out_size++] = {block_a.simplex[list.a[pair]], block_b.simplex[list.b[pair]], Certainty::none,
+                               Side::a, 0};
+      }
+    }
+  }
+};
+
+}  // namespace
+
+void LRB_NEAR_KERNEL_NAME(TreeKernel& k) {
+  run<NearWalk, false>(k, k.max_node_pairs);
+}
+
+}  // namespace lrb
