@@ -464,7 +464,7 @@ TEST_CASE("captures with invalid queries are rejected") {
   // QRYB: 8 reserved, number, kind, trees, 8 reserved, thread, 4 reserved, poses.
   contains(refusal(twice(good, "QRYB")), {"(QRYB at byte ", "query 1: begins a second time"});
   contains(refusal(with(good, "QRYB", 8, 0u)), {"number of a query above 0"});
-  contains(refusal(with(good, "QRYB", 12, 6u)), {"query 1: expected a query of kind 1", "found 6"});
+  contains(refusal(with(good, "QRYB", 12, 7u)), {"query 1: expected a query of kind 1", "found 7"});
   contains(refusal(with(good, "QRYB", 20, 5u)), {"query 1: refers to tree 5, which was not described"});
   // QRYE: ticks, number, verdict, pairs, events, 8 reserved.
   contains(refusal(without(good, "QRYB")), {"(EVTS at byte ", "query 1: the query was not begun"});

@@ -258,7 +258,7 @@ class MeasuredMarks {
     }
   }
 
-  /** Writes the length over the midpoint of the segment, or under it if there is no space. */
+  /** Writes the length over the midpoint of the segment, or under it if there is no space; above the scale of colours. */
   write() {
     const label = byId("measured"),
       { shown, view } = this;
@@ -273,7 +273,10 @@ class MeasuredMarks {
       y = (height * (1 - at.y)) / 2,
       off = 14;
     label.style.left = `${Math.max(half, Math.min(width - half, (width * (1 + at.x)) / 2))}px`;
-    label.style.top = `${y > label.offsetHeight + off ? y - label.offsetHeight - off : y + off}px`;
+    const above = y - label.offsetHeight - off,
+      scale = byId("scale"),
+      lowest = (scale.hidden ? height : scale.offsetTop) - label.offsetHeight - 4;
+    label.style.top = `${Math.min(above > 0 ? above : y + off, lowest)}px`;
   }
 }
 
