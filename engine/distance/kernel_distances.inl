@@ -8,8 +8,9 @@
 namespace lrb {
 namespace {
 
-inline Float8 splat_as(Float8, float x) {
-  return splat(x);
+// Both overloads take a double: Clang converts vectors of equal size, and would not choose otherwise.
+inline Float8 splat_as(Float8, double x) {
+  return splat(static_cast<float>(x));
 }
 
 template <class V>
