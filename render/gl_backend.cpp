@@ -40,23 +40,34 @@ namespace {
 
 using Address = GlContext::Address;
 
-/// Loads a library for the rest of the process. Throws EnvironmentError with the loader's message.
-void* load_library(const char* file) {
-  void* const library = dlopen(file, RTLD_LAZY | RTLD_LOCAL);
-  if (library == nullptr) {
+/// A library, loaded for the rest of the process.
+class Library {
+ public:
+  /// Throws EnvironmentError with the loader's message.
+  explicit Library(const char* file) : file_(file), handle_(dlopen(file, RTLD_LAZY | RTLD_LOCAL)) {
+    if (handle_ != nullptr) return;
     const char* const why = dlerror();
     throw EnvironmentError(why == nullptr ? std::string(file) + ": cannot be loaded" : why);
   }
-  return library;
-}
 
-/// Sets a pointer to a function. Throws EnvironmentError if the library does not have it.
-template <class Function>
-void load(Function& function, const char* file, const char* name, void* address) {
-  function = reinterpret_cast<Function>(address);
-  if (function == nullptr)
-    throw EnvironmentError(std::string(file) + ": has no function " + name + ", so its version is too old");
-}
+  /// Sets a pointer to a function. Throws EnvironmentError if the library does not have it.
+  template <class Function>
+  void get(Function& function, const char* name) const {
+    set(function, name, dlsym(handle_, name));
+  }
+  /// Does so with an address that an extension's loader returned.
+  template <class Function>
+  void set(Function& function, const char* name, void* address) const {
+    function = reinterpret_cast<Function>(address);
+    if (function == nullptr)
+      throw EnvironmentError(std::string(file_) + ": has no function " + name +
+                             ", so its version is too old");
+  }
+
+ private:
+  const char* file_;
+  void* handle_;
+};
 
 // ---- OSMesa
 
@@ -74,14 +85,11 @@ struct Osmesa {
   Address (*address)(const char* function) = nullptr;
 
   Osmesa() {
-    void* const library = load_library(kOsmesaFile);
-    const auto get = [&](auto& function, const char* name) {
-      load(function, kOsmesaFile, name, dlsym(library, name));
-    };
-    get(create, "OSMesaCreateContextAttribs");
-    get(destroy, "OSMesaDestroyContext");
-    get(make_current, "OSMesaMakeCurrent");
-    get(address, "OSMesaGetProcAddress");
+    const Library library(kOsmesaFile);
+    library.get(create, "OSMesaCreateContextAttribs");
+    library.get(destroy, "OSMesaDestroyContext");
+    library.get(make_current, "OSMesaMakeCurrent");
+    library.get(address, "OSMesaGetProcAddress");
   }
   static const Osmesa& get() {
     static const Osmesa loaded;
@@ -147,21 +155,18 @@ struct Egl {
   EGLDisplay display = EGL_NO_DISPLAY;
 
   Egl() {
-    void* const library = load_library(kEglFile);
-    const auto get = [&](auto& function, const char* name) {
-      load(function, kEglFile, name, dlsym(library, name));
-    };
-    get(address, "eglGetProcAddress");
-    get(error, "eglGetError");
-    get(bind_api, "eglBindAPI");
-    get(create, "eglCreateContext");
-    get(destroy, "eglDestroyContext");
-    get(make_current, "eglMakeCurrent");
+    const Library library(kEglFile);
+    library.get(address, "eglGetProcAddress");
+    library.get(error, "eglGetError");
+    library.get(bind_api, "eglBindAPI");
+    library.get(create, "eglCreateContext");
+    library.get(destroy, "eglDestroyContext");
+    library.get(make_current, "eglMakeCurrent");
     PFNEGLINITIALIZEPROC initialize = nullptr;
-    get(initialize, "eglInitialize");
+    library.get(initialize, "eglInitialize");
     // EGL_EXT_device_enumeration, EGL_EXT_device_query, EGL_EXT_platform_base.
     const auto get_extension = [&](auto& function, const char* name) {
-      load(function, kEglFile, name, reinterpret_cast<void*>(address(name)));
+      library.set(function, name, reinterpret_cast<void*>(address(name)));
     };
     PFNEGLQUERYDEVICESEXTPROC devices = nullptr;
     PFNEGLQUERYDEVICESTRINGEXTPROC device_string = nullptr;
@@ -284,7 +289,7 @@ std::vector<GlBackendState> gl_backends() {
   for (const Backend& b : kBackends) {
     out.push_back({b.name, b.setting, b.package, "", &b == selected});
     try {
-      load_library(b.file);
+      Library{b.file};
     } catch (const EnvironmentError& e) {
       out.back().problem = e.what();
     }
