@@ -64,6 +64,10 @@ double seconds_of(const Trace& trace, EventId first, std::size_t count) {
 
 }  // namespace
 
+double seconds_of_step(const Trace& trace, std::size_t step) {
+  return seconds_of(trace, trace.steps[step].first_event, trace.events_of(step).size());
+}
+
 Totals count_events(std::span<const Event> events) {
   Totals t;
   t.events = events.size();
@@ -277,7 +281,7 @@ Chart chart_over_steps(const Trace& trace) {
                           static_cast<double>(t.contacts),
                           static_cast<double>(most[0]),
                           static_cast<double>(most[1]),
-                          kMilliseconds * seconds_of(trace, trace.steps[i].first_event, events.size())};
+                          kMilliseconds * seconds_of_step(trace, i)};
     chart.x.push_back(trace.steps[i].index);
     for (std::size_t s = 0; s < chart.series.size(); ++s) chart.series[s].values.push_back(row[s]);
   }

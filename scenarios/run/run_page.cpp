@@ -1,6 +1,7 @@
 #include "scenarios/run/run_page.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "render/page_palette.hpp"
@@ -131,14 +132,6 @@ std::string whole_percent(std::uint64_t part, std::uint64_t whole) {
   return std::to_string((100 * part + whole / 2) / std::max<std::uint64_t>(whole, 1)) + " %";
 }
 
-/// Returns the time from the first to the last event of a step; 0 on the event clock.
-double seconds_of_step(const trace::Trace& trace, std::size_t step) {
-  const std::size_t count = trace.events_of(step).size(), first = trace.steps[step].first_event;
-  if (trace.wall_ns.empty() || count == 0) return 0;
-  constexpr double kNanosecond = 1e-9;
-  return kNanosecond * static_cast<double>(trace.wall_ns[first + count - 1] - trace.wall_ns[first]);
-}
-
 std::string time_text(double seconds) {
   constexpr double kMillis = 1e3, kMicros = 1e6;
   return seconds < 1 / kMillis ? render::short_number(kMicros * seconds) + " µs"
@@ -158,7 +151,7 @@ std::string step_sentence(const RecordedRun& p, const trace::Step& step) {
   const std::uint64_t tests = tests_of(step);
   const std::string relation = io::in_words(name_of(r.relation));
   const auto index = static_cast<std::size_t>(&step - p.trace->steps.data());
-  const double seconds = p.trace->wall_ns.empty() ? 0 : seconds_of_step(*p.trace, index);
+  const double seconds = trace::seconds_of_step(*p.trace, index);
   std::string out = "At step " + std::to_string(step.index) + " the relation is " + relation;
   if (r.pair_count > 0)
     out += " with " + counted(r.pair_count, "intersecting pair of faces", "intersecting pairs of faces");
@@ -336,7 +329,7 @@ report::Table steps_table(const trace::Trace& trace) {
     t.targets.push_back("step " + t.rows.back()[0]);
     std::vector<std::string>& row = t.rows.back();
     constexpr double kMicros = 1e6;
-    if (timed) row.push_back(render::short_number(kMicros * seconds_of_step(trace, i)));
+    if (timed) row.push_back(render::short_number(kMicros * std::fmax(0, trace::seconds_of_step(trace, i))));
     if (has_trees)
       row.insert(row.end(),
                  {render::group_digits(counters.box_tests), render::group_digits(counters.prefilter_tests)});

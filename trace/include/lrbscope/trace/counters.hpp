@@ -49,6 +49,10 @@ struct Statistic {
 /// - seconds: from the first to the last event; wall clock only
 std::vector<Statistic> statistics(const Trace& trace);
 
+/// Returns the time from the first to the last event of a step; NaN on the event clock, or if no event of the
+/// step was stored.
+double seconds_of_step(const Trace& trace, std::size_t step);
+
 /// counts[i] is the number of values in [edges[i], edges[i + 1]).
 struct Histogram {
   std::string_view name, unit, description;
