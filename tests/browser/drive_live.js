@@ -20,7 +20,7 @@
   };
   const settled = async (page) => {
     await wait(20);
-    if (page.waiting) page.changed();
+    if (page.soon.waiting) page.changed();
     page.view.draw();
   };
   const pointer = (type, x, y, more = {}) =>

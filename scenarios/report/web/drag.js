@@ -249,14 +249,7 @@ class LivePage {
   }
 
   /** Queries once per picture, however often the mouse moves. */
-  soon() {
-    if (this.waiting) return;
-    this.waiting = true;
-    requestAnimationFrame(() => {
-      this.waiting = false;
-      this.changed();
-    });
-  }
+  soon = oncePerFrame(() => this.changed());
 
   draw() {
     if (this.view) this.view.show(this.answer, this.picked);

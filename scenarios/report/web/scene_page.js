@@ -12,7 +12,7 @@ function showMore(box) {
     box.classList.toggle("more-below", box.scrollTop + box.clientHeight < box.scrollHeight - slack);
   };
   box.addEventListener("scroll", mark, { passive: true });
-  const watch = new ResizeObserver(() => requestAnimationFrame(mark));
+  const watch = new ResizeObserver(oncePerFrame(mark));
   for (const part of [box, ...box.children]) watch.observe(part);
   return mark;
 }
@@ -164,7 +164,7 @@ class CostStrip {
     this.box.className = "strip";
     document.querySelector("header").append(this.box);
     this.contactStep = scene.firstContact >= 0 ? this.bars.findIndex((b) => b.step === events.stepNumber(events.at(scene.firstContact))) : -1;
-    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.box);
+    new ResizeObserver(oncePerFrame(() => this.draw())).observe(this.box);
     selection.listeners.push((what) => {
       if (what === "event") this.mark();
     });
@@ -246,21 +246,17 @@ class CostStrip {
     this.cursor = make("rect", svg, { y: 1, height: height - 2, width: Math.max(3, step), class: "cursor" });
     const words = document.createElement("p");
     words.append(`${this.title}, up to ${digits(most)}: `);
+    const addKey = (name) => {
+      const key = document.createElement("span"),
+        dot = document.createElement("i");
+      key.append(dot, name);
+      words.append(key);
+      return dot;
+    };
     sorts.forEach((s, k) => {
-      if (!bars.some((b) => b.values[k] > 0)) return;
-      const key = document.createElement("span"),
-        dot = document.createElement("i");
-      dot.style.background = s.colour;
-      key.append(dot, s.name);
-      words.append(key);
+      if (bars.some((b) => b.values[k] > 0)) addKey(s.name).style.background = s.colour;
     });
-    if (this.contactStep > 0) {
-      const key = document.createElement("span"),
-        dot = document.createElement("i");
-      dot.className = "contact";
-      key.append(dot, "first contact");
-      words.append(key);
-    }
+    if (this.contactStep > 0) addKey("first contact").className = "contact";
     box.replaceChildren(svg, words);
     this.mark();
   }
@@ -272,7 +268,7 @@ class CostStrip {
           ? lastAtMost(bars.map((b) => b.event), selection.event)
           : bars.findIndex((b) => b.step === events.stepNumber(selection.event));
     this.cursor.style.visibility = at < 0 ? "hidden" : "";
-    this.cursor.setAttribute("x", at < 0 ? 0 : (at * Math.max(200, this.box.clientWidth)) / bars.length);
+    this.cursor.setAttribute("x", at < 0 ? 0 : (at * this.width) / bars.length);
   }
 }
 

@@ -225,7 +225,7 @@ class EventTable {
       if (what === "event") this.follow();
       if (what === "pick") this.draw();
     });
-    new ResizeObserver(() => requestAnimationFrame(() => this.resize())).observe(this.box);
+    new ResizeObserver(oncePerFrame(() => this.resize())).observe(this.box);
     this.refilter();
   }
 
@@ -802,7 +802,7 @@ class WorkIcicle {
     byId("work-scope").addEventListener("input", () => this.draw());
     byId("work-scope").closest("label").hidden = work.steps.index.length < 2;
     this.ofStep = WorkIcicle.bySteps(work);
-    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.box);
+    new ResizeObserver(oncePerFrame(() => this.draw())).observe(this.box);
     form.listeners.push(() => this.draw());
     selection.listeners.push((what) => {
       if (what !== "event") return;

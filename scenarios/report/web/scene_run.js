@@ -24,6 +24,19 @@ function unpack(text) {
   return out;
 }
 
+/** Returns a function that runs `action` at the next frame, once however often it is called until then. */
+function oncePerFrame(action) {
+  const soon = () => {
+    if (soon.waiting) return;
+    soon.waiting = true;
+    requestAnimationFrame(() => {
+      soon.waiting = false;
+      action();
+    });
+  };
+  return soon;
+}
+
 /** Returns the largest index whose value is at most `value`, in an ascending array; -1: none. */
 function lastAtMost(ascending, value) {
   let low = 0,

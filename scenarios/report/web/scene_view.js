@@ -288,14 +288,7 @@ class BodiesCanvas {
     this.redraw();
   }
 
-  redraw() {
-    if (this.waiting) return;
-    this.waiting = true;
-    requestAnimationFrame(() => {
-      this.waiting = false;
-      this.draw();
-    });
-  }
+  redraw = oncePerFrame(() => this.draw());
 
   render() {
     if (this.camera.plane) {
