@@ -361,7 +361,7 @@ Command add_tree(CLI::App& root, const Globals& globals) {
       ->check(CLI::NonNegativeNumber)
       ->type_name("S");
   app->add_flag("--json", o->json, "Print one JSON object");
-  app->add_option("-o,--output", o->folder, "Also write a page, with charts and pictures of the worst nodes")
+  app->add_option("-o,--output", o->folder, "Also write a page, with charts and a 3D view of the nodes")
       ->type_name("DIR");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_tree(*o, globals); }};

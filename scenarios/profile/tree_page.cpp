@@ -1,16 +1,14 @@
 #include "scenarios/profile/tree_page.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
-#include "render/pictures/panel.hpp"
+#include "scenarios/run/scene_json.hpp"
 #include <lrbscope/core/strings.hpp>
-#include <lrbscope/render/overlay.hpp>
-#include <lrbscope/render/rasterize.hpp>
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/render/svg.hpp>
 
@@ -29,23 +27,6 @@ std::string percent(double share) {
 
 std::string share_of_epo(const TreeFigures& f, double epo) {
   return f.epo && f.epo->value > 0 ? percent(epo / f.epo->value) : "";
-}
-
-/// Returns true if a part of the triangle lies in the volume; for spheres and RSS, a corner or the centre.
-bool reaches_into(const Volumes& volumes, std::uint32_t node, std::span<const HalfSpace> half,
-                  const std::array<Vector3d, 3>& corners) {
-  if (half.empty()) {
-    const Vector3d centre = (corners[0] + corners[1] + corners[2]) / 3;
-    return volumes.outside(node, centre) == 0 ||
-           std::any_of(corners.begin(), corners.end(),
-                       [&](const Vector3d& p) { return volumes.outside(node, p) == 0; });
-  }
-  std::vector<Vector3d> polygon(corners.begin(), corners.end());
-  for (const HalfSpace& h : half) {
-    clip(polygon, h);
-    if (polygon.empty()) return false;
-  }
-  return area_of(polygon) > 0;
 }
 
 void add_numbers(report::Document& doc, const TreeReport& report, std::size_t triangles) {
@@ -98,6 +79,11 @@ void add_charts(report::Document& doc, const TreeFigures& f) {
   if (f.leaf_sizes.size() > 1) doc.chart({"Leaf sizes", {"triangles in a leaf"}, {"leaves"}, {sizes}});
 }
 
+/// Returns a link of a table's row to a node of the view.
+std::string target_of(const capture::Tree& tree, std::uint32_t node) {
+  return node == kNull ? std::string() : "node " + std::to_string(tree.id_of(node));
+}
+
 report::Table node_table(const std::string& title, const std::vector<NodeFigures>& nodes,
                          const capture::Tree& tree, const TreeFigures& f) {
   const bool waste = std::any_of(nodes.begin(), nodes.end(), [](const auto& n) { return n.waste > 0; });
@@ -107,51 +93,109 @@ report::Table node_table(const std::string& title, const std::vector<NodeFigures
     t.rows.push_back({std::to_string(tree.id_of(n.node)), std::to_string(n.depth), group_digits(n.triangles),
                       short_number(n.area), short_number(n.epo), share_of_epo(f, n.epo)});
     if (waste) t.rows.back().push_back(short_number(n.waste));
+    t.targets.push_back(target_of(tree, n.node));
   }
   return t;
 }
 
-run::Panel node_panel(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index,
-                      const Subtrees& subtrees, const NodeFigures& figures) {
-  constexpr double kAround = 1.5;  // extent of the picture, relative to the volume
-  const std::uint32_t node = figures.node;
-  const std::vector<HalfSpace> half = volumes.half_spaces(node);
-  const render::Style& style = render::style_of(render::StyleName::screen);
-  render::DrawList list;
-  render::DrawTriangle like;
-  like.edges = 7;
-  like.edge_style = list.edge_style({with_alpha(render::palette::kInk, 110), 0.7F});
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) like.x[k] = mesh.vertices[mesh.triangles[t][k]];
-    const bool own = index.leaf[t] != kNull && subtrees.contains(node, index.leaf[t]);
-    like.colour = own                                         ? style.body(Side::a)
-                  : reaches_into(volumes, node, half, like.x) ? style.body(Side::b)
-                                                              : render::palette::kPaleFront;
-    list.triangles.push_back(like);
+/// Returns the body and its tree for the page's view (report/web/tree.js), with coordinates relative to the
+/// body's centre and in units of its size. Faces are in the order of the tree's leaves, so that the faces
+/// below a node are consecutive.
+std::string view_json(const capture::Tree& tree, const capture::Mesh& mesh, const TreeIndex& index,
+                      const TreeFigures& figures) {
+  using Numbers = std::vector<std::uint32_t>;
+  using report::packed;
+  const Subtrees subtrees(tree, index, mesh.triangles.size());
+  const Volumes volumes(tree);
+  Eigen::AlignedBox3d around;
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) around.extend(mesh.vertices[v]);
+  run::SceneFrame frame{around.center(), std::max(around.diagonal().norm() / 2, 1e-300)};
+
+  // Faces in no leaf come last. A body in the plane has segments, whose second corner is repeated.
+  Numbers faces = subtrees.triangles;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    if (index.leaf[t] == kNull) faces.push_back(t);
+  const bool flat =
+      std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [](const auto& t) { return t[1] == t[2]; });
+  const std::uint32_t corners_of_face = flat ? 2 : 3;
+  Numbers corners;
+  for (const std::uint32_t face : faces)
+    corners.insert(corners.end(), mesh.triangles[face].begin(),
+                   mesh.triangles[face].begin() + corners_of_face);
+  std::vector<float> vertices;
+  for (const Vector3d& v : mesh.vertices) frame.add_point(vertices, v);
+
+  // The nodes nearest to the root, breadth first, and the worst ones.
+  constexpr std::size_t kMaxNodes = 60'000;
+  constexpr double kThinnest = 1e-7;  // half the thickness of a flat box, relative to the unit
+  Numbers nodes(index.from_root.begin(), index.from_root.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                       kMaxNodes, index.from_root.size())));
+  Numbers place(tree.size(), kNull);
+  for (std::uint32_t i = 0; i < nodes.size(); ++i) place[nodes[i]] = i;
+  for (const auto* list : {&figures.worst, &figures.most_waste})
+    for (const NodeFigures& n : *list)
+      if (place[n.node] == kNull) {
+        place[n.node] = static_cast<std::uint32_t>(nodes.size());
+        nodes.push_back(n.node);
+      }
+  Numbers parents, depths, first, last;
+  std::vector<float> boxes, areas, epos;
+  const double root_area = figures.area[index.from_root.front()];
+  nlohmann::json ids = nlohmann::json::array();
+  for (const std::uint32_t n : nodes) {
+    ids.push_back(tree.id_of(n));
+    parents.push_back(index.parent[n] == kNull ? kNull : place[index.parent[n]]);
+    depths.push_back(index.depth[n]);
+    first.push_back(subtrees.first_triangle[n]);
+    last.push_back(subtrees.last_triangle[n]);
+    areas.push_back(root_area > 0 ? static_cast<float>(figures.area[n] / root_area) : 0);
+    epos.push_back(figures.epo ? static_cast<float>(figures.epo->by_node[n]) : 0);
+    const trace::ShapeBox box = volumes.box(n);
+    frame.add_point(boxes, box.centre);
+    for (const Vector3d& half : box.half)
+      frame.add_vector(boxes, half.norm() > kThinnest * frame.unit
+                                  ? half
+                                  : half.stableNormalized() * (kThinnest * frame.unit));
   }
-  const trace::ShapeBox box = volumes.box(node);
-  const auto corner = [&](unsigned i, double scale) {
-    Vector3d p = box.centre;
-    for (unsigned k = 0; k < 3; ++k) p += (i >> k & 1 ? scale : -scale) * box.half[k];
-    return p;
-  };
-  std::vector<Vector3d> shown;
-  for (unsigned i = 0; i < 8; ++i) {
-    shown.push_back(corner(i, kAround));
-    for (unsigned k = 0; k < 3; ++k) {
-      if (i >> k & 1) continue;
-      render::DrawLine line;
-      line.points = {corner(i, 1), corner(i | 1U << k, 1)};
-      line.colour = render::palette::kVermillion;
-      line.width = 2;
-      line.layer = render::Layer::on_top;
-      list.lines.push_back(line);
-    }
-  }
-  return {list, run::fit_points(shown, 3),
-          "node " + std::to_string(volumes.tree().id_of(node)) + ", depth " + std::to_string(figures.depth) +
-              ": " + counted(figures.triangles, "triangle", "triangles"),
-          false};
+  const Numbers none, no_region(faces.size(), kNull), sizes(faces.size(), corners_of_face);
+  const nlohmann::json out = {{"dim", flat ? 2 : 3},
+                              {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
+                              {"unit", frame.unit},
+                              {"colours", run::scene_colours()},
+                              {"volume", volume_name(tree.volume)},
+                              {"epo", figures.epo ? figures.epo->value : 0},
+                              {"body",
+                               {{"name", mesh.name},
+                                {"faces", faces.size()},
+                                {"realFaces", faces.size()},
+                                {"regions", 0},
+                                {"geometry",
+                                 {{"vertices", packed(vertices)},
+                                  {"sizes", packed(sizes)},
+                                  {"corners", packed(corners)},
+                                  {"inner", packed(no_region)},
+                                  {"outer", packed(no_region)},
+                                  {"parent", packed(none)},
+                                  {"layer", packed(none)}}},
+                                {"boxes",
+                                 {{"node", packed(none)},
+                                  {"depth", packed(none)},
+                                  {"places", packed(boxes)},
+                                  {"whole", 0},
+                                  {"atDepth", packed(none)}}},
+                                {"counts", {{"tests", packed(none)}, {"hits", packed(none)}}}}},
+                              {"faces", packed(faces)},
+                              {"nodes",
+                               {{"id", std::move(ids)},
+                                {"parent", packed(parents)},
+                                {"depth", packed(depths)},
+                                {"first", packed(first)},
+                                {"last", packed(last)},
+                                {"area", packed(areas)},
+                                {"epo", packed(epos)},
+                                {"all", nodes.size() == index.from_root.size()}}}};
+  return out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -176,6 +220,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
   using namespace render::svg_text;
   constexpr double kWidth = 1200, kMargin = 8, kRow = 18, kText = 11, kRule = 0.7, kRuleShare = 0.2;
   constexpr double kRoomForText = 40, kNarrowest = 1;  // pixels
+  constexpr double kPale = 0.45;  // share of the colour scale above which black is better legible than white
   constexpr std::uint32_t kMaxDepths = 40;
   double largest = 0;
   if (figures.epo)
@@ -201,7 +246,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
     const double value = largest > 0 ? std::sqrt(epo / largest) : 0;
     const render::Rgba colour = render::palette::viridis(value);
     const std::string name = std::to_string(tree.id_of(n));
-    boxes += "<rect" + attribute("x", number(x)) + attribute("y", number(y)) +
+    boxes += "<rect" + attribute("data-node", name) + attribute("x", number(x)) + attribute("y", number(y)) +
              attribute("width", number(width - rule)) + attribute("height", number(kRow - rule)) +
              paint("fill", colour) + "><title>node " + name + ", depth " + std::to_string(index.depth[n]) +
              ": " + counted(index.triangles_below[n], "triangle", "triangles") +
@@ -210,7 +255,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
     if (width > kRoomForText)
       boxes += "<text" + attribute("x", number(x + width / 2)) + attribute("y", number(y + kRow / 2)) +
                font(kText) + attribute("text-anchor", "middle") + attribute("dominant-baseline", "central") +
-               paint("fill", value > 0.5 ? render::palette::kInk : render::kWhite) + ">" + name + "</text>\n";
+               paint("fill", value > kPale ? render::kBlack : render::kWhite) + ">" + name + "</text>\n";
   }
   const double height = 2 * kMargin + kRow * depths;
   return svg_open(kWidth, height) + "<title>The nodes of the tree by depth</title>\n<rect" +
@@ -218,24 +263,9 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
          paint("fill", render::kWhite) + "/>\n" + boxes + "</svg>\n";
 }
 
-render::Image node_sheet(const capture::Tree& tree, const capture::Mesh& mesh, const TreeIndex& index,
-                         std::span<const NodeFigures> nodes) {
-  const Volumes volumes(tree);
-  const Subtrees subtrees(tree, index, mesh.triangles.size());
-  std::vector<run::Panel> panels;
-  for (const NodeFigures& n : nodes) panels.push_back(node_panel(volumes, mesh, index, subtrees, n));
-  render::Look look;
-  constexpr int kWidth = 480, kHeight = 400;  // of a panel
-  look.width = kWidth;
-  look.height = kHeight;
-  render::MontageOptions side_by_side;
-  side_by_side.columns = static_cast<int>(panels.size());
-  return run::draw_sheet(panels, look, side_by_side);
-}
-
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,
                      const TreeReport& report, const std::string& engine, const std::string& command) {
-  constexpr std::size_t kPictures = 3;
+  constexpr std::size_t kMaxFaces = 500'000;  // of a view
   const TreeFigures& f = report.figures;
   const TreeIndex index(tree, mesh.triangles.size());
   const std::string mesh_name = mesh.name.empty() ? "mesh " + std::to_string(tree.mesh + 1) : mesh.name;
@@ -247,14 +277,19 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
   add_numbers(doc, report, mesh.triangles.size());
   if (faults > 0) {
     report::Table table{"Faults", {"kind", "number", "found"}};
-    for (const FoundFault& fault : report.faults.first)
+    for (const FoundFault& fault : report.faults.first) {
       table.rows.push_back({io::in_words(name_of(fault.kind)),
                             group_digits(report.faults.totals[static_cast<std::size_t>(fault.kind)]),
                             text_of(fault, tree, mesh)});
+      table.targets.push_back(target_of(tree, fault.node));
+    }
     table.note = "The first " + std::to_string(TreeFaults::kShown) + " of each kind.";
     doc.table(table);
   }
-  add_charts(doc, f);
+  if (mesh.triangles.size() <= kMaxFaces)
+    doc.tree_view(view_json(tree, mesh, index, f));
+  else
+    doc.purpose("No view: it is limited to " + group_digits(kMaxFaces) + " triangles.");
   doc.picture(
       "nodes.svg", icicle_svg(tree, index, f), "All nodes",
       "By depth, the root on top. Width: triangles below the node. Colour: its EPO, from dark blue (none) to yellow (the largest).",
@@ -267,15 +302,7 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
     doc.table(table);
   }
   if (!f.most_waste.empty()) doc.table(node_table("Worst nodes by waste", f.most_waste, tree, f));
-  if (!f.worst.empty())
-    doc.picture(
-        "worst.png",
-        node_sheet(tree, mesh, index, std::span(f.worst).first(std::min(kPictures, f.worst.size()))),
-        "Worst nodes in the body",
-        "Blue: the node's triangles. Orange: triangles of other nodes that reach into its volume. Red lines: the " +
-            std::string(tree.volume == capture::VolumeKind::aabb || tree.volume == capture::VolumeKind::obb
-                            ? "volume."
-                            : "box around the volume."));
+  add_charts(doc, f);
   doc.write(folder);
 }
 

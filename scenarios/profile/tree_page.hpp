@@ -1,13 +1,12 @@
 #pragma once
-/// A page about a captured tree: figures, charts, an icicle of its nodes, and pictures of the worst ones.
+/// A page about a captured tree: figures, charts, an icicle of its nodes, and a 3D view of the body with the
+/// volume and the triangles of a node.
 
-#include <span>
 #include <string>
 #include <string_view>
 
 #include "scenarios/profile/tree_report.hpp"
 #include "scenarios/report/document.hpp"
-#include <lrbscope/render/image.hpp>
 #include <lrbscope/trace/capture.hpp>
 
 namespace lrb::profile {
@@ -18,11 +17,6 @@ std::string_view volume_name(capture::VolumeKind kind);
 /// Returns the tree as an icicle by depth: a node is as wide as its share of the triangles, and coloured by
 /// its share of EPO. SVG, at most 40 depths; nodes narrower than a pixel are left out.
 std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const TreeFigures& figures);
-
-/// Draws nodes side by side: a node's triangles, those of others that reach into its volume, and the box
-/// around the volume. Throws EnvironmentError without off-screen OpenGL.
-render::Image node_sheet(const capture::Tree& tree, const capture::Mesh& mesh, const TreeIndex& index,
-                         std::span<const NodeFigures> nodes);
 
 /// Writes the page. `engine`: name of the engine; `command`: that made the page.
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,

@@ -73,9 +73,13 @@ std::string command_html(const std::string& command) {
   return fill("<pre class=\"command\"><code>{}</code></pre>", {command});
 }
 
-/// Without scripts, the page of a run has its texts and tables; its pictures are files.
+/// Without scripts, a page with a 3D view has its texts and tables; the pictures of a run are files.
 constexpr const char* kNoScript =
     R"(<noscript><style>.scene, .frames, .charts { display: none; }</style><p class="note">The view, the charts and the events of this page need JavaScript. The pictures of the run are in <a href="frames/">frames/</a>.</p></noscript>
+)";
+
+constexpr const char* kNoScriptView =
+    R"(<noscript><style>.scene, .charts { display: none; }</style><p class="note">The view and the charts of this page need JavaScript.</p></noscript>
 )";
 
 constexpr const char* kModes =
@@ -272,15 +276,25 @@ Document& Document::views(const std::vector<View>& views) {
       "</section>\n");
 }
 
-Document& Document::scene(const std::string& json) {
-  scene_ = json;
+Document& Document::view(const std::string& json, std::string_view html,
+                         std::initializer_list<const char*> scripts) {
+  view_data_ = "<script type=\"application/json\" id=\"scene-data\">" + script_safe(json) + "</script>\n";
   for (const char* name : {"three.min.js", "OrbitControls.js"}) libraries_ += "\n" + embedded(name);
-  // Each follows those that it depends on.
-  for (const char* name : {"scene_run", "scene_panels", "scene_bodies", "scene_marks", "scene_view",
-                           "scene_controls", "scene_page", "scene"})
-    scripts_ += embedded(name + std::string(".js"));
+  for (const char* name : scripts) scripts_ += embedded(name);
   styles_ += render::scene_root_css() + embedded("scene.css");
-  return add(embedded("scene.html"));
+  return add(html);
+}
+
+Document& Document::scene(const std::string& json) {
+  of_run_ = true;
+  return view(json, io::embedded_file("scene.html"),
+              {"scene_run.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js", "scene_view.js",
+               "scene_controls.js", "scene_page.js", "scene.js"});
+}
+
+Document& Document::tree_view(const std::string& json) {
+  return view(json, io::embedded_file("tree.html"),
+              {"scene_run.js", "scene_bodies.js", "scene_marks.js", "scene_view.js", "tree.js"});
 }
 
 Document& Document::frames(const std::vector<Frame>& frames, const std::string& folder, std::size_t budget) {
@@ -298,7 +312,7 @@ Document& Document::frames(const std::vector<Frame>& frames, const std::string& 
                     {"step", f.step}});
   }
   frames_ = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  const bool alone = scene_.empty();
+  const bool alone = !of_run_;
   const std::string keys = alone ? "Keys: ← → one frame, shift ten, Home, End, space plays. " : "";
   const std::string player =
       filled(io::embedded_file("player.html"), {{"keys", keys}, {"note", images.note}});
@@ -312,11 +326,13 @@ Document& Document::frames(const std::vector<Frame>& frames, const std::string& 
 
 Document& Document::picture(const std::string& file, std::string bytes, const std::string& title,
                             const std::string& caption, bool live) {
+  const std::string shown =
+      live ? "<div class=\"live-picture\" tabindex=\"0\">" + bytes + "</div>"
+           : fill("<a href=\"{}\"><img src=\"{!}\" alt=\"{}\"></a>", {file, uri_of(file, bytes), title});
   add(fill(R"(<section class="figure"><h2>{}</h2>
-<figure><a href="{}">{!}</a><figcaption>{}</figcaption></figure></section>
+<figure>{!}<figcaption>{}</figcaption></figure></section>
 )",
-           {title, file, live ? bytes : fill("<img src=\"{!}\" alt=\"{}\">", {uri_of(file, bytes), title}),
-            caption}));
+           {title, shown, caption}));
   return this->file(file, std::move(bytes), title);
 }
 
@@ -372,27 +388,26 @@ std::string Document::html() const {
     source += "<section><h2>Files</h2>\n<ul class=\"links\">\n" + files + "</ul></section>\n";
   const std::string texts = texts_.empty() ? "" : "<div class=\"texts\">\n" + texts_ + "</div>\n";
   std::string numbers = numbers_.empty() ? "" : "<dl class=\"numbers\">\n" + numbers_ + "</dl>\n";
-  if (!scene_.empty()) {
+  if (of_run_) {
     numbers = tab_html("Answer", numbers);
     source = tab_html("Run", source);
   }
-  const std::string scene_data = scene_.empty() ? ""
-                                                : "<script type=\"application/json\" id=\"scene-data\">" +
-                                                      script_safe(scene_) + "</script>\n";
   return filled(io::embedded_file("page.html"),
                 {{"title", render::escape_markup(title_)},
                  {"verdict", verdict_},
                  {"purpose", (summary_.empty() ? "" : fill("<p class=\"lead\">{}</p>\n", {summary_})) +
                                  (purpose_.empty() ? "" : fill("<p class=\"purpose\">{}</p>", {purpose_}))},
-                 {"noscript", scene_.empty() ? "" : kNoScript},
+                 {"noscript", of_run_              ? kNoScript
+                              : view_data_.empty() ? ""
+                                                   : kNoScriptView},
                  {"style", styles_},
-                 {"layout", scene_.empty() ? "" : " class=\"wide\""},
+                 {"layout", view_data_.empty() ? "" : " class=\"wide\""},
                  {"frames", framing_ ? "; frame-src file: 'self'" : ""},
                  {"body", texts + numbers + body_ + (in_charts_ ? "</section>\n" : "") +
                               (tab_.empty() ? "" : "</div>\n") + source},
                  {"footer", render::escape_markup(footer_)},
                  {"data", script_safe("{\"frames\":" + frames_ + ",\"charts\":[" + charts_ + "]}")},
-                 {"scene_data", scene_data},
+                 {"scene_data", view_data_},
                  {"library", libraries_},
                  {"script", embedded("page.js") + scripts_}});
 }

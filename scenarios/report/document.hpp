@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -157,6 +158,7 @@ class Document {
   Document& comparisons(const std::vector<Comparison>& comparisons);
   Document& views(const std::vector<View>& views);  ///< with one camera and one time step
   Document& scene(const std::string& json);         ///< a run, for the 3D view
+  Document& tree_view(const std::string& json);     ///< a body and its tree, for the 3D view
   /// Pictures of a sequence, whose files are in `folder`. `budget`: see inline_pngs().
   Document& frames(const std::vector<Frame>& frames, const std::string& folder,
                    std::size_t budget = kInlineBudget);
@@ -196,12 +198,14 @@ class Document {
   std::string tooltip(std::string_view name) const;
   /// Adds a style sheet and a script, each once.
   void use(const std::string& style, std::string_view script);
+  /// Adds a 3D view: its data and the scripts that draw it, each after those that it depends on.
+  Document& view(const std::string& json, std::string_view html, std::initializer_list<const char*> scripts);
 
   std::string title_, purpose_, summary_, verdict_, footer_, command_, tab_;
   std::string_view (*meaning_of_)(std::string_view) = nullptr;
   std::string texts_, numbers_, body_;
-  std::string styles_, libraries_, scripts_, scene_, charts_, frames_ = "[]";
-  bool framing_ = false, in_charts_ = false;
+  std::string styles_, libraries_, scripts_, view_data_, charts_, frames_ = "[]";
+  bool of_run_ = false, framing_ = false, in_charts_ = false;
   std::size_t chart_count_ = 0;
   std::vector<Link> links_;
   std::vector<std::pair<std::string, std::string>> files_;

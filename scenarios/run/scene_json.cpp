@@ -93,32 +93,6 @@ std::string packed_each(const Range& range, Get get) {
   return packed(out);
 }
 
-json colours() {
-  namespace palette = render::palette;
-  using render::css;
-  constexpr std::uint32_t kStops = 17, kCategories = 96;
-  json scale = json::array(), categories = json::array();
-  for (std::uint32_t i = 0; i < kStops; ++i)
-    scale.push_back(css(palette::viridis(static_cast<double>(i) / (kStops - 1))));
-  for (std::uint32_t i = 0; i < kCategories; ++i) categories.push_back(css(palette::category(i)));
-  return {{"bodies", {css(palette::body(Side::a)), css(palette::body(Side::b))}},
-          {"contact", css(palette::kContact)},
-          {"refining", css(palette::kRefining)},
-          {"underTest", css(palette::kUnderTest)},
-          {"selected", css(palette::kPurple)},
-          {"wrong", css(palette::kWrong)},
-          {"ink", css(palette::kInk)},
-          {"edgeInk", css(palette::kEdgeInk)},
-          {"shares",
-           {{"edge", palette::kEdgeShare},
-            {"lid", palette::kLidPale},
-            {"ground", palette::kGroundPale},
-            {"noValue", palette::kNoValuePale}}},
-          {"separationVector", css(kSeparationColour)},
-          {"scale", std::move(scale)},
-          {"categories", std::move(categories)}};
-}
-
 // ---- where things are
 
 Eigen::Vector3d centre_of(const LrbRep& rep) {
@@ -562,12 +536,38 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"relations", words_json<Relation>()},
                     {"meets", words_json<exact::Meet>()},
                     {"allEvents", trace.events.size()},
-                    {"colours", colours()},
+                    {"colours", scene_colours()},
                     {"bodies", std::move(bodies)},
                     {"why", explanations_json(p, {events.kept, steps}, frame, source.why, limits.explained)},
                     {"steps", steps_json(p, steps, frame)},
                     {"events", events_json(trace, work, events.kept)}};
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+json scene_colours() {
+  namespace palette = render::palette;
+  using render::css;
+  constexpr std::uint32_t kStops = 17, kCategories = 96;
+  json scale = json::array(), categories = json::array();
+  for (std::uint32_t i = 0; i < kStops; ++i)
+    scale.push_back(css(palette::viridis(static_cast<double>(i) / (kStops - 1))));
+  for (std::uint32_t i = 0; i < kCategories; ++i) categories.push_back(css(palette::category(i)));
+  return {{"bodies", {css(palette::body(Side::a)), css(palette::body(Side::b))}},
+          {"contact", css(palette::kContact)},
+          {"refining", css(palette::kRefining)},
+          {"underTest", css(palette::kUnderTest)},
+          {"selected", css(palette::kPurple)},
+          {"wrong", css(palette::kWrong)},
+          {"ink", css(palette::kInk)},
+          {"edgeInk", css(palette::kEdgeInk)},
+          {"shares",
+           {{"edge", palette::kEdgeShare},
+            {"lid", palette::kLidPale},
+            {"ground", palette::kGroundPale},
+            {"noValue", palette::kNoValuePale}}},
+          {"separationVector", css(kSeparationColour)},
+          {"scale", std::move(scale)},
+          {"categories", std::move(categories)}};
 }
 
 json posed_bodies_json(const RecordedRun& p) {
@@ -594,9 +594,9 @@ json posed_bodies_json(const RecordedRun& p) {
   };
   for (const trace::Step& step : p.trace->steps)
     steps.push_back({{"index", step.index}, {"poses", {rows(step.pose_a), rows(step.pose_b)}}});
-  return {{"dim", p.reps[0]->dim()},  {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
-          {"unit", frame.unit},       {"view", view_json(p.trace->header)},
-          {"colours", colours()},     {"bodies", std::move(bodies)},
+  return {{"dim", p.reps[0]->dim()},    {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
+          {"unit", frame.unit},         {"view", view_json(p.trace->header)},
+          {"colours", scene_colours()}, {"bodies", std::move(bodies)},
           {"steps", std::move(steps)}};
 }
 

@@ -17,6 +17,9 @@ namespace lrb::run {
 /// none.
 nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame);
 
+/// Returns the colours of a page's 3D view.
+nlohmann::json scene_colours();
+
 /// Size limits of a page, which opens in a second or two at these limits.
 struct SceneLimits {
   std::size_t events = 200'000;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# browser.sh LRBSCOPE: makes the page of a run, opens it in headless Chromium, and drives it (drive.js) with clicks, filters,
-# sliders and keys. Fails if the page disagrees with the trace, and on any error in the browser's console. Skipped (77) without
-# Chromium.
+# browser.sh LRBSCOPE: makes pages of runs and of a tree, opens them in headless Chromium, and drives them (drive.js,
+# drive_tree.js) with clicks, filters, sliders and keys. Fails if a page disagrees with the trace or the tree, and on any error in the
+# browser's console. Skipped (77) without Chromium.
 set -euo pipefail
 lrbscope=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -73,4 +73,7 @@ page "$here/near.json"
 drive 1400 1000 'page.html?drive=measured' "${webgl[@]}"
 page "$here/open.json"
 drive 1400 1000 'page.html?drive=open' "${webgl[@]}"
+"$lrbscope" --quiet tree "$work/out/a.lrb" -o "$work/tree" >/dev/null
+with_scripts "$work/tree/index.html" drive_tree.js >"$work/page.html"
+drive 1400 1000 page.html "${webgl[@]}"
 exit "$failed"

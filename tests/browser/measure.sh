@@ -18,8 +18,9 @@ make_pages() {
   sed -i 's/0\.02,/0.021,/' "$work/meet.json"
   "$lrbscope" --quiet golden report --goldens "$work/goldens" -o "$out/golden" >/dev/null || true # the page shows a failure
   "$lrbscope" --quiet levels "$out/dent/a.lrb" --at 0.02 0.1 -o "$out/levels" >/dev/null
+  "$lrbscope" --quiet tree "$out/meet/a.lrb" -o "$out/tree" >/dev/null
   pages=()
-  for name in meet build dent plane open near compare golden levels; do pages+=("$out/$name/index.html"); done
+  for name in meet build dent plane open near compare golden levels tree; do pages+=("$out/$name/index.html"); done
   if "$lrbscope" --quiet run "$work/meet.json" --live --frames none -o "$out/live" >/dev/null 2>&1; then
     pages+=("$out/live/live.html")
   else

@@ -1,0 +1,293 @@
+// ---- the page of a tree: the volume and the triangles of one node, selected in the view, the icicle or a table
+
+/** The nodes of a tree. A node is an index into these arrays, unless it is called an id: the engine's own
+    number. */
+class TreeNodes {
+  constructor(json) {
+    this.ids = json.id;
+    this.all = json.all; // false: only the nodes nearest to the root and the worst ones are here
+    for (const name of ["parent", "depth", "first", "last", "area", "epo"]) this[name] = unpack(json[name]);
+    this.indexOf = new Map(this.ids.map((id, node) => [String(id), node]));
+    this.childrenOf = grouped(this.parent, this.ids.length);
+  }
+
+  children(node) {
+    return this.childrenOf.of(node);
+  }
+
+  /** Returns the deepest node with a face, or -1: the face is in no leaf. */
+  leafOf(face) {
+    const has = (node) => this.first[node] <= face && face < this.last[node];
+    let node = has(0) ? 0 : -1;
+    for (let next = node; next >= 0; ) {
+      node = next;
+      const inside = [...this.children(node)].find(has);
+      next = inside === undefined ? -1 : inside;
+    }
+    return node;
+  }
+}
+
+/** Returns the polygon within w.x <= offset (Sutherland and Hodgman 1974). */
+function clipped(polygon, w, offset) {
+  const out = [],
+    height = (p) => w[0] * p[0] + w[1] * p[1] + w[2] * p[2] - offset;
+  polygon.forEach((p, i) => {
+    const q = polygon[(i + 1) % polygon.length],
+      [a, b] = [height(p), height(q)];
+    if (a <= 0) out.push(p);
+    if (a < 0 !== b < 0 && a !== b) out.push(mixed(p, q, a / (a - b)));
+  });
+  return out;
+}
+
+/** Returns the area of a planar polygon; of a segment, which has two corners, its length. */
+function areaOf(polygon) {
+  const sum = [0, 0, 0],
+    from = (p) => p.map((x, i) => x - polygon[0][i]);
+  if (polygon.length === 2) return Math.hypot(...from(polygon[1]));
+  for (let i = 1; i + 1 < polygon.length; i++) {
+    const [u, v] = [from(polygon[i]), from(polygon[i + 1])];
+    for (let k = 0; k < 3; k++) sum[k] += (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]) / 2;
+  }
+  return Math.hypot(...sum);
+}
+
+/** Returns true if a part of a face lies in a box, `at`: its centre and three half axes. */
+function reachesInto(body, face, at) {
+  const least = 1e-5; // share of the face's area: positions are floats
+  let polygon = [...body.face(face)].map((v) => [...body.vertices.subarray(3 * v, 3 * v + 3)]);
+  const whole = areaOf(polygon);
+  for (let axis = 0; axis < 3; axis++) {
+    const w = [...at.subarray(3 + 3 * axis, 6 + 3 * axis)],
+      along = w.reduce((sum, x, i) => sum + x * at[i], 0),
+      reach = w.reduce((sum, x) => sum + x * x, 0);
+    polygon = clipped(polygon, w, along + reach);
+    polygon = clipped(polygon, w.map((x) => -x), reach - along);
+    if (polygon.length < 2) return false;
+  }
+  return areaOf(polygon) > least * whole;
+}
+
+class TreeView extends BodiesCanvas {
+  constructor(json, body) {
+    super(json, [body]);
+    this.node = 0;
+    this.views[0].paint({ of: () => this.colours.bodies[0] }, 0);
+    this.views[0].lookInside(true, false);
+    this.start();
+  }
+
+  draw() {
+    this.render();
+  }
+
+  /** Shows a node. `kinds`: by face, 2 if it is below the node, 1 if it is another one in its volume, else 0.
+      `others`: the nodes whose volumes are shown, too. */
+  show(node, kinds, others, alone) {
+    this.node = node;
+    const { colours } = this,
+      [view] = this.views,
+      shades = [mixed(colours.bodies[0], WHITE, colours.shares.ground), colours.bodies[1], colours.bodies[0]];
+    view.paint({ of: (_, face) => shades[kinds[face]] }, 0);
+    view.real.show((face) => !alone || kinds[face] > 0);
+    view.edges.visible = !alone;
+    this.marks.setBoxes("node", String(node), [{ side: 0, number: node }], colours.selected);
+    this.marks.setBoxes("others", others.join(), others.map((number) => ({ side: 0, number })), colours.ink);
+    this.redraw();
+  }
+
+  /** Returns the corners of the volume of the selected node. */
+  corners() {
+    const ends = boxEdges(this.bodies[0].boxes.places, [this.node]);
+    return Array.from({ length: ends.length / 3 }, (_, i) => new THREE.Vector3(...ends.slice(3 * i, 3 * i + 3)));
+  }
+
+  extremes() {
+    return [...super.extremes(), ...this.corners()];
+  }
+
+  frameNode() {
+    this.camera.fit(this.corners());
+    this.camera.fitted = false; // a resized window keeps it
+    this.redraw();
+  }
+}
+
+class TreePage {
+  constructor(json) {
+    this.json = json;
+    this.nodes = new TreeNodes(json.nodes);
+    this.body = new Body(json.body, 0, json.dim);
+    this.body.boxes.node = Array.from(this.nodes.ids, (_, node) => node);
+    this.faces = unpack(json.faces); // their numbers in the mesh
+    this.look = { alone: false, children: false };
+    this.view = webglWorks() ? new TreeView(json, this.body) : null;
+    if (!this.view) {
+      document.body.classList.add("without-view");
+      byId("no-view").textContent = "This browser has no WebGL, so the body is not drawn.";
+      byId("no-view").hidden = false;
+    }
+    this.connect();
+    const requested = this.nodes.indexOf.get(location.hash.replace(/^#node=/, ""));
+    this.select(requested === undefined ? this.first() : requested);
+    if (this.view) this.view.frameAll(this.view.camera.from);
+  }
+
+  /** Returns the node that the page opens with: the first one of a table, or the root. */
+  first() {
+    const row = document.querySelector("tr[data-to^=node]"),
+      node = row && this.nodes.indexOf.get(row.dataset.to.slice(5));
+    return node === undefined || node === null ? 0 : node;
+  }
+
+  select(node) {
+    const { nodes } = this;
+    this.node = node;
+    const [from, to] = [nodes.first[node], nodes.last[node]],
+      at = this.body.boxes.places.subarray(12 * node, 12 * node + 12);
+    this.kinds = new Uint8Array(this.faces.length);
+    this.others = 0;
+    for (let face = 0; face < this.kinds.length; face++) {
+      const own = from <= face && face < to;
+      this.kinds[face] = own ? 2 : reachesInto(this.body, face, at) ? 1 : 0;
+      this.others += this.kinds[face] === 1;
+    }
+    this.write();
+    this.draw();
+    history.replaceState(null, "", `#node=${nodes.ids[node]}`);
+  }
+
+  selectId(id) {
+    const node = this.nodes.indexOf.get(String(id).trim()),
+      known = node !== undefined;
+    byId("node-state").textContent = known ? "" : this.nodes.all ? "no such node below the root" : "not on this page, which has the nodes nearest to the root";
+    if (known) this.select(node);
+  }
+
+  draw() {
+    if (!this.view) return;
+    const { alone, children } = this.look;
+    this.view.show(this.node, this.kinds, children ? [...this.nodes.children(this.node)] : [], alone);
+  }
+
+  write() {
+    const { nodes, node, json, view } = this,
+      put = (id, text) => (byId(id).textContent = text),
+      triangles = nodes.last[node] - nodes.first[node],
+      faces = (n) => (json.dim === 2 ? plural(n, "segment") : plural(n, "triangle")),
+      rounded = (x) => String(Number(x.toPrecision(3))),
+      share = json.epo > 0 ? ` (${rounded((100 * nodes.epo[node]) / json.epo)} % of the tree's)` : "";
+    byId("node").value = nodes.ids[node];
+    put("node-state", "");
+    put("node-depth", digits(nodes.depth[node]));
+    put("node-triangles", faces(triangles));
+    put("node-others", faces(this.others));
+    put("node-area", rounded(nodes.area[node]));
+    put("node-epo", rounded(nodes.epo[node]) + share);
+    put("view-caption", `node ${nodes.ids[node]}, depth ${nodes.depth[node]}: ${faces(triangles)}, and ${faces(this.others)} of other nodes in its volume`);
+    const link = (other, text) => {
+      const button = document.createElement("button");
+      Object.assign(button, { type: "button", className: "text", textContent: text });
+      button.title = `Depth ${nodes.depth[other]}, ${faces(nodes.last[other] - nodes.first[other])}`;
+      button.onclick = () => this.select(other);
+      return button;
+    };
+    const parent = nodes.parent[node],
+      children = [...nodes.children(node)],
+      most = 12;
+    byId("node-near").replaceChildren(
+      ...(parent === NONE ? [] : [link(parent, `↑ ${nodes.ids[parent]}`)]),
+      ...children.slice(0, most).map((child) => link(child, `↓ ${nodes.ids[child]}`)),
+      ...(children.length > most ? [`and ${children.length - most} more`] : []),
+    );
+    for (const marked of document.querySelectorAll("[data-node], tr[data-to^=node]")) {
+      const id = marked.dataset.node || marked.dataset.to.slice(5);
+      if (id === String(nodes.ids[node])) marked.setAttribute("aria-current", "true");
+      else marked.removeAttribute("aria-current");
+    }
+    if (!view) return;
+    const volume = ["AABB", "OBB"].includes(json.volume) ? json.volume : `box around the ${json.volume}`;
+    view.legend.also(
+      [
+        [view.colours.bodies[0], "below the node"],
+        [view.colours.bodies[1], `of other nodes, in its ${volume}`],
+        [view.colours.selected, volume],
+        ...(this.look.children ? [[view.colours.ink, "of its children"]] : []),
+      ],
+      "node",
+    );
+  }
+
+  /** Goes to the parent, the first child, or a sibling. */
+  go(key) {
+    const { nodes, node } = this,
+      parent = nodes.parent[node],
+      siblings = parent === NONE ? [node] : [...nodes.children(parent)],
+      at = siblings.indexOf(node);
+    const next = {
+      ArrowUp: parent === NONE ? undefined : parent,
+      ArrowDown: nodes.children(node)[0],
+      ArrowLeft: siblings[at - 1],
+      ArrowRight: siblings[at + 1],
+    }[key];
+    if (next !== undefined) this.select(next);
+  }
+
+  toggle(name) {
+    this.look[name] = !this.look[name];
+    byId(name).setAttribute("aria-pressed", String(this.look[name]));
+    this.write();
+    this.draw();
+  }
+
+  connect() {
+    const selectable = (element, id) => {
+      element.addEventListener("click", () => {
+        this.selectId(id);
+        byId("stage").scrollIntoView({ block: "nearest" });
+      });
+    };
+    for (const box of document.querySelectorAll("[data-node]")) selectable(box, box.dataset.node);
+    for (const row of document.querySelectorAll("tr[data-to^=node]")) {
+      row.className = "leads";
+      row.tabIndex = 0;
+      selectable(row, row.dataset.to.slice(5));
+      row.addEventListener("keydown", (e) => {
+        if (e.key === "Enter") row.click();
+      });
+    }
+    byId("node").onchange = () => this.selectId(byId("node").value);
+    window.addEventListener("hashchange", () => this.selectId(location.hash.replace(/^#node=/, "")));
+    if (!this.view) return;
+    byId("fit-body").onclick = () => this.view.frameAll();
+    byId("fit-node").onclick = () => this.view.frameNode();
+    for (const name of ["alone", "children"]) byId(name).onclick = () => this.toggle(name);
+    byId("orthographic").onclick = () => {
+      this.view.camera.setOrthographic(!this.view.camera.orthographic);
+      byId("orthographic").setAttribute("aria-pressed", String(this.view.camera.orthographic));
+    };
+    document.addEventListener("keydown", (e) => this.press(e));
+    const { canvas } = this.view;
+    let down = null;
+    canvas.addEventListener("pointerdown", (e) => (down = [e.clientX, e.clientY]));
+    canvas.addEventListener("click", (e) => {
+      if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was turned
+      const hit = this.view.nearest(e.clientX, e.clientY, [this.view.views[0].real]),
+        leaf = hit ? this.nodes.leafOf(hit.face) : -1;
+      if (leaf >= 0) this.select(leaf);
+      else if (hit) byId("node-state").textContent = `triangle ${digits(this.faces[hit.face])} is in no leaf`;
+    });
+  }
+
+  press(e) {
+    if (e.ctrlKey || e.metaKey || e.altKey || ["INPUT", "SELECT"].includes(e.target.tagName)) return;
+    const keys = { F: "fit-body", f: "fit-node", i: "alone", c: "children", o: "orthographic" };
+    if (e.key.startsWith("Arrow")) this.go(e.key);
+    else if (keys[e.key]) byId(keys[e.key]).click();
+    else return;
+    e.preventDefault();
+  }
+}
+
+const treePage = new TreePage(JSON.parse(byId("scene-data").textContent));
