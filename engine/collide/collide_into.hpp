@@ -28,6 +28,14 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   if (request.is_coarse()) check_request(request);
   result.recursion = request.recursion;
   result.mode = request.mode;
+  // Most queries of scattered bodies end here. With a probe, TreeQuery makes the same test.
+  if constexpr (!Probe::kEnabled)
+    if (request.recursion == Recursion::complete && !request.is_coarse() && !request.separation &&
+        a.closed() && b.closed() && roots_are_apart(a.tree(), pose_a, b.tree(), pose_b)) {
+      set_separate(result);
+      count_roots_apart(result.counters);
+      return;
+    }
   context.body[0].begin(a, pose_a, request.wrapper);
   context.body[1].begin(b, pose_b, request.wrapper);
   const std::uint64_t fallbacks = exact::exact_fallbacks();
@@ -36,15 +44,23 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
     if (request.is_coarse()) {
       CoarseQuery<Probe>(context, request, result, probe).run();
     } else {
-      if (request.recursion == Recursion::complete)
-        TreeQuery<Probe>(context, request, result, probe).run();
-      else
+      bool apart = false;
+      if (request.recursion == Recursion::complete) {
+        TreeQuery<Probe> query(context, request, result, probe);
+        query.run();
+        apart = query.ends_at_roots() && a.closed() && b.closed();
+      } else {
         PaperQuery<Probe>(context, request, result, probe).run();
+      }
       in_phase(probe, Phase::sort, [&] {
         context.pair_order.sort(result);
         return result.pairs.size();
       });
-      decide_relation_watched(context, result, probe, [] { return true; });
+      // A probe is shown the location of points even if boxes decide.
+      if (apart && !Probe::kEnabled)
+        set_separate(result);
+      else
+        decide_relation_watched(context, result, probe, [] { return true; });
     }
   }
   if (request.separation && result.relation == Relation::separate)

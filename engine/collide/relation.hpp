@@ -23,6 +23,11 @@ struct Enclosed {
 /// Decides the relation if pairs were found or if a body is not closed. A body that is not closed has no
 /// inside: only disjoint boxes prove it separate. Returns false if neither applies.
 bool decide_without_points(QueryContext& ctx, CollideResult& result);
+/// Sets the relation of closed bodies that are proven to be disjoint.
+inline void set_separate(CollideResult& result) {
+  result.relation = Relation::separate;
+  result.interiors_overlap = Answer::no;
+}
 /// Decides the relation of closed bodies whose surfaces do not intersect.
 void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, CollideResult& result);
 

@@ -160,6 +160,12 @@ struct ExactRules {
   static constexpr bool kTrial = false;     ///< may give up after a crossing pair
 };
 
+/// Counts a query that ends at the roots (roots_are_apart()): one test of their bounds.
+inline void count_roots_apart(Counters& counters) {
+  ++counters.node_pairs;
+  ++counters.box_tests;
+}
+
 template <class Probe, class Rules = ExactRules>
 class TreeQuery {
  public:
@@ -173,6 +179,9 @@ class TreeQuery {
         rules_(rules) {}
 
   const Rules& rules() const { return rules_; }
+  /// Returns true if run() has proven the bounds of the roots disjoint, so that neither body is inside the
+  /// other.
+  bool ends_at_roots() const { return ends_at_roots_; }
 
   void run() {
     const ObbTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
@@ -188,6 +197,15 @@ class TreeQuery {
  private:
   /// Traverses the trees. Returns the number of node pairs.
   std::uint64_t walk() {
+    if constexpr (!Rules::kWrappers)
+      if (const QueryBody& a = ctx_[Side::a], &b = ctx_[Side::b];
+          roots_are_apart(a.tree(), a.world.pose(), b.tree(), b.world.pose())) {
+        ends_at_roots_ = true;
+        count_roots_apart(result_.counters);
+        if (reports_details(probe_))
+          probe_.node_pair({.a = 0, .b = 0, .parent = kNull, .step = NodeStep::whole, .box_tests = 1});
+        return 1;
+      }
     // Use a small buffer if one pair may be enough, so that the traversal does not run far beyond it.
     const bool one_may_do = Rules::kTrial || mode_ != Mode::all_pairs;
     TreeKernel k = start_kernel(ctx_, one_may_do ? 64 : 1024);
@@ -206,6 +224,8 @@ class TreeQuery {
         if (rules_.gives_up(too_many)) break;
       if (too_many) reject_pairs(pair_limit_);
     }
+    // Had the roots' own boxes overlapped, those of their children would have been tested, too.
+    ends_at_roots_ = k.box_tests == 1 && !(k.nodes_a[0].is_leaf && k.nodes_b[0].is_leaf);
     result_.counters.node_pairs += k.node_pairs;
     result_.counters.box_tests += k.box_tests;
     result_.counters.prefilter_tests += k.prefilter_tests;
@@ -295,6 +315,7 @@ class TreeQuery {
   CollideResult& result_;
   Probe& probe_;
   Rules rules_;
+  bool ends_at_roots_ = false;
   const bool exactly_ = ctx_[Side::a].rep().dim() == 3 && !exact::only_floating();
 };
 

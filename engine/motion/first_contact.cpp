@@ -185,7 +185,10 @@ FirstContactResult FirstContactSearch::finish() {
   }
   // The uninterrupted proof of separation ends at the first ambiguous interval.
   if (!result_.ambiguous.empty()) result_.t0 = result_.ambiguous[0].begin;
-  result_.grazing = result_.grazing || (result_.finished && !result_.ambiguous.empty());
+  // Ambiguous intervals just before the contact need not make the interval wider than requested.
+  const bool is_wide =
+      result_.outcome == MotionOutcome::undecided || result_.t1 - result_.t0 > request_.tolerance;
+  result_.grazing = is_wide && (result_.grazing || (result_.finished && !result_.ambiguous.empty()));
   if (result_.grazing && result_.unresolved == Unresolved::nothing) result_.unresolved = Unresolved::rounding;
   return std::move(result_);
 }

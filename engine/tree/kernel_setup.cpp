@@ -311,6 +311,23 @@ void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vect
   start_at(k, {0, 0});
 }
 
+bool roots_are_apart(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b) {
+  constexpr double kLeastSize = 0x1p-300;  // squares of smaller sizes underflow
+  if (a.empty() || b.empty()) return false;
+  const TreeNode &root_a = a.nodes()[0], &root_b = b.nodes()[0];
+  const auto centre = [](const TreeNode& root, const ObbTree& tree, const Pose& pose) {
+    return Eigen::Vector3d(
+        pose.r * (Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]) * tree.unit()) + pose.t);
+  };
+  // A near-rotation stretches lengths by at most 1 + kNearRotation / 2.
+  const double size = world_size(pose_a, a) + world_size(pose_b, b);
+  const double reach = (root_a.radius * a.unit() + root_b.radius * b.unit()) * (1 + kNearRotation) +
+                       kPoseSafety * kWorldRounding * size;
+  if (size < kLeastSize) return false;
+  if (!((centre(root_a, a, pose_a) - centre(root_b, b, pose_b)).squaredNorm() > reach * reach)) return false;
+  return rotation_defect(pose_a.r) <= kNearRotation && rotation_defect(pose_b.r) <= kNearRotation;
+}
+
 void allow_for_wrappers(TreeKernel& k) {
   // A larger slack leaves more pairs to the exact tests, and never loses one.
   k.slack *= kWrapperSlack;

@@ -66,6 +66,10 @@ inline void start_at(TreeKernel& k, NodePair pair) {
 /// Pushes the pair of roots on the kernel's stacks, which are allocated in `room`.
 void start_at_roots(TreeKernel& k, const ObbTree& a, const ObbTree& b, std::vector<NodePair>& room);
 
+/// Returns true if the balls around the roots of two trees are proven disjoint in the world: no traversal is
+/// needed. Cheaper than the setup of a kernel. False for empty trees, and for maps other than rotations.
+bool roots_are_apart(const ObbTree& a, const Pose& pose_a, const ObbTree& b, const Pose& pose_b);
+
 /// Enlarges the slack of a kernel for two wrappers to cover rounding of the enclosed bodies: see
 /// kWrapperSlack.
 void allow_for_wrappers(TreeKernel& k);

@@ -145,6 +145,54 @@ TEST_CASE("queries are exact for any matrix, rotation or not") {
   CHECK(total.in_contact > 20);
 }
 
+TEST_CASE("a query that ends at the roots equals brute force, and one with a probe") {
+  RandomEngine random(31);
+  QueryContext context;
+  int ends = 0, goes_on = 0;
+  std::vector<AnyBodies> list = any_bodies();
+  // Squares of such lengths underflow.
+  const Mesh tiny = shapes::scaled(shapes::icosphere(1), 1e-170);
+  list.push_back({"tiny", closed(tiny), closed(tiny)});
+  for (const AnyBodies& bodies : list) {
+    CAPTURE(bodies.name);
+    const ObbTree &tree_a = bodies.a.tree(), &tree_b = bodies.b.tree();
+    const bool flat = bodies.a.dim() == 2;
+    const double reach = tree_a.extent() + tree_b.extent();
+    for (int i = 0; i < 60; ++i) {
+      // From contact to far away; every fourth map is not a rotation.
+      const Pose pose_a;
+      Pose pose_b = Pose::rotation({0, 0, 1}, shapes::uniform(random, 0, 6),
+                                   shapes::uniform(random, 0, 3) * reach * shapes::random_direction(random));
+      if (flat) pose_b.t.z() = 0;
+      if (i % 4 == 3) pose_b.r *= shapes::uniform(random, 0.5, 2);
+      const BruteForceResult expected = brute_force(bodies.a, pose_a, bodies.b, pose_b);
+      for (const Mode mode : {Mode::all_pairs, Mode::any_pair}) {
+        CollideRequest request;
+        request.mode = mode;
+        NullProbe none;
+        CollideProbe silent;
+        ProbeAdapter watched(silent);
+        const CollideResult found = collide(bodies.a, pose_a, bodies.b, pose_b, request, context, none);
+        const CollideResult seen = collide(bodies.a, pose_a, bodies.b, pose_b, request, context, watched);
+        REQUIRE(found.relation == expected.relation);
+        REQUIRE(seen.relation == expected.relation);
+        REQUIRE(found.interiors_overlap == seen.interiors_overlap);
+        REQUIRE(found.pairs == seen.pairs);
+        REQUIRE(found.opened == seen.opened);
+        REQUIRE(found.counters == seen.counters);
+      }
+      if (roots_are_apart(tree_a, pose_a, tree_b, pose_b)) {
+        ++ends;
+        REQUIRE(expected.relation == Relation::separate);
+      } else {
+        ++goes_on;
+      }
+    }
+  }
+  CHECK(ends > 100);
+  CHECK(goes_on > 100);
+}
+
 TEST_CASE("any_pair ends at the first intersecting pair, first_pair at the first crossing one") {
   const LrbRep ball = closed(shapes::icosphere(3));
   CollideRequest request;
