@@ -28,14 +28,15 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   if (request.is_coarse()) check_request(request);
   result.recursion = request.recursion;
   result.mode = request.mode;
-  // Most queries of scattered bodies end here. With a probe, TreeQuery makes the same test.
-  if constexpr (!Probe::kEnabled)
-    if (request.recursion == Recursion::complete && !request.is_coarse() && !request.separation &&
-        a.closed() && b.closed() && roots_are_apart(a.tree(), pose_a, b.tree(), pose_b)) {
-      set_separate(result);
-      count_roots_apart(result.counters);
-      return;
-    }
+  const bool is_exact_walk = request.recursion == Recursion::complete && !request.is_coarse();
+  // Most queries of scattered bodies end here. With a probe, TreeQuery makes the test.
+  const bool tests_roots = !Probe::kEnabled && is_exact_walk;
+  const bool ends_at_roots = tests_roots && roots_are_apart(a.tree(), pose_a, b.tree(), pose_b);
+  if (ends_at_roots && !request.separation && a.closed() && b.closed()) {
+    set_separate(result);
+    count_roots_apart(result.counters);
+    return;
+  }
   context.body[0].begin(a, pose_a, request.wrapper);
   context.body[1].begin(b, pose_b, request.wrapper);
   const std::uint64_t fallbacks = exact::exact_fallbacks();
@@ -47,7 +48,7 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
       bool apart = false;
       if (request.recursion == Recursion::complete) {
         TreeQuery<Probe> query(context, request, result, probe);
-        query.run();
+        query.run(!tests_roots || ends_at_roots);
         apart = query.ends_at_roots() && a.closed() && b.closed();
       } else {
         PaperQuery<Probe>(context, request, result, probe).run();

@@ -183,21 +183,22 @@ class TreeQuery {
   /// other.
   bool ends_at_roots() const { return ends_at_roots_; }
 
-  void run() {
+  /// `may_end_at_roots`: false if roots_are_apart() has returned false.
+  void run(bool may_end_at_roots = true) {
     const ObbTree &a = ctx_[Side::a].tree(), &b = ctx_[Side::b].tree();
     if (a.empty() || b.empty()) return;
     if (!reports_details(probe_)) {
-      walk();
+      walk(may_end_at_roots);
       return;
     }
     probe_.begin(Phase::walk, ctx_[Side::a].walked(), ctx_[Side::b].walked());
-    probe_.end(Phase::walk, walk());
+    probe_.end(Phase::walk, walk(may_end_at_roots));
   }
 
  private:
   /// Traverses the trees. Returns the number of node pairs.
-  std::uint64_t walk() {
-    if constexpr (!Rules::kWrappers)
+  std::uint64_t walk(bool may_end_at_roots) {
+    if (!Rules::kWrappers && may_end_at_roots)
       if (const QueryBody& a = ctx_[Side::a], &b = ctx_[Side::b];
           roots_are_apart(a.tree(), a.world.pose(), b.tree(), b.world.pose())) {
         ends_at_roots_ = true;

@@ -319,13 +319,15 @@ bool roots_are_apart(const ObbTree& a, const Pose& pose_a, const ObbTree& b, con
     return Eigen::Vector3d(
         pose.r * (Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]) * tree.unit()) + pose.t);
   };
+  const double square = (centre(root_a, a, pose_a) - centre(root_b, b, pose_b)).squaredNorm();
+  const double radii = root_a.radius * a.unit() + root_b.radius * b.unit();
+  // Most bodies that intersect are rejected here, at little cost.
+  if (!(square > radii * radii)) return false;
   // A near-rotation stretches lengths by at most 1 + kNearRotation / 2.
   const double size = world_size(pose_a, a) + world_size(pose_b, b);
-  const double reach = (root_a.radius * a.unit() + root_b.radius * b.unit()) * (1 + kNearRotation) +
-                       kPoseSafety * kWorldRounding * size;
-  if (size < kLeastSize) return false;
-  if (!((centre(root_a, a, pose_a) - centre(root_b, b, pose_b)).squaredNorm() > reach * reach)) return false;
-  return rotation_defect(pose_a.r) <= kNearRotation && rotation_defect(pose_b.r) <= kNearRotation;
+  const double reach = radii * (1 + kNearRotation) + kPoseSafety * kWorldRounding * size;
+  return size >= kLeastSize && square > reach * reach && rotation_defect(pose_a.r) <= kNearRotation &&
+         rotation_defect(pose_b.r) <= kNearRotation;
 }
 
 void allow_for_wrappers(TreeKernel& k) {
