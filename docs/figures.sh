@@ -1,11 +1,19 @@
 #!/usr/bin/env bash
 # docs/figures.sh [LRBSCOPE]: makes the pictures of bodies in README and docs: figure2.png, collision.png, crowd.png,
-# figure.png, distance.png, near.png, manifold.png, first_contact.png and clash.png. (chart.png and xray.png are measurements: docs/measurements.md, docs/profiling.md.)
+# figure.png, distance.png, near.png, manifold.png, first_contact.png and clash.png. (xray.png is a measurement: docs/profiling.md.)
+# docs/figures.sh chart [LRBSCOPE [OPTION...]]: measures and makes only chart.png, with these options of lrbscope chart.
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+chart=
+if [ "${1:-}" = chart ]; then chart=1 && shift; fi
 program=${1:-$docs/../build/release/bin/lrbscope}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+if [ -n "$chart" ]; then
+  "$program" chart --no-scenes "${@:2}" -o "$work/chart" >/dev/null
+  cp "$work/chart/chart.png" "$docs/"
+  exit
+fi
 run() { "$program" -q "$@" >/dev/null; }
 run figure figure2 --width 160mm --title --no-legend --font-size 10 --line-width 0.6pt --dpi 200 -o "$work/figure2.png"
 run run collision --size 1000x562 -o "$work/collision"

@@ -8,6 +8,7 @@
 #include "bench/speed/make_sets.hpp"
 #include "bench/speed/peer_table.hpp"
 #include "bench/speed/survey.hpp"
+#include "scenarios/figure/figure_layout.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
@@ -27,7 +28,9 @@ struct ChartOptions : MeasureOptions {
   }
   std::uint32_t faces = 2000;
   unsigned rounds = 3;
-  bool scenes = true;
+  bool scenes = true, tex = false;
+  std::string width;
+  bench::ChartPrint print;
 };
 
 /// Returns the data sets of an earlier run for this quantity, by name.
@@ -91,9 +94,15 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
   page.link({"records.jsonl", "every answer of every method"});
   page.file("points.jsonl", bench::to_lines(points), "computed from them");
   page.file("chart.csv", bench::drawn_csv(points), "the points of the charts");
+  const report::Table settings = bench::table_of_settings(sets, points, infos);
+  page.file("settings.csv", report::csv(settings), "which setting for which error");
+  if (o.tex) page.file("settings.tex", report::booktabs(settings), "the same, for LaTeX with booktabs");
   for (const auto& [key, target] : scenes)
     page.link({target, "scene, trace and pictures", key.first + ", " + bench::title(key.second)});
   page.print("chart", "for print", bench::accuracy_print(o.set.quantity, sets, missing, charts));
+  if (o.print.width > 0)
+    page.print("figure", figure::length_text(o.print.width * figure::kPointsPerMm) + " wide",
+               bench::accuracy_print(o.set.quantity, sets, missing, charts, o.print), true);
   page.write(folder);
   for (const std::string& line : page.notes()) std::cerr << "lrbscope: " << line << "\n";
   for (const std::string& file : page.written()) print(o.folder + "/" + file + "\n");
@@ -105,6 +114,11 @@ int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals)
   if (quantity == methods::Quantity::self_intersections)
     throw InputError("--quantity: expected pairs, near_pairs, distance, first_contact or depth, found " +
                      std::string(name_of(quantity)));
+  constexpr double kWidest = 500 * figure::kPointsPerMm;
+  if (!o.print.panels.empty() && o.width.empty()) o.width = "85mm";
+  if (!o.width.empty())
+    o.print.width =
+        figure::parse_length(o.width, "--width", 20 * figure::kPointsPerMm, kWidest) / figure::kPointsPerMm;
   if (o.folder.empty()) o.folder = pairs ? "out/chart" : "out/chart-" + std::string(name_of(quantity));
   const std::vector<workers::WorkerMethod> methods =
       chosen_methods(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods);
@@ -139,6 +153,16 @@ Command add_chart(CLI::App& root, const Globals& globals) {
          "by more than the span of rounds [3]")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
+  app->add_option("--width", o->width,
+                  "Also write figure.pdf and figure.svg, this wide on paper, in mm, cm, in or pt; text is 8 "
+                  "points high [85mm with --panel]")
+      ->type_name("LENGTH");
+  app->add_option("--panel", o->print.panels,
+                  "Panels of the figure: pairs of bodies, classes of poses, or BODIES/CLASS [all]")
+      ->delimiter(',')
+      ->type_name("NAME,NAME,...");
+  app->add_flag("--tex", o->tex,
+                "Also write settings.tex, the table of settings for LaTeX with the package booktabs");
   app->add_flag("!--no-scenes", o->scenes, "Do not run the scenarios that the chart's points link to");
   return {app, [o, &globals, measures, draws] {
             return run_chart(*o, !draws->parsed(), !measures->parsed(), globals);

@@ -4,9 +4,12 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <span>
 #include <utility>
 
+#include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
 namespace lrb::bench {
@@ -503,26 +506,61 @@ report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& se
   return doc.table(table_of_metrics(points)).table(table_of_methods(methods)).table(table_of_points(points));
 }
 
-report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& sets,
-                               const std::vector<Missing>& missing,
-                               const std::vector<report::Chart>& charts) {
-  const std::size_t columns = classes_of(quantity).size();
-  std::vector<report::Chart> rows;
+namespace {
+
+/// Returns the panels that print names, or all with points.
+std::vector<report::Chart> printed_panels(Quantity quantity, const std::vector<DataSet>& sets,
+                                          const std::vector<Missing>& missing,
+                                          const std::vector<report::Chart>& charts,
+                                          const std::vector<std::string>& names, bool in_rows) {
+  const std::span<const PoseClass> classes = classes_of(quantity);
+  std::vector<bool> is_known(names.size());
+  std::vector<report::Chart> out;
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    const auto begin = charts.begin() + static_cast<std::ptrdiff_t>(s * columns);
-    const auto end = begin + static_cast<std::ptrdiff_t>(columns);
-    const auto has_points = [](const report::Chart& c) {
-      return std::any_of(c.series.begin(), c.series.end(), [](const auto& one) { return !one.x.empty(); });
-    };
-    if (std::none_of(begin, end, has_points)) continue;
-    const auto lacks = std::find_if(missing.begin(), missing.end(),
-                                    [&](const Missing& m) { return m.set == sets[s].name && m.missing > 0; });
-    rows.insert(rows.end(), begin, end);
-    const auto first =
-        std::find_if(rows.end() - static_cast<std::ptrdiff_t>(columns), rows.end(), has_points);
-    if (lacks != missing.end()) first->title += ", UNFINISHED";
+    std::vector<report::Chart> row;
+    bool has_points = false;
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+      const report::Chart& chart = charts[s * classes.size() + c];
+      const std::string pose(name_of(classes[c]));
+      bool is_named = names.empty();
+      for (std::size_t n = 0; n < names.size(); ++n)
+        if (names[n] == sets[s].name || names[n] == pose || names[n] == sets[s].name + "/" + pose)
+          is_known[n] = is_named = true;
+      const bool is_empty = std::all_of(chart.series.begin(), chart.series.end(),
+                                        [](const report::Series& one) { return one.x.empty(); });
+      if (!is_named || (is_empty && !in_rows)) continue;
+      row.push_back(chart);
+      if (is_empty || has_points) continue;
+      has_points = true;
+      const auto lacks = std::find_if(missing.begin(), missing.end(), [&](const Missing& m) {
+        return m.set == sets[s].name && m.missing > 0;
+      });
+      if (lacks != missing.end()) row.back().title += ", UNFINISHED";
+    }
+    if (has_points) out.insert(out.end(), row.begin(), row.end());
   }
-  return report::gnuplot(rows, {static_cast<int>(columns), 42, 40, 6.5, "", static_cast<int>(columns)});
+  for (std::size_t n = 0; n < names.size(); ++n)
+    if (!is_known[n]) {
+      std::string known;
+      for (const DataSet& set : sets) known += set.name + ", ";
+      for (const PoseClass c : classes) known += std::string(name_of(c)) + ", ";
+      throw InputError("unknown panel '" + printable_name(names[n]) + "'; known: " + known +
+                       "and both as BODIES/CLASS");
+    }
+  return out;
+}
+
+}  // namespace
+
+report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& sets,
+                               const std::vector<Missing>& missing, const std::vector<report::Chart>& charts,
+                               const ChartPrint& print) {
+  const bool in_rows = print.width == 0;
+  const std::vector<report::Chart> panels =
+      printed_panels(quantity, sets, missing, charts, print.panels, in_rows && print.panels.empty());
+  const int columns = static_cast<int>(classes_of(quantity).size());
+  if (in_rows) return report::gnuplot(panels, {columns, 42, 40, 6.5, "", columns});
+  return report::gnuplot(panels, report::layout_for(print.width, panels));
 }
 
 }  // namespace lrb::bench

@@ -24,10 +24,20 @@ report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& se
                                const std::vector<methods::MethodInfo>& methods,
                                const std::vector<report::Chart>& charts, const std::string& unfinished);
 
-/// Arranges the charts for print: a row per pair of bodies, a column per class of poses. Rows without points
-/// are left out. `missing`: of an unfinished survey; the title of the first panel of its rows names it.
+/// A figure of charts for print.
+struct ChartPrint {
+  double width = 0;  ///< millimetres; 0: as wide as a column per class of poses requires
+  /// Names of the panels: a pair of bodies, a class of poses, or both as "BODIES/CLASS". Empty: all.
+  std::vector<std::string> panels;
+};
+
+/// Arranges the charts for print: without a width, a row per pair of bodies and a column per class of poses,
+/// without rows that have no points; for a width, as many columns as fit, with text at 8 points. There is one
+/// key. `missing`: of an unfinished survey; the title of the first panel of its pairs names it. Throws
+/// InputError for an unknown name of a panel, and if the width is too small.
 report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& sets,
-                               const std::vector<Missing>& missing, const std::vector<report::Chart>& charts);
+                               const std::vector<Missing>& missing, const std::vector<report::Chart>& charts,
+                               const ChartPrint& print = {});
 
 /// Returns what the charts draw as CSV with a head, a line for each point, for plotting programs.
 std::string drawn_csv(const std::vector<Point>& points);

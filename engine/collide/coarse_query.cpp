@@ -13,6 +13,8 @@ namespace {
 /// when a limit is reached.
 constexpr double kLadderStep = 4;
 /// Steps with more than this share of the bodies' own faces are skipped: the exact query costs hardly more.
+/// Measured for bodies of 1,000 faces at shares of 0.44 to 0.59: levels take 1.0 to 1.1 times as long for
+/// shallow contacts, 0.7 to 0.9 times for deep ones.
 constexpr double kWorthwhile = 0.6;
 
 }  // namespace
@@ -66,6 +68,10 @@ CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& re
   for (const LrbRep* rep : {&a, &b})
     if (!rep->closed() || rep->self_intersecting()) return {};
   return step_of(a, b, is_limited(request) ? std::numeric_limits<double>::max() : request.tolerance, request);
+}
+
+bool is_answered_exactly(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
+  return !is_limited(request) && (request.mode != Mode::all_pairs || first_step(a, b, request).exact());
 }
 
 std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {

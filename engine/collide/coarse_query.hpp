@@ -10,7 +10,10 @@
 /// 3. Otherwise find all pairs between levels, which have fewer faces: at the level of the tolerance or,
 ///    within limits, at one level after another, coarsest first.
 /// 4. Run the exact query if the wrappers' surfaces do not intersect though the bodies' do, because one
-///    wrapper is inside the other, or if no level is much smaller than the bodies.
+///    wrapper is inside the other.
+///
+/// A query to a tolerance of bodies without a level that is much smaller than they are is the exact query
+/// from the beginning (is_answered_exactly()).
 ///
 /// Step 1 may use half of a limit. If it ends without an answer, the levels decide as much as they can.
 ///
@@ -59,6 +62,10 @@ bool is_limited(const CollideRequest& request);
 
 /// Returns the first step to try: the only one, or within limits the coarsest. Exact if no level is worth it.
 CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
+
+/// Returns true if a query to a tolerance is the exact query: if it is for one pair, or if no level is worth
+/// it, as for bodies of a few hundred faces. Measured, the rules of a trial cost 3 to 8 % of such queries.
+bool is_answered_exactly(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
 /// Returns the steps to try, coarsest first; the last is as fine as requested.
 std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request);

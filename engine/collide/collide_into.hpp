@@ -42,7 +42,7 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   {
     const exact::FloatingPredicates floating(request.predicates == Predicates::floating);
-    if (request.is_coarse()) {
+    if (request.is_coarse() && !is_answered_exactly(a, b, request)) {
       CoarseQuery<Probe>(context, request, result, probe).run();
     } else {
       bool apart = false;

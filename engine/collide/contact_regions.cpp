@@ -1,82 +1,70 @@
-/// Builds the intersection of two surfaces as a graph.
-///
-/// 1. Number the corners of all pairs' intersections; corners with the same features are one point.
-/// 2. Collect the curves (segments) and the outlines of coplanar areas.
-/// 3. Label connected components by union-find.
+// Describes a contact: the intersection of each pair, and its connected regions with loops, length, area,
+// centroid, normal and a depth estimate.
+//
+// 1. Compute the intersection of each pair exactly.
+// 2. Build the graph of the pieces. Number the corners of all intersections: corners with the same features
+//    are one point. Collect the curves (segments) and the outlines of coplanar areas. Label connected
+//    components by union-find.
+// 3. Average centroid and normal of each component over its pieces of the highest dimension.
+// 4. Chain the edges of each component into loops.
+// 5. Estimate the depth along the normal from the enclosed vertices of both bodies.
 
 #include "engine/collide/contact_regions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <memory>
 #include <span>
-#include <unordered_map>
 
 #include <Eigen/Geometry>
 
 #include "engine/collide/interiors.hpp"
 #include "engine/core/tolerances.hpp"
-#include <lrbscope/core/disjoint_sets.hpp>
+#include "engine/lrb/surface_graph.hpp"
 
 namespace lrb {
 namespace {
 
-/// A feature of a surface, named by its vertices (see Places) so that all simplices around it agree: a vertex
-/// (v, v), an edge (v < w), or the interior of a simplex (kNull, s).
-using SurfaceFeature = std::pair<std::uint32_t, std::uint32_t>;
+using Edge = ContactGraph::Edge;
 
-/// Merges vertices with equal coordinates, as along texture seams, into the first one requested.
-class Places {
+/// Names features of a surface by their vertices, so that all simplices around them agree.
+class FeatureNames {
  public:
-  explicit Places(const LrbRep& rep) : rep_(rep) {}
+  explicit FeatureNames(const LrbRep& rep) : rep_(rep), graph_(rep.surface_graph()) {}
 
-  VertexId at(VertexId v) {
-    const auto [known, is_new] = first_.try_emplace(v, v);
-    if (is_new) {
-      const Eigen::Vector3d x = rep_.vertices()[v] + Eigen::Vector3d::Zero();  // -0 becomes 0
-      known->second = by_place_.try_emplace({x[0], x[1], x[2]}, v).first->second;
-    }
-    return known->second;
+  /// Returns the name of a feature of a simplex: a vertex (v, v), an edge (v < w), or an interior (kNull, s).
+  std::uint64_t name(SimplexId s, exact::Feature f) const {
+    const int n = rep_.simplex_size();
+    // In 2D the simplex is the segment itself: its dimension 1 is the interior.
+    if (f.dim >= n - 1) return packed(kNull, s);
+    VertexId v[3];
+    rep_.simplex(s, v);
+    const VertexId p = graph_.place(v[f.index]);
+    if (f.dim == 0) return packed(p, p);
+    const VertexId q = graph_.place(v[(f.index + 1) % 3]);
+    return p < q ? packed(p, q) : packed(q, p);
   }
-  const LrbRep& rep() const { return rep_; }
 
  private:
+  static std::uint64_t packed(std::uint32_t p, std::uint32_t q) { return std::uint64_t{p} << 32 | q; }
+
   const LrbRep& rep_;
-  std::unordered_map<VertexId, VertexId> first_;
-  std::map<std::array<double, 3>, VertexId> by_place_;
+  const SurfaceGraph& graph_;
 };
-
-SurfaceFeature surface_feature(Places& places, SimplexId s, exact::Feature f) {
-  VertexId v[3];
-  places.rep().simplex(s, v);
-  const int n = places.rep().simplex_size();
-  for (int k = 0; k < n; ++k) v[k] = places.at(v[k]);
-  if (f.dim == 0) return {v[f.index], v[f.index]};
-  // In 2D the simplex is the segment itself: its dimension 1 is the interior.
-  if (f.dim == 1 && n == 3) return std::minmax({v[f.index], v[(f.index + 1) % 3]});
-  return {kNull, s};
-}
-
-using Edge = std::array<std::uint32_t, 2>;
 
 Edge ordered(std::uint32_t p, std::uint32_t q) {
   return {std::min(p, q), std::max(p, q)};
 }
 
-void number_corners(const QueryContext& context, const CollideResult& result, ContactGraph& graph) {
-  const auto hash = [](const std::pair<SurfaceFeature, SurfaceFeature>& key) {
-    // Multiplicative hashing of the four numbers.
-    constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;
-    const auto packed = [](const SurfaceFeature& f) { return std::uint64_t{f.first} << 32 | f.second; };
-    const std::uint64_t h = packed(key.first) * kOdd;
-    const std::uint64_t both = ((h ^ h >> 32) + packed(key.second)) * kOdd;
-    return static_cast<std::size_t>(both ^ both >> 32);
-  };
-  std::unordered_map<std::pair<SurfaceFeature, SurfaceFeature>, std::uint32_t, decltype(hash)> number(
-      2 * result.pairs.size(), hash);
-  Places of_a(context.body[0].rep()), of_b(context.body[1].rep());
+void number_corners(QueryContext& context, const CollideResult& result) {
+  ContactGraph& graph = context.contact.graph;
+  Numbering<2>& numbering = context.contact.corners;
+  const FeatureNames on_a(context[Side::a].rep()), on_b(context[Side::b].rep());
+  graph.points.clear();
+  graph.pieces.clear();
+  numbering.begin(result.pairs.size());
   for (std::uint32_t i = 0; i < result.pairs.size(); ++i) {
     const PairContactRecord& contact = result.contacts[i];
     ContactGraph::Piece piece{i, contact.corner_count, {}};
@@ -84,17 +72,18 @@ void number_corners(const QueryContext& context, const CollideResult& result, Co
       const exact::ContactCorner& corner = contact.corners[c];
       // Identified by features of both surfaces, so the pairs on both sides of an edge agree without
       // comparing coordinates.
-      const auto key = std::pair{surface_feature(of_a, result.pairs[i].a, corner.on_a),
-                                 surface_feature(of_b, result.pairs[i].b, corner.on_b)};
-      const auto [it, is_new] = number.try_emplace(key, static_cast<std::uint32_t>(graph.points.size()));
+      const auto [number, is_new] = numbering.number(
+          {on_a.name(result.pairs[i].a, corner.on_a), on_b.name(result.pairs[i].b, corner.on_b)});
       if (is_new) graph.points.push_back(corner.x);
-      piece.corners[c] = it->second;
+      piece.corners[c] = number;
     }
     graph.pieces.push_back(piece);
   }
 }
 
 void find_curves_and_outlines(ContactGraph& graph) {
+  graph.outlines.clear();
+  graph.curves.clear();
   std::map<Edge, std::uint32_t> polygon_sides;
   // Count the polygons at each side.
   for (const auto& piece : graph.pieces)
@@ -107,115 +96,93 @@ void find_curves_and_outlines(ContactGraph& graph) {
   for (const auto& piece : graph.pieces) {
     if (piece.count != 2) continue;
     const Edge e = ordered(piece.corners[0], piece.corners[1]);
-    if (e[0] != e[1] && !polygon_sides.contains(e)) graph.curves.push_back(e);
+    if (e[0] != e[1] && (polygon_sides.empty() || !polygon_sides.contains(e))) graph.curves.push_back(e);
   }
   // A segment along an edge occurs in each pair at that edge: keep one.
   std::sort(graph.curves.begin(), graph.curves.end());
   graph.curves.erase(std::unique(graph.curves.begin(), graph.curves.end()), graph.curves.end());
 }
 
-void label_components(ContactGraph& graph) {
-  DisjointSets sets(graph.points.size());
+void label_components(ContactGraph& graph, DisjointSets& sets) {
+  sets.reset(graph.points.size());
   for (const auto& piece : graph.pieces)
     for (const std::uint32_t p : piece.points()) sets.join(piece.corners[0], p);
-  graph.component.assign(graph.points.size(), kNull);
+  graph.component.resize(graph.points.size());
+  graph.component_count = 0;
   for (std::uint32_t p = 0; p < graph.points.size(); ++p) {
     const std::uint32_t root = sets.leader(p);  // root <= p: its label is set already unless it is p
     graph.component[p] = root == p ? graph.component_count++ : graph.component[root];
   }
 }
 
-}  // namespace
-
-ContactGraph contact_graph(const QueryContext& context, const CollideResult& result) {
-  ContactGraph graph;
-  number_corners(context, result, graph);
-  find_curves_and_outlines(graph);
-  label_components(graph);
-  return graph;
+/// Builds the graph from result.pairs and result.contacts, in the context's buffers.
+ContactGraph& built_graph(QueryContext& context, const CollideResult& result) {
+  number_corners(context, result);
+  find_curves_and_outlines(context.contact.graph);
+  label_components(context.contact.graph, context.contact.sets);
+  return context.contact.graph;
 }
 
-namespace {
-
+/// Chains the outlines and curves of each component into loops: closed ones if all of their points have two
+/// edges, otherwise open chains between ends or branch points. Uses every edge once.
 class Chainer {
  public:
-  Chainer(std::span<const std::array<std::uint32_t, 2>> edges, const std::vector<Eigen::Vector3d>& points)
-      : edges_(edges), points_(points), used_(edges.size(), false) {
-    for (std::uint32_t e = 0; e < edges.size(); ++e)
-      for (const std::uint32_t p : edges[e]) ends_.push_back({p, e});
-    std::sort(ends_.begin(), ends_.end());
+  explicit Chainer(ContactBuffers& buffers) : b_(buffers), graph_(buffers.graph) {
+    b_.edges.assign(graph_.outlines.begin(), graph_.outlines.end());
+    b_.edges.insert(b_.edges.end(), graph_.curves.begin(), graph_.curves.end());
+    b_.is_used.assign(b_.edges.size(), 0);
+    // Counting sort of the ends of edges by point.
+    std::vector<std::uint32_t>& first = b_.first_end;
+    first.assign(graph_.points.size() + 2, 0);
+    for (const Edge& e : b_.edges) ++first[e[0] + 2], ++first[e[1] + 2];
+    for (std::size_t p = 2; p < first.size(); ++p) first[p] += first[p - 1];
+    b_.ends.resize(2 * b_.edges.size());
+    for (std::uint32_t e = 0; e < b_.edges.size(); ++e)
+      for (const std::uint32_t p : b_.edges[e]) b_.ends[first[p + 1]++] = e;
   }
 
-  std::vector<ContactLoop> run() {
-    std::vector<ContactLoop> loops;
+  void add_loops(std::vector<ContactRegion>& regions) {
     // Follow open chains first, from their ends. The remaining ones are closed.
-    for (std::size_t i = 0; i < ends_.size();) {
-      const std::span<const End> at = ends_at(ends_[i].point);
-      for (const End& end : at)
-        if (at.size() != 2 && !used_[end.edge]) loops.push_back(walk(end.point, end.edge));
-      i += at.size();
+    for (std::uint32_t p = 0; p < graph_.points.size(); ++p) {
+      const std::span<const std::uint32_t> at = ends_at(p);
+      for (const std::uint32_t edge : at)
+        if (at.size() != 2 && b_.is_used[edge] == 0) walk(p, edge, regions);
     }
-    for (std::uint32_t e = 0; e < edges_.size(); ++e)
-      if (!used_[e]) loops.push_back(walk(edges_[e][0], e));
-    return loops;
+    for (std::uint32_t e = 0; e < b_.edges.size(); ++e)
+      if (b_.is_used[e] == 0) walk(b_.edges[e][0], e, regions);
   }
 
  private:
-  /// An edge at a point.
-  struct End {
-    std::uint32_t point, edge;
-    friend auto operator<=>(const End&, const End&) = default;
-  };
-
-  std::span<const End> ends_at(std::uint32_t point) const {
-    const auto begin = std::lower_bound(ends_.begin(), ends_.end(), End{point, 0});
-    auto end = begin;
-    while (end != ends_.end() && end->point == point) ++end;
-    return {std::to_address(begin), static_cast<std::size_t>(end - begin)};
+  std::span<const std::uint32_t> ends_at(std::uint32_t point) const {
+    return {b_.ends.data() + b_.first_end[point], b_.first_end[point + 1] - b_.first_end[point]};
   }
 
-  ContactLoop walk(std::uint32_t from, std::uint32_t edge) {
-    ContactLoop loop;
-    loop.points.push_back(points_[from]);
+  void walk(std::uint32_t from, std::uint32_t edge, std::vector<ContactRegion>& regions) {
+    b_.chain.assign(1, from);
+    bool closed = false;
     std::uint32_t p = from;
     while (true) {
-      used_[edge] = true;
+      b_.is_used[edge] = 1;
       // Go to the other end of the edge.
-      p = edges_[edge][0] == p ? edges_[edge][1] : edges_[edge][0];
-      const std::span<const End> at = ends_at(p);
-      loop.closed = p == from;
-      if (loop.closed) break;
-      loop.points.push_back(points_[p]);
+      p = b_.edges[edge][0] == p ? b_.edges[edge][1] : b_.edges[edge][0];
+      const std::span<const std::uint32_t> at = ends_at(p);
+      closed = p == from;
+      if (closed) break;
+      b_.chain.push_back(p);
       // An end or a branch point: the chain is open.
       if (at.size() != 2) break;
       // Two edges at this point: leave by the unused one.
-      edge = used_[at[0].edge] ? at[1].edge : at[0].edge;
+      edge = b_.is_used[at[0]] != 0 ? at[1] : at[0];
     }
-    return loop;
+    ContactLoop& loop = regions[graph_.component[from]].loops.emplace_back();
+    loop.closed = closed;
+    loop.points.reserve(b_.chain.size());
+    for (const std::uint32_t q : b_.chain) loop.points.push_back(graph_.points[q]);
   }
 
-  std::span<const std::array<std::uint32_t, 2>> edges_;
-  const std::vector<Eigen::Vector3d>& points_;
-  std::vector<bool> used_;
-  std::vector<End> ends_;  ///< ascending
+  ContactBuffers& b_;
+  const ContactGraph& graph_;
 };
-
-}  // namespace
-
-std::vector<ContactLoop> chain_edges(std::span<const std::array<std::uint32_t, 2>> edges,
-                                     const std::vector<Eigen::Vector3d>& points) {
-  return Chainer(edges, points).run();
-}
-
-// Describes a contact: the intersection of each pair, and its connected regions with loops, length, area,
-// centroid, normal and a depth estimate.
-//
-// 1. Compute the intersection of each pair exactly, and build the graph of the pieces (contact_regions.hpp).
-// 2. Average centroid and normal of each component over its pieces of the highest dimension.
-// 3. Chain the edges of each component into loops.
-// 4. Estimate the depth along the normal from the enclosed vertices of both bodies.
-
-namespace {
 
 using Eigen::Vector3d;
 
@@ -235,18 +202,25 @@ Vector3d world_normal(QueryBody& body, SimplexId s, bool mirrored) {
   body.world.corners(s, c);
   const int dim = body.rep().dim();
   std::array<Vector3d, 3> x = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
-  for (int k = 0; k < dim; ++k) x[k] = Vector3d(c[k][0], c[k][1], c[k][2]);
-  // Scaled to about 1: products of coordinates then neither overflow nor underflow.
-  const double unit = unit_for({x.data(), static_cast<std::size_t>(dim)});
-  const auto at = [&](int k) { return Vector3d(x[k] / unit); };
+  double most = 0;
+  for (int k = 0; k < dim; ++k) {
+    x[static_cast<std::size_t>(k)] = Vector3d(c[k][0], c[k][1], c[k][2]);
+    most = std::max(most, x[static_cast<std::size_t>(k)].cwiseAbs().maxCoeff());
+  }
+  // Scaled to about 1 if necessary: products of coordinates then neither overflow nor underflow.
+  constexpr double kLarge = 0x1p300, kSmall = 0x1p-300;
+  if (most > kLarge || most < kSmall) {
+    const double unit = unit_for({x.data(), static_cast<std::size_t>(dim)});
+    for (Vector3d& corner : x) corner /= unit;
+  }
   // In 2D the solid is on the left of a segment's direction, so the outside is on its right.
-  const Vector3d along = at(1) - at(0);
-  const Vector3d n = dim == 2 ? Vector3d(along.y(), -along.x(), 0) : along.cross(at(2) - at(0)).eval();
+  const Vector3d along = x[1] - x[0];
+  const Vector3d n = dim == 2 ? Vector3d(along.y(), -along.x(), 0) : along.cross(x[2] - x[0]).eval();
   // A reflection reverses the orientation of every triangle.
   return mirrored ? Vector3d(-n.stableNormalized()) : n.stableNormalized();
 }
 
-double polygon_area(const std::vector<Vector3d>& x) {
+double polygon_area(std::span<const Vector3d> x) {
   // Triangle fan: the cross products add up to twice the vector area.
   Vector3d twice = Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < x.size(); ++i) twice += (x[i] - x[0]).cross(x[i + 1] - x[0]);
@@ -259,7 +233,7 @@ struct Weight {
   Vector3d centre;
 };
 
-Weight weigh(const std::vector<Vector3d>& x) {
+Weight weigh(std::span<const Vector3d> x) {
   Vector3d mean = Vector3d::Zero();
   for (const Vector3d& p : x) mean += p / static_cast<double>(x.size());
   // A segment is weighted by its length, a point by 1.
@@ -268,7 +242,8 @@ Weight weigh(const std::vector<Vector3d>& x) {
   Vector3d centre = Vector3d::Zero();
   double area = 0;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
-    const double a = polygon_area({x[0], x[i], x[i + 1]});
+    const Vector3d triangle[3] = {x[0], x[i], x[i + 1]};
+    const double a = polygon_area(triangle);
     area += a;
     centre += a * (x[0] + x[i] + x[i + 1]) / 3;
   }
@@ -284,13 +259,39 @@ double loop_length(const ContactLoop& loop) {
   return sum;
 }
 
+/// The outward unit normals of a body's simplices in the world. Remembers those of some simplices, because a
+/// simplex is in several pairs.
+class WorldNormals {
+ public:
+  explicit WorldNormals(QueryBody& body)
+      : body_(body), is_mirrored_(is_reflection(body.world.pose(), body.rep().dim())) {
+    known_.fill(SimplexId(kNull));
+  }
+
+  const Vector3d& operator()(SimplexId s) {
+    const std::size_t slot = s % kSlots;
+    if (known_[slot] != s) {
+      known_[slot] = s;
+      normal_[slot] = world_normal(body_, s, is_mirrored_);
+    }
+    return normal_[slot];
+  }
+
+ private:
+  static constexpr std::size_t kSlots = 128;
+  QueryBody& body_;
+  bool is_mirrored_;
+  std::array<SimplexId, kSlots> known_;
+  std::array<Vector3d, kSlots> normal_;
+};
+
 /// Builds the regions from the graph. Computes in `unit_` and rescales the results at the end.
 class RegionMaker {
  public:
   RegionMaker(QueryContext& ctx, const CollideResult& result)
       : ctx_(ctx),
         result_(result),
-        graph_(contact_graph(ctx, result)),
+        graph_(built_graph(ctx, result)),
         a_in_b_(ctx, Side::a, result),
         b_in_a_(ctx, Side::b, result),
         unit_(unit_for(graph_.points)) {
@@ -302,6 +303,11 @@ class RegionMaker {
     std::vector<std::uint8_t> rank(graph_.component_count,
                                    0);  // 3: has polygons, 2: segments, 1: points only
     // Assign pairs to regions. Averages use only a region's pieces of the highest dimension.
+    std::vector<std::uint32_t>& counts = ctx_.contact.counts;
+    counts.assign(regions.size(), 0);
+    for (const auto& piece : graph_.pieces)
+      if (piece.count > 0) ++counts[graph_.component[piece.corners[0]]];
+    for (std::size_t r = 0; r < regions.size(); ++r) regions[r].pairs.reserve(counts[r]);
     for (const auto& piece : graph_.pieces)
       if (piece.count > 0) {
         const std::uint32_t r = graph_.component[piece.corners[0]];
@@ -309,8 +315,9 @@ class RegionMaker {
         rank[r] = std::max(rank[r], static_cast<std::uint8_t>(std::min(piece.count, 3U)));
       }
     for (std::uint32_t r = 0; r < regions.size(); ++r) average(regions[r], rank[r]);
-    add_loops(regions);
+    Chainer(ctx_.contact).add_loops(regions);
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
+      for (const ContactLoop& loop : regions[r].loops) regions[r].length += loop_length(loop);
       // Regions of curves have the area spanned by their loops; coplanar ones have their area already.
       if (rank[r] == 2) regions[r].area = spanned_area(regions[r]);
       regions[r].depth_estimate = penetration(regions[r]);
@@ -330,12 +337,6 @@ class RegionMaker {
     region.area = region.area * unit_ * unit_;
   }
 
-  std::vector<Vector3d> points_of(const ContactGraph::Piece& piece) const {
-    std::vector<Vector3d> x;
-    for (const std::uint32_t p : piece.points()) x.push_back(graph_.points[p]);
-    return x;
-  }
-
   /// Sets centroid, normal and coplanar area from the region's pieces of the highest dimension.
   void average(ContactRegion& region, std::uint8_t rank) {
     double total = 0;
@@ -343,29 +344,19 @@ class RegionMaker {
     for (const std::uint32_t i : region.pairs) {
       const auto& piece = graph_.pieces[i];
       if (std::min(piece.count, 3U) != rank) continue;
-      const Weight w = weigh(points_of(piece));
+      std::array<Vector3d, 6> points;
+      for (std::uint32_t k = 0; k < piece.count; ++k) points[k] = graph_.points[piece.corners[k]];
+      const Weight w = weigh({points.data(), piece.count});
       total += w.value;
       centre += w.value * w.centre;
       // Outward normals are roughly opposite in a contact: their difference points from A to B.
-      normal += w.value * (world_normal(ctx_[Side::a], result_.pairs[i].a, mirrored_[0]) -
-                           world_normal(ctx_[Side::b], result_.pairs[i].b, mirrored_[1]));
+      normal += w.value * (normal_a_(result_.pairs[i].a) - normal_b_(result_.pairs[i].b));
     }
     region.centroid =
         total > 0 ? Vector3d(centre / total) : graph_.points[graph_.pieces[region.pairs[0]].corners[0]];
     // Normals that cancel (surfaces that intersect with the same orientation) leave no meaningful direction.
     if (normal.norm() > kContactNormalLeast * total) region.normal = normal.stableNormalized();
     if (rank == 3) region.area = total;
-  }
-
-  void add_loops(std::vector<ContactRegion>& regions) const {
-    std::vector<std::vector<std::array<std::uint32_t, 2>>> edges(regions.size());
-    // Both ends of an edge are in the same component.
-    for (const auto* list : {&graph_.outlines, &graph_.curves})
-      for (const auto& e : *list) edges[graph_.component[e[0]]].push_back(e);
-    for (std::uint32_t r = 0; r < regions.size(); ++r) {
-      regions[r].loops = chain_edges(edges[r], graph_.points);
-      for (const ContactLoop& loop : regions[r].loops) regions[r].length += loop_length(loop);
-    }
   }
 
   /// Returns the sum over the closed loops of the length of each one's vector area.
@@ -401,11 +392,10 @@ class RegionMaker {
 
   QueryContext& ctx_;
   const CollideResult& result_;
-  ContactGraph graph_;
+  ContactGraph& graph_;
   EnclosedVertices a_in_b_, b_in_a_;
   double unit_;
-  const bool mirrored_[2] = {is_reflection(ctx_[Side::a].world.pose(), ctx_[Side::a].rep().dim()),
-                             is_reflection(ctx_[Side::b].world.pose(), ctx_[Side::b].rep().dim())};
+  WorldNormals normal_a_{ctx_[Side::a]}, normal_b_{ctx_[Side::b]};
 };
 
 }  // namespace
@@ -418,6 +408,7 @@ void describe_contact(QueryContext& context, const CollideRequest& request, Coll
     result.interiors_overlap = crossing_interiors_overlap(context, result);
   if (!request.contacts) return;
   // The intersection of each pair, then the connected regions that they form.
+  result.contacts.reserve(result.pairs.size());
   for (const SimplexPair& pair : result.pairs) result.contacts.push_back(contact_of(context, pair));
   result.regions = RegionMaker(context, result).run();
 }

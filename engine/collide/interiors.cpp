@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <map>
-#include <unordered_set>
 
 #include <Eigen/Geometry>
 
@@ -22,14 +21,6 @@
 
 namespace lrb {
 
-namespace {
-
-std::uint64_t edge_key(VertexId v, VertexId w) {
-  return std::uint64_t{std::min(v, w).value()} << 32 | std::max(v, w).value();
-}
-
-}  // namespace
-
 exact::PairContact contact_of(QueryContext& context, const SimplexPair& pair) {
   const double *a[3], *b[3];
   context[Side::a].world.corners(pair.a, a);
@@ -39,19 +30,77 @@ exact::PairContact contact_of(QueryContext& context, const SimplexPair& pair) {
 }
 
 EnclosedVertices::EnclosedVertices(QueryContext& context, Side side, const CollideResult& result)
-    : body_(context[side]), holder_(context[other(side)]), side_(side), result_(result) {
+    : body_(context[side]),
+      holder_(context[other(side)]),
+      side_(side),
+      result_(result),
+      buffers_(context.contact.enclosed[static_cast<int>(side)]) {
   if (!holder_.rep().closed()) return;
-  for (std::uint32_t i = 0; i < result.pairs.size(); ++i) {
+  collect_cuts();
+  join_near();
+}
+
+/// Collects where the edges of each simplex in contact meet the other surface. They do if and only if they
+/// have a corner of the contact of some pair of this simplex.
+void EnclosedVertices::collect_cuts() {
+  const LrbRep& rep = body_.rep();
+  const int n = rep.simplex_size();
+  EnclosedBuffers& b = buffers_;
+  b.simplices.begin(rep.real_simplex_count());
+  b.near.begin(rep.vertices().size());
+  b.cuts.clear();
+  b.location.clear();
+  for (std::uint32_t i = 0; i < result_.pairs.size(); ++i) {
     VertexId v[3];
-    body_.rep().simplex(simplex(i), v);
-    const std::size_t n = static_cast<std::size_t>(body_.rep().simplex_size());
-    near_.insert(v, v + n);
-    // An edge or a vertex meets the other surface if and only if it has a corner of some pair's contact.
-    const PairContactRecord& contact = result.contacts[i];
+    rep.simplex(simplex(i), v);
+    const auto [number, is_new] = b.simplices.add(simplex(i));
+    if (is_new) {
+      b.cuts.push_back({simplex(i)});
+      for (int k = 0; k < n; ++k)
+        if (b.near.add(v[k]).second) b.location.push_back(EnclosedBuffers::Location::unknown);
+    }
+    EnclosedBuffers::Cuts& cuts = b.cuts[number];
+    const PairContactRecord& contact = result_.contacts[i];
+    cuts.crosses |= contact.meet == exact::Meet::cross;
     for (std::size_t c = 0; c < contact.corner_count; ++c) {
-      const exact::Feature& f = side == Side::a ? contact.corners[c].on_a : contact.corners[c].on_b;
-      if (f.dim == 0) on_.insert(v[f.index]);
-      if (f.dim == 1) cut_.insert(n == 3 ? edge_key(v[f.index], v[(f.index + 1) % 3]) : edge_key(v[0], v[1]));
+      const exact::ContactCorner& corner = contact.corners[c];
+      const exact::Feature &own = side_ == Side::a ? corner.on_a : corner.on_b,
+                           &others = side_ == Side::a ? corner.on_b : corner.on_a;
+      if (own.dim == 0) b.location[b.near(v[own.index])] = EnclosedBuffers::Location::on_surface;
+      if (own.dim != 1) continue;
+      const auto edge = static_cast<std::uint8_t>(1U << own.index);
+      cuts.met |= edge;
+      if (contact.meet == exact::Meet::cross && others.dim == n - 1)
+        cuts.odd ^= edge;
+      else
+        cuts.unclear |= edge;
+    }
+  }
+}
+
+/// Joins near vertices along the edges of the simplices in contact.
+void EnclosedVertices::join_near() {
+  const LrbRep& rep = body_.rep();
+  const int n = rep.simplex_size();
+  EnclosedBuffers& b = buffers_;
+  b.sides.begin(b.near.size());
+  for (const EnclosedBuffers::Cuts& cuts : b.cuts) {
+    // A triangle without area crosses nothing. Its edges overlap, and a point of several is assigned to one.
+    if (!cuts.crosses) continue;
+    VertexId v[3];
+    rep.simplex(cuts.simplex, v);
+    std::uint32_t near[3];
+    bool on_surface[3];
+    for (int k = 0; k < n; ++k) {
+      near[k] = b.near(v[k]);
+      on_surface[k] = b.location[near[k]] == EnclosedBuffers::Location::on_surface;
+    }
+    for (int k = 0; k < (n == 3 ? 3 : 1); ++k) {
+      const int next = (k + 1) % n;
+      if (on_surface[k] || on_surface[next] || (cuts.unclear >> k & 1) != 0) continue;
+      // The paper's recursions miss pairs, so that the parity of their number is not known.
+      if ((cuts.met >> k & 1) != 0 && result_.recursion != Recursion::complete) continue;
+      b.sides.join(near[k], near[next], (cuts.odd >> k & 1) != 0);
     }
   }
 }
@@ -61,34 +110,28 @@ SimplexId EnclosedVertices::simplex(std::uint32_t pair) const {
 }
 
 bool EnclosedVertices::is_inside(VertexId v) {
+  using Location = EnclosedBuffers::Location;
+  const std::uint32_t near = buffers_.near(v);
   // Only edges of simplices in contact can cross the other surface, so that only their corners need to be
   // located. All other vertices reached from an inside vertex are inside.
-  if (!near_.contains(v)) return true;
-  if (on_.contains(v)) return false;
-  if (const auto known = inside_.find(v); known != inside_.end()) return known->second;
-  // Both ends of an edge that does not meet the other surface are on the same side of it: locate one vertex,
-  // and flood the near vertices that such edges connect.
-  const bool inside = locate(holder_, body_.world(v)) == Where::inside;
-  const SurfaceGraph& graph = body_.rep().surface_graph();
-  inside_.emplace(v, inside);
-  std::vector<VertexId> stack = {v};
-  while (!stack.empty()) {
-    const VertexId from = stack.back();
-    stack.pop_back();
-    for (const VertexId to : graph.neighbours(from))
-      if (near_.contains(to) && !on_.contains(to) && !cut_.contains(edge_key(from, to)) &&
-          inside_.emplace(to, inside).second)
-        stack.push_back(to);
+  if (near == kNull) return true;
+  if (buffers_.location[near] == Location::on_surface) return false;
+  const auto [leader, differs] = buffers_.sides.find(near);
+  Location& known = buffers_.location[leader];
+  if (known == Location::unknown) {
+    const bool inside = (locate(holder_, body_.world(v)) == Where::inside) != differs;
+    known = inside ? Location::inside : Location::outside;
   }
-  return inside;
+  return (known == Location::inside) != differs;
 }
 
-std::vector<VertexId> EnclosedVertices::from(std::span<const std::uint32_t> pairs) {
-  std::vector<VertexId> inside;
+std::span<const VertexId> EnclosedVertices::from(std::span<const std::uint32_t> pairs) {
+  std::vector<VertexId>& inside = buffers_.inside;
+  inside.clear();
   if (!holder_.rep().closed()) return inside;
-  std::unordered_set<VertexId> seen;
+  buffers_.seen.begin(body_.rep().vertices().size());
   const auto visit = [&](VertexId v) {
-    if (seen.insert(v).second && is_inside(v)) inside.push_back(v);
+    if (buffers_.seen.add(v).second && is_inside(v)) inside.push_back(v);
   };
   for (const std::uint32_t i : pairs) {
     // Seeds: the enclosed corners of the simplices in these pairs.

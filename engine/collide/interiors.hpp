@@ -4,8 +4,6 @@
 #include <array>
 #include <map>
 #include <span>
-#include <unordered_map>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -18,7 +16,13 @@ namespace lrb {
 /// Returns the intersection of two simplices of the bodies of a query.
 exact::PairContact contact_of(QueryContext& context, const SimplexPair& pair);
 
-/// Finds the vertices of one body that are strictly inside the other and connected to given pairs.
+/// Finds the vertices of one body that are strictly inside the other and connected to given pairs. Uses the
+/// context's buffers of this side.
+///
+/// Vertices of simplices in contact are *near*. Two ends of an edge are on the same side of the other surface
+/// if the edge does not meet it, or if it crosses the interiors of an even number of its simplices and meets
+/// it nowhere else; on different sides if that number is odd. So one point location decides a connected set
+/// of near vertices. Other vertices are on the side from which the search reaches them.
 class EnclosedVertices {
  public:
   /// Prepares the search for vertices of `side`; `result` has the contact of each pair. Every search is empty
@@ -26,21 +30,20 @@ class EnclosedVertices {
   EnclosedVertices(QueryContext& context, Side side, const CollideResult& result);
 
   /// Returns the vertices found by a search over the surface that starts at the simplices of some pairs
-  /// (indices into result.pairs) and does not cross the other body's surface.
-  std::vector<VertexId> from(std::span<const std::uint32_t> pairs);
+  /// (indices into result.pairs) and does not cross the other body's surface. Valid until the next search.
+  std::span<const VertexId> from(std::span<const std::uint32_t> pairs);
 
  private:
   SimplexId simplex(std::uint32_t pair) const;
+  void collect_cuts();
+  void join_near();
   bool is_inside(VertexId v);
 
   QueryBody& body_;
   QueryBody& holder_;
   Side side_;
   const CollideResult& result_;
-  std::unordered_set<VertexId> near_;          ///< corners of simplices in contact
-  std::unordered_set<VertexId> on_;            ///< vertices on the other surface
-  std::unordered_set<std::uint64_t> cut_;      ///< edges whose interior meets the other surface
-  std::unordered_map<VertexId, bool> inside_;  ///< of near vertices, as far as known
+  EnclosedBuffers& buffers_;
 };
 
 /// Returns the side of the line p q on which r lies, as the sign of an orientation. All three points are in

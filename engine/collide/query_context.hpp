@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "engine/collide/contact_buffers.hpp"
 #include "engine/collide/pair_order.hpp"
 #include "engine/tree/tree_kernel.hpp"
 #include <lrbscope/collide.hpp>
@@ -126,6 +127,7 @@ class QueryContext {
   std::vector<NodePair> rejected_nodes;
   AffineTerms affine;  ///< of the current kernel, if its map is not rigid
   PairOrder pair_order;
+  ContactBuffers contact;
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
 
   QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }

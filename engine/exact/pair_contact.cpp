@@ -28,30 +28,9 @@ namespace lrb::exact {
 
 namespace {
 
-/// A determinant in doubles with an error bound, derived as in plane_side.hpp and predicates.hpp (covers
-/// underflow; overflow makes the bound infinite or NaN).
-struct Approximate {
-  double value, error;
-};
-
-constexpr double kTiny = 0x1p-1000;
-
-Approximate volume(const double* a, const double* b, const double* c, const double* d) {
-  constexpr double kTinyProduct = 0x1p-900;
-  // The sum of the same terms by magnitude bounds the error of the determinant (plane_side.hpp).
-  double value = 0, magnitude = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const double left = (b[i] - a[i]) * (c[j] - a[j]), right = (b[j] - a[j]) * (c[i] - a[i]);
-    const double w = d[k] - a[k];
-    value += (left - right) * w;
-    magnitude += (std::fabs(left) + std::fabs(right) + kTinyProduct) * std::fabs(w);
-  }
-  return {value, 9 * 0x1p-53 * magnitude + kTiny};
-}
-
+/// Returns the determinant of orient2d in two coordinates. The bound covers underflow (predicates.hpp).
 Approximate area(const double* a, const double* b, const double* c, int x, int y) {
-  // Four roundings at most; 5 units cover them (predicates.hpp).
+  constexpr double kTiny = 0x1p-1000;
   const double left = (b[x] - a[x]) * (c[y] - a[y]), right = (b[y] - a[y]) * (c[x] - a[x]);
   return {left - right, 5 * 0x1p-53 * (std::fabs(left) + std::fabs(right)) + kTiny};
 }
@@ -156,12 +135,12 @@ class ScaledPoints {
 
 }  // namespace
 
-Eigen::Vector3d cut_by_plane(const double* p, const double* q, const double* const t[3]) {
+Eigen::Vector3d cut_by_plane(const double* p, const Approximate& hp, const double* q, const Approximate& hq,
+                             const double* const t[3]) {
   double s = 0;
   Eigen::Vector3d r;
   // Fast path in doubles, then the exact path for nearly parallel segments and for overflow.
-  if (parameter(volume(t[0], t[1], t[2], p), volume(t[0], t[1], t[2], q), s) && interpolate(p, q, s, 3, r))
-    return r;
+  if (parameter(hp, hq, s) && interpolate(p, q, s, 3, r)) return r;
   if (const ScaledPoints scaled({p, q, t[0], t[1], t[2]}, 3); scaled.fits()) {
     const IntegerVec ip = scaled.of(p), iq = scaled.of(q);
     const IntegerVec a = scaled.of(t[0]), b = scaled.of(t[1]), c = scaled.of(t[2]);
@@ -169,8 +148,8 @@ Eigen::Vector3d cut_by_plane(const double* p, const double* q, const double* con
   }
   const RationalVec rp = to_rational(p), rq = to_rational(q);
   const RationalVec a = to_rational(t[0]), b = to_rational(t[1]), c = to_rational(t[2]);
-  const Rational hp = volume_determinant(a, b, c, rp), hq = volume_determinant(a, b, c, rq);
-  return rounded(between(rp, rq, hp / (hp - hq)));
+  const Rational exact_hp = volume_determinant(a, b, c, rp), exact_hq = volume_determinant(a, b, c, rq);
+  return rounded(between(rp, rq, exact_hp / (exact_hp - exact_hq)));
 }
 
 Eigen::Vector3d cut_by_line(const double* p, const double* q, const double* a, const double* b, int x, int y,
@@ -206,48 +185,72 @@ Feature feature_on(const Span& span, const Sides& sides, const Place& place) {
   return sides.s[end] == 0 ? corner(end) : edge_between(span.tip, end);
 }
 
+/// The corners of a triangle relative to the plane of the other one.
+struct Heights {
+  Approximate determinant[3];
+  Sides sides;
+};
+
+Heights heights_over(const PlaneSide& plane, const double* const t[3]) {
+  Heights r;
+  for (int i = 0; i < 3; ++i) {
+    r.determinant[i] = plane.determinant(t[i]);
+    r.sides.s[i] = plane.side(t[i], r.determinant[i]);
+  }
+  return r;
+}
+
+/// Returns the point in which the edge from a triangle's tip to corner `end` crosses the plane of the other
+/// one.
+Eigen::Vector3d cut_edge(const double* const triangle[3], const Heights& heights, int tip, int end,
+                         const double* const plane[3]) {
+  return cut_by_plane(triangle[tip], heights.determinant[tip], triangle[end], heights.determinant[end],
+                      plane);
+}
+
 /// Returns a point of L that is an end of the span of at least one triangle.
-ContactCorner corner_on_line(const CrossingPlanes& c, const Sides& a_sides, const Sides& b_sides,
-                             const Place& on_a, const Place& on_b) {
+ContactCorner corner_on_line(const CrossingPlanes& c, const Heights& a, const Heights& b, const Place& on_a,
+                             const Place& on_b) {
   ContactCorner r;
-  r.on_a = feature_on(c.on_a, a_sides, on_a);
-  r.on_b = feature_on(c.on_b, b_sides, on_b);
+  r.on_a = feature_on(c.on_a, a.sides, on_a);
+  r.on_b = feature_on(c.on_b, b.sides, on_b);
   // Corners are copied. Otherwise the point is the crossing of an edge of the triangle whose span it ends.
   if (r.on_a.dim == 0) {
     r.x = as_vector(c.a[r.on_a.index]);
   } else if (r.on_b.dim == 0) {
     r.x = as_vector(c.b[r.on_b.index]);
   } else if (on_a.low || on_a.high) {
-    r.x = cut_by_plane(c.a[c.on_a.tip], c.a[on_a.low ? c.on_a.low : c.on_a.high], c.b);
+    r.x = cut_edge(c.a, a, c.on_a.tip, on_a.low ? c.on_a.low : c.on_a.high, c.b);
   } else {
-    r.x = cut_by_plane(c.b[c.on_b.tip], c.b[on_b.low ? c.on_b.low : c.on_b.high], c.a);
+    r.x = cut_edge(c.b, b, c.on_b.tip, on_b.low ? c.on_b.low : c.on_b.high, c.a);
   }
   return r;
 }
 
-PairContact contact_on_line(const double* const a[3], const Sides& a_sides, const double* const b[3],
-                            const Sides& b_sides) {
+PairContact contact_on_line(const double* const a[3], const Heights& on_a, const double* const b[3],
+                            const Heights& on_b) {
+  const Sides &a_sides = on_a.sides, &b_sides = on_b.sides;
   PairContact r;
   const CrossingPlanes c(a, a_sides, b, b_sides);
-  // Positive: b's high end is above a's low end, and the reverse. Negative in either: the spans are disjoint.
-  const int high_b_low_a = c.order(c.on_a.low, c.on_b.high);
-  const int high_a_low_b = -c.order(c.on_a.high, c.on_b.low);
+  // Signs of b's low and high end minus an end of a along L. If b's high end is below a's low end, or b's low
+  // end above a's high end, the spans are disjoint.
+  const CrossingPlanes::Orders from_low = c.orders(c.on_a.low), from_high = c.orders(c.on_a.high);
+  const int high_b_low_a = from_low.high, high_a_low_b = -from_high.low;
   if (high_b_low_a < 0 || high_a_low_b < 0) return r;
   // The triangles' relative interiors cover open intervals of L only if the other plane divides them.
   const bool through = a_sides.strictly_mixed() && b_sides.strictly_mixed();
   r.meet = through && high_b_low_a > 0 && high_a_low_b > 0 ? Meet::cross : Meet::touch;
-  // Signs of (b's low - a's low) and (b's high - a's high) along L.
-  const int lows = c.order(c.on_a.low, c.on_b.low), highs = c.order(c.on_a.high, c.on_b.high);
+  const int lows = from_low.low, highs = from_high.high;
   // The lower end of the intersection is the greater of the two low ends. It can also be a high end, and both
   // ends of one triangle if its span is a point.
   const Place low_on_a{lows <= 0, (lows <= 0 && c.on_a.is_point()) || (lows >= 0 && high_a_low_b == 0)};
   const Place low_on_b{lows >= 0, (lows >= 0 && c.on_b.is_point()) || (lows <= 0 && high_b_low_a == 0)};
   const Place high_on_a{(highs >= 0 && c.on_a.is_point()) || (highs <= 0 && high_b_low_a == 0), highs >= 0};
   const Place high_on_b{(highs <= 0 && c.on_b.is_point()) || (highs >= 0 && high_a_low_b == 0), highs <= 0};
-  append(r, corner_on_line(c, a_sides, b_sides, low_on_a, low_on_b));
+  append(r, corner_on_line(c, on_a, on_b, low_on_a, low_on_b));
   // The overlap is a single point if a span is one, or if the spans share only an end.
   const bool is_point = c.on_a.is_point() || c.on_b.is_point() || high_b_low_a == 0 || high_a_low_b == 0;
-  if (!is_point) append(r, corner_on_line(c, a_sides, b_sides, high_on_a, high_on_b));
+  if (!is_point) append(r, corner_on_line(c, on_a, on_b, high_on_a, high_on_b));
   return r;
 }
 
@@ -255,13 +258,13 @@ PairContact contact_on_line(const double* const a[3], const Sides& a_sides, cons
 
 PairContact contact_of_triangles(const double* const a[3], const double* const b[3]) {
   const PlaneSide plane_a(a[0], a[1], a[2]), plane_b(b[0], b[1], b[2]);
-  const Sides b_sides = sides_of(plane_a, b);
+  const Heights on_b = heights_over(plane_a, b);
   // A triangle strictly on one side of the other's plane: disjoint. The signs for b's plane come second.
-  if (b_sides.all_strictly_same()) return {};
-  const Sides a_sides = sides_of(plane_b, a);
-  if (a_sides.all_strictly_same()) return {};
+  if (on_b.sides.all_strictly_same()) return {};
+  const Heights on_a = heights_over(plane_b, a);
+  if (on_a.sides.all_strictly_same()) return {};
   // All zero: the triangles are coplanar, or one has no area and therefore no plane.
-  if (!a_sides.all_zero() && !b_sides.all_zero()) return contact_on_line(a, a_sides, b, b_sides);
+  if (!on_a.sides.all_zero() && !on_b.sides.all_zero()) return contact_on_line(a, on_a, b, on_b);
   if (collinear3d(a[0], a[1], a[2]) || collinear3d(b[0], b[1], b[2])) return contact_of_degenerate(a, b);
   return contact_in_plane(a, b);
 }

@@ -9,6 +9,11 @@
 
 namespace lrb::exact {
 
+/// A number computed in doubles with a bound on its error. If it overflows, the bound is infinite or NaN.
+struct Approximate {
+  double value, error;
+};
+
 /// The plane through three points. Refers to the points, which must outlive it.
 ///
 /// Error bound. Let e = 2^-53. With u = b - a, v = c - a, w = d - a the determinant is the sum of six terms
@@ -33,16 +38,21 @@ class PlaneSide {
     set(2, ux * vy, uy * vx);
   }
 
-  /// Returns orient3d(a, b, c, d).
-  int side(const double* d) const {
+  /// Returns the determinant of orient3d(a, b, c, d).
+  Approximate determinant(const double* d) const {
     const double wx = d[0] - a_[0], wy = d[1] - a_[1], wz = d[2] - a_[2];
     const double det = (normal_[0] * wx + normal_[1] * wy) + normal_[2] * wz;
     const double magnitude = (size_[0] * std::fabs(wx) + size_[1] * std::fabs(wy)) + size_[2] * std::fabs(wz);
-    const double error = kDetError * magnitude + kTinySum;
-    if (det > error) return 1;
-    if (det < -error) return -1;
+    return {det, kDetError * magnitude + kTinySum};
+  }
+
+  /// Returns orient3d(a, b, c, d), given the determinant.
+  int side(const double* d, const Approximate& det) const {
+    if (det.value > det.error) return 1;
+    if (det.value < -det.error) return -1;
     return orient3d_exact(a_, b_, c_, d);
   }
+  int side(const double* d) const { return side(d, determinant(d)); }
 
   /// Returns twice the triangle's area times the height of d over the plane, rounded. For choosing between
   /// points only, not for decisions.
@@ -129,6 +139,16 @@ struct CrossingPlanes {
   /// the orientation has a constant sign, which one example determines.
   int order(int a_end, int b_end) const {
     return on_a.side * on_b.side * orient3d(a[on_a.tip], a[a_end], b[on_b.tip], b[b_end]);
+  }
+
+  /// order(a_end, b's low end) and order(a_end, b's high end).
+  struct Orders {
+    int low, high;
+  };
+  Orders orders(int a_end) const {
+    const PlaneSide plane(a[on_a.tip], a[a_end], b[on_b.tip]);
+    const int sign = on_a.side * on_b.side;
+    return {sign * plane.side(b[on_b.low]), sign * plane.side(b[on_b.high])};
   }
 };
 

@@ -5,13 +5,16 @@
 
 #include <Eigen/Core>
 
+#include "engine/exact/plane_side.hpp"
 #include <lrbscope/contact.hpp>
 
 namespace lrb::exact {
 
 /// Returns the intersection of the segment p, q with the plane of triangle t. p must not be in the plane, nor
-/// q on p's side of it. Each coordinate is within 1e-13 |q - p| plus one rounding of the exact point.
-Eigen::Vector3d cut_by_plane(const double* p, const double* q, const double* const t[3]);
+/// q on p's side of it. hp, hq: PlaneSide::determinant() of that plane at p and q. Each coordinate is within
+/// 1e-13 |q - p| plus one rounding of the exact point.
+Eigen::Vector3d cut_by_plane(const double* p, const Approximate& hp, const double* q, const Approximate& hq,
+                             const double* const t[3]);
 
 /// Returns the intersection of the segment p, q with the line through a and b, in the projection to
 /// coordinates x and y. Fills the first `dim` coordinates of the result and sets the others to 0. p must not

@@ -1,10 +1,33 @@
 #include "engine/lrb/surface_graph.hpp"
 
 #include <algorithm>
+#include <bit>
+
+#include "engine/core/numbering.hpp"
 
 namespace lrb {
+namespace {
 
-SurfaceGraph::SurfaceGraph(const LrbRep& rep) {
+/// Returns the first vertex with the coordinates of each vertex, or an empty list if all are different.
+std::vector<VertexId> places_of(std::span<const Eigen::Vector3d> vertices) {
+  std::vector<VertexId> places, first;  // `first`: of each place
+  Numbering<3> numbering;
+  numbering.begin(vertices.size());
+  for (VertexId v = 0; v < vertices.size(); ++v) {
+    const Eigen::Vector3d x = vertices[v] + Eigen::Vector3d::Zero();  // -0 becomes 0
+    const auto bits = [&](int k) { return std::bit_cast<std::uint64_t>(x[k]); };
+    const auto [place, is_new] = numbering.number({bits(0), bits(1), bits(2)});
+    if (is_new) first.push_back(v);
+    places.push_back(first[place]);
+  }
+  if (first.size() == vertices.size()) places.clear();
+  places.shrink_to_fit();
+  return places;
+}
+
+}  // namespace
+
+SurfaceGraph::SurfaceGraph(const LrbRep& rep) : places_(places_of(rep.vertices())) {
   const std::size_t vertices = rep.vertices().size();
   const auto for_each_edge = [&](const auto& visit) {
     for (FaceId f = 0; f < rep.real_face_count(); ++f) {

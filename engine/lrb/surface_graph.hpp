@@ -8,7 +8,7 @@
 
 namespace lrb {
 
-/// The real vertices connected to each vertex by an edge of a real face.
+/// The real vertices connected to each vertex by an edge of a real face, and the vertices that coincide.
 class SurfaceGraph {
  public:
   explicit SurfaceGraph(const LrbRep& rep);
@@ -16,10 +16,13 @@ class SurfaceGraph {
   std::span<const VertexId> neighbours(VertexId v) const {
     return {neighbours_.data() + offsets_[v], offsets_[v + 1] - offsets_[v]};
   }
+  /// Returns the first vertex with the same coordinates: vertices along a texture seam are one place.
+  VertexId place(VertexId v) const { return places_.empty() ? v : places_[v]; }
 
  private:
   std::vector<std::uint32_t> offsets_;  ///< (|V| + 1)
   std::vector<VertexId> neighbours_;
+  std::vector<VertexId> places_;  ///< (|V|); empty if no two vertices coincide
 };
 
 }  // namespace lrb

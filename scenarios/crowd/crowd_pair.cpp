@@ -61,6 +61,7 @@ spec::Scenario scenario_of_pair(const CrowdTrace& trace, const BodyPair& pair, c
   s.hash = hash.value();
   s.motion.kind = spec::Motion::Kind::poses;
   s.request = trace.crowd.request;
+  s.more = trace.crowd.more;
   s.request.contacts = s.request.mode == Mode::all_pairs;
   return s;
 }

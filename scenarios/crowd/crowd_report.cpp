@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
+#include "render/pictures/marks.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
 #include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/io/files.hpp"
@@ -39,12 +41,26 @@ class FileSink final : public trace::ByteSink {
 /// The queries of two bodies over all steps.
 struct PairHistory {
   BodyPair bodies{0, 0};
-  std::uint32_t first = 0, steps = 0;  ///< the first step at which they intersect, and the number of them
-  std::uint64_t most_pairs = 0;        ///< of faces at a step
-  std::uint32_t at = 0;                ///< that step
-  std::uint64_t face_tests = 0;        ///< sum over all steps
+  std::uint32_t first = 0, steps = 0;      ///< the first step at which they intersect, and the number of them
+  std::uint64_t most_pairs = 0;            ///< of faces at a step
+  std::uint32_t at = 0;                    ///< that step
+  std::uint64_t face_tests = 0;            ///< sum over all steps
+  Relation relation = Relation::separate;  ///< at the last step at which they intersect, or at the last step
   const trace::StepResult* last = nullptr;  ///< of the last step at which they intersect
+  // If they were measured: the answers with the smallest distance, the largest depth and most near pairs.
+  const trace::StepResult *nearest = nullptr, *deepest = nullptr, *nearby = nullptr;
 };
+
+double depth_of(const trace::StepResult& r) {
+  return r.clash && r.clash->depth ? (*r.clash->depth)[0] : 0;
+}
+
+/// Remembers the extreme answers of two bodies.
+void compare_measures(PairHistory& p, const trace::StepResult& r) {
+  if (r.distance && (p.nearest == nullptr || r.distance->upper < p.nearest->distance->upper)) p.nearest = &r;
+  if (r.clash && (p.deepest == nullptr || depth_of(r) > depth_of(*p.deepest))) p.deepest = &r;
+  if (r.near && (p.nearby == nullptr || r.near->pairs > p.nearby->near->pairs)) p.nearby = &r;
+}
 
 /// Returns the pairs of bodies that were queried, those with most face tests first.
 std::vector<PairHistory> pair_histories(const CrowdRun& run) {
@@ -54,6 +70,8 @@ std::vector<PairHistory> pair_histories(const CrowdRun& run) {
       PairHistory& p = of[q.bodies];
       p.bodies = q.bodies;
       p.face_tests += q.result.counters.face_tests;
+      compare_measures(p, q.result);
+      if (p.steps == 0 || q.meets()) p.relation = q.result.relation;
       if (!q.meets()) continue;
       if (p.steps++ == 0) p.first = step;
       if (q.result.pair_count >= p.most_pairs) p.most_pairs = q.result.pair_count, p.at = step;
@@ -92,10 +110,10 @@ void add_numbers(report::Document& doc, const spec::Crowd& crowd, const CrowdRun
       .number({"Face tests", a_step(tests), "exact, a step"});
 }
 
-/// A curve over the steps.
+/// A curve over the steps. Steps without a value are left out.
 struct Curve {
   const char* label;
-  std::function<std::uint64_t(const CrowdStep&)> value;
+  std::function<std::optional<double>(const CrowdStep&)> value;
 };
 
 void add_chart(report::Document& doc, const CrowdRun& run, const char* title, const char* y_label,
@@ -105,12 +123,30 @@ void add_chart(report::Document& doc, const CrowdRun& run, const char* title, co
   for (const Curve& curve : curves) {
     report::Series s{curve.label, {}, {}};
     for (std::size_t i = 0; i < run.steps.size(); ++i) {
+      const std::optional<double> y = curve.value(run.steps[i]);
+      if (!y) continue;
       s.x.push_back(static_cast<double>(i));
-      s.y.push_back(static_cast<double>(curve.value(run.steps[i])));
+      s.y.push_back(*y);
     }
     if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; })) chart.series.push_back(s);
   }
   if (!chart.series.empty()) doc.chart(chart);
+}
+
+/// Returns the smallest distance of the pairs that do not intersect (upper bounds).
+std::optional<double> smallest_distance(const CrowdStep& step) {
+  std::optional<double> least;
+  for (const CrowdQuery& q : step.queries)
+    if (const auto& d = q.result.distance; d && !d->solids_meet && !(least && *least <= d->upper))
+      least = d->upper;
+  return least;
+}
+
+/// Returns the largest depth (lower bounds).
+std::optional<double> largest_depth(const CrowdStep& step) {
+  double most = 0;
+  for (const CrowdQuery& q : step.queries) most = std::max(most, depth_of(q.result));
+  return most > 0 ? std::optional(most) : std::nullopt;
 }
 
 void add_charts(report::Document& doc, const CrowdRun& run) {
@@ -123,6 +159,9 @@ void add_charts(report::Document& doc, const CrowdRun& run) {
              {"one inside the other",
               [](S s) { return count(s, Relation::a_inside_b) + count(s, Relation::b_inside_a); }},
              {"bodies in contact", [n](S s) { return bodies_in_contact(s, n); }}});
+  add_chart(doc, run, "Distance and depth by step", "length, of the extreme pair",
+            {{"smallest distance of separate bodies", smallest_distance},
+             {"largest penetration depth", largest_depth}});
   add_chart(doc, run, "Work by step", "number in the step",
             {{"face tests", [](S s) { return sum(s).face_tests; }},
              {"refinements", [](S s) { return sum(s).refinements; }}});
@@ -131,23 +170,43 @@ void add_charts(report::Document& doc, const CrowdRun& run) {
              {"swaps in the order", [](S s) { return s.broad_phase.swaps; }}});
 }
 
-report::Table pair_table(const CrowdRun& run) {
+report::Table pair_table(const spec::Crowd& crowd, const CrowdRun& run) {
   constexpr std::size_t kMaxRows = 200;
-  report::Table t{"Pairs of bodies that intersect",
-                  {"A", "B", "first step", "steps", "last relation", "most pairs of faces", "at step",
-                   "face tests in all steps", "fingerprint at the last of the steps"}};
+  const spec::StepQuestions& more = crowd.more;
+  const bool with_separate = more.distance || more.near;
+  report::Table t{
+      with_separate ? "Pairs of bodies that are near or intersect" : "Pairs of bodies that intersect",
+      {"A", "B", "first step", "steps", "last relation"}};
+  if (more.distance) t.columns.emplace_back("smallest distance");
+  if (more.clash) t.columns.insert(t.columns.end(), {"largest depth", "contact kind there"});
+  if (more.near) t.columns.emplace_back("most near pairs");
+  t.columns.insert(t.columns.end(), {"most pairs of faces", "at step", "face tests in all steps",
+                                     "fingerprint at the last of the steps"});
   std::vector<PairHistory> pairs = pair_histories(run);
-  std::erase_if(pairs, [](const PairHistory& p) { return p.steps == 0; });
+  if (!with_separate) std::erase_if(pairs, [](const PairHistory& p) { return p.steps == 0; });
   for (std::size_t i = 0; i < std::min(pairs.size(), kMaxRows); ++i) {
     const PairHistory& p = pairs[i];
-    t.rows.push_back({run.names[p.bodies.i], run.names[p.bodies.j], std::to_string(p.first),
-                      render::group_digits(p.steps), io::in_words(name_of(p.last->relation)),
-                      render::group_digits(p.most_pairs), std::to_string(p.at),
-                      render::group_digits(p.face_tests), trace::to_hex(p.last->fingerprint)});
+    const bool meets = p.steps > 0;
+    std::vector<std::string>& row = t.rows.emplace_back();
+    row = {run.names[p.bodies.i], run.names[p.bodies.j], meets ? std::to_string(p.first) : "",
+           render::group_digits(p.steps), io::in_words(name_of(p.relation))};
+    if (more.distance)
+      row.push_back(run::interval_text(p.nearest->distance->lower, p.nearest->distance->upper));
+    if (more.clash) {
+      const trace::MeasuredClash& clash = *p.deepest->clash;
+      row.push_back(clash.depth ? run::interval_text((*clash.depth)[0], (*clash.depth)[1]) : "");
+      row.push_back(run::kind_text(clash.kind, clash.reason));
+    }
+    if (more.near) row.push_back(render::group_digits(p.nearby->near->pairs));
+    row.insert(row.end(),
+               {render::group_digits(p.most_pairs), meets ? std::to_string(p.at) : "",
+                render::group_digits(p.face_tests), meets ? trace::to_hex(p.last->fingerprint) : ""});
   }
   t.note =
       "The pairs with most face tests first. lrbscope crowd DIR --pair \"A,B\" records two bodies as a run of "
-      "their own. Pairs with disjoint boxes are not queried: they have no point in common.";
+      "their own. ";
+  t.note += more.near ? "Pairs with boxes farther apart than near pairs of faces may be are not queried."
+                      : "Pairs with disjoint boxes are not queried: they have no point in common.";
   if (pairs.size() > kMaxRows)
     t.note += " " + std::to_string(pairs.size() - kMaxRows) + " more pairs are left out here.";
   return t;
@@ -175,7 +234,7 @@ void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, cons
   add_numbers(doc, crowd, run);
   run::add_frames(doc, drawn, folder);
   add_charts(doc, run);
-  doc.table(pair_table(run)).write(folder);
+  doc.table(pair_table(crowd, run)).write(folder);
 }
 
 }  // namespace
@@ -298,7 +357,20 @@ void write_step(JsonWriter& w, const CrowdStep& step, std::size_t index, std::si
   for (const CrowdQuery& q : step.queries) {
     w.begin_object().member("a", q.bodies.i).member("b", q.bodies.j);
     w.member("relation", trace::name_of(q.result.relation)).member("pairs", q.result.pair_count);
-    w.member("fingerprint", trace::to_hex(q.result.fingerprint)).end_object();
+    w.member("fingerprint", trace::to_hex(q.result.fingerprint));
+    if (q.result.distance) {
+      w.key("distance");
+      trace::write_json(w, *q.result.distance);
+    }
+    if (q.result.clash) {
+      w.key("clash");
+      trace::write_json(w, *q.result.clash);
+    }
+    if (q.result.near) {
+      w.key("near").begin_object();
+      w.member("within", q.result.near->within).member("pairs", q.result.near->pairs).end_object();
+    }
+    w.end_object();
   }
   w.end_array().end_object();
 }

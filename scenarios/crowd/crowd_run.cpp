@@ -74,7 +74,8 @@ class Player {
     const std::vector<std::size_t> order = order_by_bodies(questions);
     workers_.for_each(pairs.size(), [&](std::size_t k, unsigned thread) {
       const std::size_t at = order[k];
-      CollideResult result = ask(pairs[at], questions[at], thread, step.queries[at]);
+      CollideResult& result = ask(pairs[at], questions[at], thread, step.queries[at]);
+      // Otherwise its memory is reused.
       if (moment != nullptr) results[at] = std::move(result);
     });
     step.begin_ns = begin;
@@ -90,36 +91,57 @@ class Player {
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - began_).count());
   }
 
-  /// Returns the pairs of bodies with overlapping boxes, ascending. Keys are in the order of the bodies.
+  /// Returns the pairs of bodies with overlapping boxes, or with boxes at most as far apart as near pairs,
+  /// ascending. Keys are in the order of the bodies.
   std::vector<BodyPair> near() {
     std::vector<BodyPair> pairs;
     const auto number = [&](BodyKey key) {
       return static_cast<std::uint32_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
     };
-    for (const ScenePair& p : scene_.near()) pairs.push_back({number(p.a), number(p.b)});
+    for (const ScenePair& p : scene_.near(crowd_.more.near.value_or(0)))
+      pairs.push_back({number(p.a), number(p.b)});
+    if (crowd_.more.near) std::sort(pairs.begin(), pairs.end());  // they are in the order of their gaps
     return pairs;
   }
 
   const Pose& pose(std::uint32_t body) const { return scene_.pose(keys_[body]); }
 
-  CollideResult ask(const BodyPair& pair, const PosedPair& question, std::uint32_t thread,
-                    CrowdQuery& query) {
+  /// Returns the result in the thread's workspace.
+  CollideResult& ask(const BodyPair& pair, const PosedPair& question, std::uint32_t thread,
+                     CrowdQuery& query) {
     query.bodies = pair;
     query.thread = thread;
     query.begin_ns = now();
-    CollideResult r;
     try {
-      r = std::move(collide(*question.a, question.pose_a, *question.b, question.pose_b, crowd_.request,
-                            workspaces_[thread])
-                        .value());
+      CollideResult& r = collide(*question.a, question.pose_a, *question.b, question.pose_b, crowd_.request,
+                                 workspaces_[thread])
+                             .value();
+      query.result = {r.relation, r.interiors_overlap, r.pairs.size(), fingerprint(r.pairs), r.counters};
+      query.contact_regions = r.regions.size();
+      measure(question, workspaces_[thread], query.result);
+      query.end_ns = now();
+      return r;
     } catch (const InputError& e) {
       throw InputError("crowd " + crowd_.name + ", " + run_.names[pair.i] + " (A) and " + run_.names[pair.j] +
                        " (B): " + e.what());
     }
-    query.end_ns = now();
-    query.result = {r.relation, r.interiors_overlap, r.pairs.size(), fingerprint(r.pairs), r.counters};
-    query.contact_regions = r.regions.size();
-    return r;
+  }
+
+  /// Adds the distance, the clash and the near pairs, if requested.
+  void measure(const PosedPair& q, Workspace& workspace, trace::StepResult& result) const {
+    const spec::StepQuestions& more = crowd_.more;
+    if (more.distance)
+      result.distance =
+          trace::measured(distance(*q.a, q.pose_a, *q.b, q.pose_b, DistanceRequest{}, workspace).value(), {});
+    if (more.clash)
+      result.clash =
+          trace::measured(clash(*q.a, q.pose_a, *q.b, q.pose_b, ClashRequest{}, workspace).value(), {});
+    if (more.near) {
+      NearPairsRequest request;
+      request.within = *more.near;
+      result.near = trace::measured(near_pairs(*q.a, q.pose_a, *q.b, q.pose_b, request, workspace).value(),
+                                    request.within);
+    }
   }
 
   void remember(const std::vector<BodyPair>& pairs, std::vector<CollideResult>& results,

@@ -161,7 +161,18 @@ class Writer {
     w_.member("face tests", c.face_tests).member("refinements", c.refinements);
     w_.member("regions opened", c.regions_opened).member("node pairs", c.node_pairs);
     w_.member("box tests", c.box_tests).member("exact fallbacks", c.exact_fallbacks);
+    measures(r);
     end();
+  }
+
+  void measures(const trace::StepResult& r) {
+    const auto interval = [&](std::string_view key, double lower, double upper) {
+      w_.key(key).begin_array().value(lower).value(upper).end_array();
+    };
+    if (r.distance) interval("distance", r.distance->lower, r.distance->upper);
+    if (r.clash) w_.member("contact kind", trace::name_of(r.clash->kind));
+    if (r.clash && r.clash->depth) interval("depth", (*r.clash->depth)[0], (*r.clash->depth)[1]);
+    if (r.near) w_.member("near pairs", r.near->pairs);
   }
 
   void metadata() {
@@ -170,6 +181,13 @@ class Writer {
     w_.key("crowd").begin_object().member("name", crowd_.name).member("hash", trace::to_hex(crowd_.hash));
     w_.end_object().key("request");
     trace::write_json(w_, crowd_.request);
+    const spec::StepQuestions& more = crowd_.more;
+    if (more.distance || more.clash || more.near) {
+      w_.key("measures").begin_object();
+      w_.member("distance", more.distance).member("clash", more.clash);
+      if (more.near) w_.member("near", *more.near);
+      w_.end_object();
+    }
     w_.key("room").begin_array();
     for (int axis = 0; axis < 3; ++axis) w_.value(crowd_.room[axis]);
     w_.end_array();

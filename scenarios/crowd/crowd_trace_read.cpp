@@ -111,6 +111,12 @@ class Reader {
     c.hash = metadata.at("crowd").at("hash").hash();
     c.clock = metadata.at("clock").named<trace::Clock>();
     c.request = trace::read_request(metadata.at("request"));
+    if (metadata.has("measures")) {
+      const TraceNode measures = metadata.at("measures");
+      c.more.distance = measures.at("distance").boolean();
+      c.more.clash = measures.at("clash").boolean();
+      if (measures.has("near")) c.more.near = measures.at("near").least(0);
+    }
     const TraceNode room = metadata.at("room");
     if (room.array_size() != 3) room.fail("three sizes");
     for (int axis = 0; axis < 3; ++axis) {

@@ -7,6 +7,7 @@
 
 #include "render/page_palette.hpp"
 #include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::report {
 namespace {
@@ -178,18 +179,56 @@ std::string chart_json(const Chart& chart) {
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout) {
+namespace {
+
+/// Widths and heights around a panel, in millimetres.
+struct PanelMargins {
+  double line, left, right, top, bottom;
+};
+
+PanelMargins margins_of(double font, std::size_t panels) {
   constexpr double kPoint = 25.4 / 72;  // millimetres
-  const double line = 1.3 * kPoint * layout.font;
-  const double left = 5.5 * line, right = line, top = panels.size() > 1 ? 2 * line : line,
-               bottom = 3.5 * line;
+  const double line = 1.3 * kPoint * font;
+  return {line, 5.5 * line, line, panels > 1 ? 2 * line : line, 3.5 * line};
+}
+
+}  // namespace
+
+PrintLayout layout_for(double width, std::span<const Chart> panels) {
+  constexpr double kLeastPanel = 30, kLetter = 0.6, kSample = 8;  // of the key: letters per line, millimetres
+  PrintLayout layout;
+  const PanelMargins m = margins_of(layout.font, panels.size());
+  const double around = m.left + m.right;
+  if (width < around + kLeastPanel)
+    throw InputError("expected a width of at least " + io::number_text(std::ceil(around + kLeastPanel)) +
+                     " mm for a chart, found " + io::number_text(std::round(width * 10) / 10) + " mm");
+  layout.columns = std::clamp(static_cast<int>(width / (around + kLeastPanel)), 1,
+                              std::max(1, static_cast<int>(panels.size())));
+  layout.panel_width = width / layout.columns - around;
+  layout.panel_height = std::min(layout.panel_width, 0.6 * layout.panel_width + 12);
+  std::size_t longest = 1;
+  for (const auto& entry : key_of(panels)) longest = std::max(longest, entry.first->label.size());
+  layout.key = "";
+  layout.key_columns =
+      std::max(1, static_cast<int>((width - 2 * m.line) /
+                                   (kSample + kLetter * m.line / 1.3 * static_cast<double>(longest))));
+  return layout;
+}
+
+Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout) {
+  const auto [line, left, right, top, bottom] = margins_of(layout.font, panels.size());
   const int count = static_cast<int>(panels.size()), columns = std::min(count, layout.columns);
   const int rows = (count + columns - 1) / columns;
   const auto key = layout.key.empty() ? key_of(panels) : key_of({});
   const int lines = (static_cast<int>(key.size()) + layout.key_columns - 1) / layout.key_columns;
-  const double column_width = left + layout.panel_width + right,
-               row_height = top + layout.panel_height + bottom;
-  const Sheet sheet{columns * column_width, rows * row_height + (lines > 0 ? 1.2 * line * lines + line : 0)};
+  // A label of all panels is only below the last ones: the rows above need less space.
+  const bool has_common_label = std::all_of(panels.begin(), panels.end(), [&](const Chart& panel) {
+    return panel.x.label == panels.front().x.label;
+  });
+  const double gap = has_common_label ? 2 * line : bottom;
+  const double column_width = left + layout.panel_width + right, row_height = top + layout.panel_height + gap,
+               panels_height = rows * row_height + bottom - gap;
+  const Sheet sheet{columns * column_width, panels_height + (lines > 0 ? 1.2 * line * lines + line : 0)};
   Gnuplot out{"", sheet.width, sheet.height, layout.font};
   std::string commands;
   const auto is_empty = [](const Chart& panel) {
@@ -217,7 +256,7 @@ Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout) {
   }
   if (lines > 0)
     commands +=
-        sheet.margins(line, sheet.width - line, rows * row_height + 0.5 * line, sheet.height - 0.5 * line) +
+        sheet.margins(line, sheet.width - line, panels_height + 0.5 * line, sheet.height - 0.5 * line) +
         key_commands(out, key, layout.key_columns, lines);
   out.script +=
       "set multiplot\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset tics nomirror scale 0.5\nset format '%g'\n"

@@ -82,6 +82,10 @@ struct PrintLayout {
   int key_columns = 2;            ///< of the common key
 };
 
+/// Returns a layout that is `width` millimetres wide: as many columns as leave room for readable panels, and
+/// a common key. Throws InputError if not even one fits.
+PrintLayout layout_for(double width, std::span<const Chart> panels);
+
 /// Lays out panels in rows. Axis labels are at the left and lower ends of rows and columns, and where a label
 /// differs from the neighbour's.
 Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout = {});

@@ -137,6 +137,68 @@ std::string csv(const Table& table) {
   return out;
 }
 
+namespace {
+
+std::string tex(const std::string& text) {
+  static constexpr std::pair<std::string_view, std::string_view> kForms[] = {{"\\", "\\textbackslash{}"},
+                                                                             {"&", "\\&"},
+                                                                             {"%", "\\%"},
+                                                                             {"$", "\\$"},
+                                                                             {"#", "\\#"},
+                                                                             {"_", "\\_"},
+                                                                             {"{", "\\{"},
+                                                                             {"}", "\\}"},
+                                                                             {"~", "\\textasciitilde{}"},
+                                                                             {"^", "\\textasciicircum{}"},
+                                                                             {"\u2013", "--"},
+                                                                             {"\u00b5", "\\textmu{}"}};
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto form = std::find_if(std::begin(kForms), std::end(kForms), [&](const auto& f) {
+      return std::string_view(text).substr(i).starts_with(f.first);
+    });
+    if (form != std::end(kForms)) {
+      out += form->second;
+      i += form->first.size();
+    } else {
+      out += text[i++];
+    }
+  }
+  return out;
+}
+
+/// Returns true if all cells of a column are numbers or dashes.
+bool is_numeric(const Table& table, std::size_t column) {
+  return std::all_of(table.rows.begin(), table.rows.end(), [&](const std::vector<std::string>& row) {
+    return row[column] == "\u2013" || looks_numeric(row[column]);
+  });
+}
+
+}  // namespace
+
+std::string booktabs(const Table& table) {
+  std::string out = "% \\usepackage{booktabs}\n\\begin{tabular}{";
+  for (std::size_t i = 0; i < table.columns.size(); ++i) out += is_numeric(table, i) ? "r" : "l";
+  const auto line = [&](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) out += (i > 0 ? " & " : "") + tex(cells[i]);
+    out += " \\\\\n";
+  };
+  out += "}\n\\toprule\n";
+  line(table.columns);
+  std::string group;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    std::vector<std::string> row = table.rows[i];
+    if (i == 0 || row[0] != group) {
+      out += "\\midrule\n";
+      group = row[0];
+    } else {
+      row[0].clear();
+    }
+    line(row);
+  }
+  return out + "\\bottomrule\n\\end{tabular}\n";
+}
+
 Document::Document(std::string title, std::string purpose)
     : title_(std::move(title)), purpose_(std::move(purpose)) {
   version(trace::lrbscope_version());
@@ -347,10 +409,13 @@ Document& Document::file(const std::string& name, std::string bytes, const std::
   return link({name, note});
 }
 
-std::string Document::print(const std::string& name, const std::string& note, const Gnuplot& chart) {
+std::string Document::print(const std::string& name, const std::string& note, const Gnuplot& chart,
+                            bool as_pdf) {
   try {
     const std::string svg = drawn(chart, name + ".svg");
-    file(name + ".svg", svg, note).file(name + ".png", drawn(chart, name + ".png"), note + ", 300 dpi");
+    if (as_pdf) file(name + ".pdf", drawn(chart, name + ".pdf"), note);
+    file(name + ".svg", svg, note);
+    if (!as_pdf) file(name + ".png", drawn(chart, name + ".png"), note + ", 300 dpi");
     return svg;
   } catch (const EnvironmentError& e) {
     notes_.emplace_back(e.what());

@@ -39,6 +39,10 @@ struct Table {
 /// a line break are quoted.
 std::string csv(const Table& table);
 
+/// Returns a table as a LaTeX tabular with the rules of the package booktabs. Columns of numbers are aligned
+/// right. Rows with the same first cell form a group: it is written once, with a rule before the next group.
+std::string booktabs(const Table& table);
+
 /// A heading and a paragraph.
 struct Text {
   std::string title, text;
@@ -170,9 +174,10 @@ class Document {
                     const std::string& caption);
   /// A file beside the page, written by write().
   Document& file(const std::string& name, std::string bytes, const std::string& note);
-  /// Charts for print: NAME.svg and NAME.png. Without gnuplot they are left out, and notes() says so. Returns
-  /// the .svg.
-  std::string print(const std::string& name, const std::string& note, const Gnuplot& chart);
+  /// Charts for print: NAME.svg, and NAME.png or NAME.pdf. Without gnuplot they are left out, and notes()
+  /// says so. Returns the .svg.
+  std::string print(const std::string& name, const std::string& note, const Gnuplot& chart,
+                    bool as_pdf = false);
 
   /// Adds all elements of a range, such as tables.
   template <class Parts, class P>

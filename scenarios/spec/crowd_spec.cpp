@@ -125,11 +125,12 @@ Eigen::Vector3d read_room(const io::JsonNode& node) {
   return room;
 }
 
-/// Returns the keys of a crowd's query: those of a scenario's exact queries of pairs.
+/// Returns the keys of a crowd's query: those of a scenario's exact queries.
 std::vector<std::string> crowd_query_keys() {
   std::vector<std::string> keys;
   for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
   for (const char* key : {"max_time", "tolerance", "max_tests", "separation"}) std::erase(keys, key);
+  keys.insert(keys.end(), {"distance", "clash", "near"});
   return keys;
 }
 
@@ -172,10 +173,10 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   if (const auto n = root.get("query")) {
     for (const char* key : {"tolerance", "max_tests", "separation"})
       if (n->has(key)) n->fail_key(key, "queries of a crowd are exact; remove it, or use a scenario");
-    for (const char* key : {"clash", "distance", "near", "manifold", "coherent"})
+    for (const char* key : {"manifold", "coherent"})
       if (n->has(key)) n->fail_key(key, "not supported for a crowd; remove it, or use a scenario");
     n->object(crowd_query_keys());
-    c.request = read_query(*n);
+    c.request = read_query(*n, &c.more);
     if (!n->has("contacts")) c.request.contacts = false;  // they take most of the time of a step
   }
   if (const auto trace = root.get("trace")) {

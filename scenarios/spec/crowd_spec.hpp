@@ -41,6 +41,7 @@ struct Crowd {
   /// By step and body, applied after a body's own pose; empty: the bodies have constant velocities.
   std::vector<std::vector<Pose>> poses;
   CollideRequest request;
+  StepQuestions more;  ///< distance, clash and near, of each pair that is queried
   trace::Clock clock = trace::Clock::event;
   std::uint32_t max_events = 1'000'000;  ///< maximum number of query slices in the trace; a query takes two
   FrameSpec frames;

@@ -233,6 +233,32 @@ TEST_CASE("an answer of one pair is exact, whatever the tolerance") {
   }
 }
 
+TEST_CASE("bodies without a level that is worth it are answered exactly, with the work of the exact query") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(2, 8, 0.3));
+  RandomEngine random(11);
+  std::size_t crossing = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Pose p = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 0.8));
+    for (const Mode mode : {Mode::all_pairs, Mode::any_pair, Mode::first_pair}) {
+      CollideRequest request;
+      request.mode = mode;
+      const CollideResult exact = collide(a, Pose{}, b, p, request);
+      // For all pairs, a tolerance that only fine levels keep; otherwise any.
+      request.tolerance = mode == Mode::all_pairs ? 1e-4 : 0.5;
+      const CollideResult found = collide(a, Pose{}, b, p, request);
+      CHECK(found.relation == exact.relation);
+      CHECK(found.pairs == exact.pairs);
+      CHECK(found.error_bound == 0);
+      CHECK(found.finished);
+      CHECK(found.interiors_overlap == exact.interiors_overlap);
+      CHECK(found.counters == exact.counters);
+      CHECK(found.opened == exact.opened);
+      crossing += exact.relation == Relation::crossing;
+    }
+  }
+  CHECK(crossing > 30);
+}
+
 TEST_CASE("barely touching bodies are answered exactly, at the cost of the exact query") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(4, 8, 0.3));
   const CoarseBodies pair{"bumps", a, b};

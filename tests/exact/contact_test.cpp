@@ -212,7 +212,9 @@ TEST_CASE("points of cuts that doubles cannot place are the exact ones, rounded 
       return sum;
     };
     const Rational share = height(p) / (height(p) - height(q));
-    const Eigen::Vector3d found = exact::cut_by_plane(p, q, corners);
+    const exact::PlaneSide plane(t[0], t[1], t[2]);
+    const Eigen::Vector3d found =
+        exact::cut_by_plane(p, plane.determinant(p), q, plane.determinant(q), corners);
     bool is_exact = true;
     for (int k = 0; k < 3; ++k) {
       const Rational x = Rational(p[k]) + share * (Rational(q[k]) - Rational(p[k]));

@@ -459,6 +459,29 @@ TEST_CASE("the commands: records, table, charts; existing records are reused") {
   CHECK(slurp(folder / "c/index.html").find("sphere tree") != std::string::npos);
   const std::string points = slurp(folder / "c/points.jsonl");
   CHECK(std::count(points.begin(), points.end(), '\n') == 3 * 5 * 7);
+  // A figure at a width on paper, of some panels, and the table of settings for LaTeX.
+  const std::string bodies = nlohmann::json::parse(points.substr(0, points.find('\n')))["set"];
+  const auto draw = [&](std::vector<std::string> words) {
+    words.insert(words.begin(),
+                 {"chart", "draw", "--method", "ours", "--method", "spheres", "--no-scenes", "-o", "c"});
+    return test::run(folder, words);
+  };
+  const auto figure = draw({"--width", "85mm", "--tex", "--panel", bodies + "/deep," + bodies + "/shallow"});
+  CHECK(figure.code == 0);
+  const std::string svg = slurp(folder / "c/figure.svg");
+  CHECK(svg.find("width=\"241\"") != std::string::npos);  // 85 mm in points
+  CHECK(svg.find("deep, 10 %") != std::string::npos);
+  CHECK(svg.find("0.5 % apart") == std::string::npos);
+  const std::string pdf = slurp(folder / "c/figure.pdf");
+  CHECK(pdf.substr(0, 5) == "%PDF-");
+  const std::string tex = slurp(folder / "c/settings.tex"), csv = slurp(folder / "c/settings.csv");
+  CHECK(tex.find("\\begin{tabular}{lrrlrrlrr}") != std::string::npos);
+  CHECK(tex.find("\\bottomrule") != std::string::npos);
+  CHECK(tex.find("\xC2\xB5") == std::string::npos);
+  CHECK(csv.find("bodies,faces,error,fastest") == 0);
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 3 * 5);
+  CHECK(draw({"--panel", "neither"}).err.find("unknown panel 'neither'; known: ") != std::string::npos);
+  CHECK(draw({"--width", "30mm"}).err.find("expected a width of at least ") != std::string::npos);
   CHECK(test::run(folder, {"chart", "draw", "-o", "nothing"}).code == 2);
   CHECK(test::run(folder, {"bench", "--method", "nobody", "-o", "b"}).code == 2);
 }

@@ -115,7 +115,7 @@ function ticksWithin(axis) {
   axis.ticks = within.length ? within.filter((t) => within.length < many || isPower(t)) : [{ value: axis.min }, { value: axis.max }];
 }
 
-function axis({ label, log, min, max, ticks }) {
+function axis({ label, log, min, max, ticks }, isWhole = true) {
   const given = new Map(ticks.map((t) => [t.at, t.label]));
   return {
     ...(given.size ? { afterBuildTicks: (a) => { a.ticks = ticks.map((t) => ({ value: t.at })); } } : log ? { afterBuildTicks: ticksWithin } : {}),
@@ -123,7 +123,7 @@ function axis({ label, log, min, max, ticks }) {
     type: log ? "logarithmic" : "linear", bounds: "data", title: { display: true, text: label, color: style("--soft") },
     grid: { color: style("--grid"), borderColor: style("--line") },
     ticks: {
-      color: style("--soft"), maxRotation: 0, precision: log ? undefined : 0,
+      color: style("--soft"), maxRotation: 0, precision: log || !isWhole ? undefined : 0,
       ...(given.size ? { callback: (value) => given.get(value) } : {}),
     },
   };
@@ -195,7 +195,7 @@ function makeChart(spec, canvas) {
     options: {
       animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
       interaction: { mode: scatter ? "nearest" : "index", intersect: false },
-      scales: { x: { ...axis(spec.x), ...(stacked ? { offset: true } : {}) }, y: { ...axis(spec.y), stacked, bounds: "ticks", beginAtZero: !spec.y.log, ...(bars.length ? { suggestedMax: Math.max(...bars) } : {}) } },
+      scales: { x: { ...axis(spec.x), ...(stacked ? { offset: true } : {}) }, y: { ...axis(spec.y, spec.series.every((s) => s.data.every((p) => Number.isInteger(p.y)))), stacked, bounds: "ticks", beginAtZero: !spec.y.log, ...(bars.length ? { suggestedMax: Math.max(...bars) } : {}) } },
       plugins: {
         legend: {
           display: hasLegend(spec), position: "bottom", maxHeight: room,

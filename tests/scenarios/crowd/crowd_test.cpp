@@ -18,8 +18,11 @@
 #include "tests/support/folder.hpp"
 #include "tests/support/json_schema.hpp"
 #include "tests/support/trace_schema.hpp"
+#include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/near_pairs.hpp>
 
 using namespace lrb;
 using nlohmann::json;
@@ -520,8 +523,82 @@ TEST_CASE("schema and reader agree on every key of a query") {
   CHECK(unknown.find("/query/clsh") != std::string::npos);
   for (const char* refused : {"tolerance", "separation", "coherent"})
     CHECK(unknown.find(refused) == std::string::npos);
-  CHECK(error_of(with("/query/clash", true)).find("/query/clash: not supported for a crowd") !=
+  CHECK(error_of(with("/query/manifold", 0.1)).find("/query/manifold: not supported for a crowd") !=
         std::string::npos);
+}
+
+TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of bodies") {
+  json j = good();
+  constexpr double kWithin = 0.3;
+  j["query"] = {{"distance", true}, {"clash", true}, {"near", kWithin}};
+  const spec::Crowd crowd = crowd_of(j);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, run::kSilent);
+  NearPairsRequest near;
+  near.within = kWithin;
+  std::size_t queried = 0, separate = 0, deep = 0, near_by = 0;
+  const std::uint32_t n = run.motion.body_count();
+  for (std::uint32_t step = 0; step < run.steps.size(); step += 2) {
+    auto next = run.steps[step].queries.begin();
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::uint32_t j2 = i + 1; j2 < n; ++j2) {
+        const LrbRep &a = run.rep(i), &b = run.rep(j2);
+        const Pose pose_a = run.motion.pose(i, step), pose_b = run.motion.pose(j2, step);
+        const auto pairs = trace::measured(near_pairs(a, pose_a, b, pose_b, near), kWithin);
+        if (next == run.steps[step].queries.end() || next->bodies != BodyPair{i, j2}) {
+          CHECK(pairs.pairs == 0);  // no face of the one is near one of the other
+          continue;
+        }
+        const trace::StepResult& r = next->result;
+        ++next;
+        ++queried;
+        REQUIRE(r.distance);
+        REQUIRE(r.clash);
+        REQUIRE(r.near);
+        CHECK(*r.near == pairs);
+        CHECK(*r.distance == trace::measured(distance(a, pose_a, b, pose_b), {}));
+        CHECK(*r.clash == trace::measured(clash(a, pose_a, b, pose_b), {}));
+        separate += r.distance->lower > 0;
+        deep += r.clash->depth && (*r.clash->depth)[0] > 0;
+        near_by += r.relation == Relation::separate && r.near->pairs > 0;
+      }
+    CHECK(next == run.steps[step].queries.end());
+  }
+  CHECK(queried > 50);
+  CHECK(separate > 5);
+  CHECK(deep > 5);
+  CHECK(near_by > 0);
+
+  // Trace, summary, page and the run of two bodies.
+  const test::Folder folder;
+  const json summary = json::parse(crowd::write_crowd(crowd, run, folder / "c", "command", run::kSilent));
+  const json& first = summary["steps"][0]["queries"][0];
+  CHECK(first["distance"]["upper"] == run.steps[0].queries[0].result.distance->upper);
+  CHECK(first["clash"]["kind"] == std::string(name_of(run.steps[0].queries[0].result.clash->kind)));
+  CHECK(first["near"]["pairs"] == run.steps[0].queries[0].result.near->pairs);
+  const std::string text = io::read_text(folder / "c/trace.json");
+  CHECK(test::trace_faults(json::parse(text)) == "");
+  const std::string page = io::read_text(folder / "c/index.html");
+  for (const char* shown : {"smallest distance", "largest depth", "contact kind there", "most near pairs",
+                            "Distance and depth by step"})
+    CHECK(page.find(shown) != std::string::npos);
+  const crowd::CrowdTrace trace = crowd::read_crowd_trace(text, "t.json");
+  CHECK(trace.crowd.more.distance);
+  CHECK(trace.crowd.more.clash);
+  CHECK(trace.crowd.more.near == kWithin);
+  const crowd::CrowdRun replayed =
+      crowd::replay_crowd(trace, saved_kinds(crowd, folder / "c"), 1, run::kSilent);
+  for (std::size_t step = 0; step < run.steps.size(); ++step)
+    for (std::size_t q = 0; q < run.steps[step].queries.size(); ++q)
+      REQUIRE(replayed.steps[step].queries[q].result == run.steps[step].queries[q].result);
+  const spec::Scenario pair = crowd::scenario_of_pair(trace, {0, 1}, folder / "c/trace.json");
+  CHECK(pair.more.clash);
+  CHECK(pair.more.near == kWithin);
+
+  json flat = good_2d();
+  flat["query"] = {{"clash", true}};
+  CHECK_THROWS_AS(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, run::kSilent)), InputError);
+  flat["query"] = {{"distance", true}, {"near", 0.2}};
+  CHECK_NOTHROW(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, run::kSilent)));
 }
 
 TEST_CASE("the geometry of contacts is computed only on request") {

@@ -10,7 +10,13 @@ namespace lrb {
 /// order of unions.
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  explicit DisjointSets(std::size_t count) { reset(count); }
+
+  /// Makes each number a set of its own.
+  void reset(std::size_t count) {
+    parent_.resize(count);
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
 
   /// Returns the smallest number in the set of i.
   std::uint32_t leader(std::uint32_t i) {
