@@ -38,6 +38,14 @@ cp "$tree/CONTRIBUTING.md" "$out/pages/contributing.md"
     sed 's|^[a-z]*/include/\(.*\)|- [`<\1>`](../&)|')
 } >"$out/pages/reference.md"
 
+# With the texts of the built module, if there is one that this Python can load.
+package=$tree/build/release/python
+for python in /usr/bin/python3 python3; do
+  ! PYTHONPATH=$package "$python" -c 'import lrbscope' 2>/dev/null || break
+done
+PYTHONPATH=$package "$python" -c 'import lrbscope' 2>/dev/null || package=
+PYTHONPATH=$package PYTHONDONTWRITEBYTECODE=1 "$python" "$docs/python_reference.py" "$tree" >"$out/pages/python_reference.md"
+
 # mkdocs, unlike GitHub, needs a blank line before lists. Targets of links out of the folder are copied.
 python3 - "$tree" "$out/pages" <<'P'
 import glob, os, re, shutil, sys

@@ -2,8 +2,11 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include <dlfcn.h>
 
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
@@ -25,6 +28,25 @@ constexpr std::array kFontFolders = {"/usr/share/fonts/truetype/dejavu/", "/usr/
 
 bool readable(const std::string& path) {
   return !path.empty() && std::ifstream(path).good();
+}
+
+/// Returns the path of a font that was installed with this program, or with this module of Python, in
+/// share/lrbscope of their prefix; empty if there is none. The module is five folders below the prefix.
+std::string installed_font(const std::string& name) {
+  std::error_code error;
+  Dl_info self{};
+  std::filesystem::path binary;
+  // Of a program, dladdr() may know only the name by which it was started.
+  if (dladdr(reinterpret_cast<const void*>(&readable), &self) != 0 && self.dli_fname != nullptr)
+    binary = std::filesystem::canonical(self.dli_fname, error);
+  if (error || !binary.has_parent_path()) binary = std::filesystem::read_symlink("/proc/self/exe", error);
+  std::filesystem::path folder = binary.parent_path();
+  for (int up = 0; up < 5 && folder.has_relative_path(); ++up) {
+    folder = folder.parent_path();
+    const std::string path = (folder / "share" / "lrbscope" / name).string();
+    if (readable(path)) return path;
+  }
+  return "";
 }
 
 /// A grid of coverage, 0 to 255.
@@ -69,7 +91,7 @@ Mask dilate(const Mask& mask, float radius) {
 }  // namespace
 
 std::string find_font(bool bold) {
-  // The environment comes first, then the font of the build, then the usual folders.
+  // The environment comes first, then an installed font, then that of the build, then the usual folders.
   for (const char* variable : {bold ? "LRB_FONT_BOLD" : "LRB_FONT", "LRB_FONT"}) {
     const char* path = std::getenv(variable);
     if (path == nullptr || *path == '\0') continue;
@@ -77,9 +99,12 @@ std::string find_font(bool bold) {
       throw EnvironmentError(std::string(variable) + " names '" + path + "', which cannot be read");
     return path;
   }
+  const std::string name = bold ? "DejaVuSans-Bold.ttf" : "DejaVuSans.ttf";
+  static const std::string installed[] = {installed_font("DejaVuSans.ttf"),
+                                          installed_font("DejaVuSans-Bold.ttf")};
+  if (!installed[bold].empty()) return installed[bold];
   const std::string built_with = bold ? LRB_FONT_BOLD_FILE : LRB_FONT_FILE;
   if (readable(built_with)) return built_with;
-  const std::string name = bold ? "DejaVuSans-Bold.ttf" : "DejaVuSans.ttf";
   for (const char* folder : kFontFolders) {
     if (readable(folder + name)) return folder + name;
   }

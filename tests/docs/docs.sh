@@ -3,7 +3,7 @@
 # - Every relative link and anchor has a target.
 # - docs/modules.svg is the output of docs/modules.sh.
 # - Every code block is run by a test (see runner()); a block below the line <!-- examples/FILE --> is a copy of that file.
-# - With the program: every `lrbscope` line of a shell block has a command and options of its --help.
+# - With the program: every `lrbscope` line of a shell block, or of a template in examples/ci, has a command and options of its --help.
 set -euo pipefail
 cd "$1"
 program=${2:-}
@@ -64,13 +64,13 @@ for page in $pages; do
   done < <(sed -n 's/^<!-- \(examples\/.*\) -->$/\1/p' "$page")
 done
 [ "$shown" -ge 4 ] || complain "docs.sh: found only $shown blocks that show examples"
-for file in examples/*.{cpp,py,sh} examples/capture/*; do
+for file in examples/*.{cpp,py,sh} examples/capture/* examples/ci/*; do
   grep -qF "](../$file)" docs/*.md || complain "$file: no page in docs/ links to it"
 done
 
 commands=0
 if [ -n "$program" ]; then
-  for page in $pages; do
+  for page in $pages examples/ci/*.yml; do
     while IFS= read -r line; do
       commands=$((commands + 1))
       line=${line%%#*}
@@ -85,7 +85,7 @@ if [ -n "$program" ]; then
         [[ "$word" =~ ^--?[a-z] ]] || continue
         grep -qE -- "(^|[ ,!])${word%%=*}([ ,=]|$)" <<<"$help" || complain "$page: lrbscope $command has no option $word"
       done
-    done < <(awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$page" | grep -oE '(^|[ /$])lrbscope [a-z][^|>'"'"']*' | sed 's/^[^l]*//')
+    done < <({ case "$page" in *.yml) sed '/^#/d' "$page" ;; *) awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$page" ;; esac; } | grep -oE '(^|[ /$])lrbscope [a-z][^|>'"'"']*' | sed 's/^[^l]*//')
   done
   [ "$commands" -gt 20 ] || complain "docs.sh: found only $commands commands"
 fi

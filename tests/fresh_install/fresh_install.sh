@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--no-cache] [--keep]: tests the README's two
+# tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--wheel FILE] [--no-cache] [--keep]: tests the README's two
 # commands on a minimal Debian: bookworm (12, the default of S) or trixie (13). Makes a root file system with debootstrap, from the
 # package sources of this machine, clones commit C (HEAD) into it, and runs ./run and ./check there in a clean environment, as root;
 # then again as a user without root; then the rest of ./check --full, the last parts with other engines installed. Debian packages
@@ -7,6 +7,8 @@
 # every step.
 # Steps: root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy; --until: the last one.
 # --minutes: steps after `user` end after M minutes, and the table lists those left out.
+# --wheel: instead of all this, installs a wheel for the Python of S in the root, in which there is no compiler and no library but those of
+# Python and NumPy, and runs the program and the tests of the package; then again with Mesa (steps: root clone wheel drawn).
 # Cached in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare/S: the minimal root and downloaded packages; this machine's compiler cache is
 # used as well. --no-cache disables all three, to measure times. --keep keeps the root for inspection.
 # Exit codes: 1 if a step failed, 2 for unknown arguments, 3 if it may not run or cannot make a root.
@@ -17,7 +19,7 @@ here=$(dirname "$script")
 repository=$(cd "$here/../.." && pwd)
 home=/root/lrbscope # the clone, inside the root
 
-usage() { sed -n '2,13s/^# //p' "$script" >&2 && exit 2; }
+usage() { sed -n '2,15s/^# //p' "$script" >&2 && exit 2; }
 refuse() { echo "fresh_install.sh: $1" >&2 && exit 3; }
 
 # ---- the package sources of this machine
@@ -256,6 +258,22 @@ step_sanitizers() { inside ./check sanitizers; }
 step_fuzz() { inside ./check fuzz; }
 step_tidy() { inside ./check tidy; }
 
+# Only Python, NumPy and pytest: the rest is in the wheel.
+step_wheel() {
+  cp "$wheel" "$root/root/"
+  inside bash -c 'apt-get update -q && apt-get install -y -q --no-install-recommends python3 python3-venv python3-numpy python3-pytest'
+  if inside bash -c 'command -v c++ || dpkg-query -W -f "\${Package}\n" | grep -E -- "^lib(tbb|cairo|freetype|png|osmesa|egl1|eigen3)"'; then
+    echo "the root has a compiler, or libraries that the wheel contains" && return 1
+  fi
+  inside bash tests/python/wheel.sh "/root/$(basename "$wheel")" /usr/bin/python3
+  grep -q "lrbscope run: refused: .*libosmesa6" "$work/wheel.log" || { echo "expected pictures to be refused without Mesa" && return 1; }
+}
+step_drawn() {
+  inside bash -c 'apt-get install -y -q --no-install-recommends libosmesa6'
+  inside bash tests/python/wheel.sh "/root/$(basename "$wheel")" /usr/bin/python3
+  grep -q "lrbscope run: drawn" "$work/drawn.log" || { echo "expected pictures with Mesa" && return 1; }
+}
+
 all_steps() {
   local name left needed=1
   for name in "${all[@]}"; do
@@ -272,7 +290,7 @@ all_steps() {
 
 # ---- from here on: this machine
 
-suite=bookworm commit=HEAD until=tidy minutes=0 cached=1 keep=0
+suite=bookworm commit=HEAD until=tidy minutes=0 cached=1 keep=0 wheel=
 if [ "${1:-}" != --inside ]; then
   while [ $# -gt 0 ]; do
     case "$1" in
@@ -280,6 +298,7 @@ if [ "${1:-}" != --inside ]; then
       --commit) commit=${2:?a commit} && shift ;;
       --until) until=${2:?a step} && shift ;;
       --minutes) minutes=${2:?a number of minutes} && shift ;;
+      --wheel) wheel=$(readlink -f "${2:?a file}") && [ -f "$wheel" ] && until=drawn && shift || usage ;;
       --no-cache) cached=0 ;;
       --keep) keep=1 ;;
       *) usage ;;
@@ -287,6 +306,7 @@ if [ "${1:-}" != --inside ]; then
     shift
   done
   case $suite in bookworm | trixie) ;; *) usage ;; esac
+  [ -z "$wheel" ] || all=(root clone wheel drawn)
   case " ${all[*]} " in *" $until "*) ;; *) usage ;; esac
   [[ $minutes =~ ^[0-9]+$ ]] || usage
   [ "$(id -u)" = 0 ] || refuse "needs root, to make a root file system"
@@ -314,14 +334,15 @@ if [ "${1:-}" != --inside ]; then
   if [ $mounts = 0 ]; then
     mknod "$work/null" c 1 3 2>/dev/null && : >"$work/null" || refuse "may neither mount nor make devices here"
   fi
-  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$minutes" "$cached" "$mounts" "$cache" "$work" "$suite" &
+  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$minutes" "$cached" "$mounts" "$cache" "$work" "$suite" "$wheel" &
   child=$!
   code=0
   wait "$child" || code=$?
   child=""
   exit $code
 fi
-commit=$2 until=$3 minutes=$4 cached=$5 mounts=$6 cache=$7 work=$8 suite=$9
+commit=$2 until=$3 minutes=$4 cached=$5 mounts=$6 cache=$7 work=$8 suite=$9 wheel=${10}
+[ -z "$wheel" ] || all=(root clone wheel drawn)
 objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache} # this machine's cache: objects do not depend on the root
 root=$work/root
 all_steps

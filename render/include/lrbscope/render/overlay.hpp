@@ -124,8 +124,8 @@ std::string short_number(double value);
 // Draws anti-aliased text into images on the CPU, identically on every machine.
 
 /// Returns the path of the font file: $LRB_FONT if set (bold: $LRB_FONT_BOLD, else $LRB_FONT), else DejaVu
-/// Sans as found by the build or in the folders that distributions use. Throws EnvironmentError that names
-/// the package to install.
+/// Sans as installed with this program, found by the build, or in the folders that distributions use. Throws
+/// EnvironmentError that names the package to install.
 std::string find_font(bool bold = false);
 
 enum class Align { left, centre, right };
