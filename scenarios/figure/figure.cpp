@@ -45,18 +45,16 @@ class FigureJob {
         frames_(in_points(frames, figure)),
         dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
         chosen_(choose(recorded, figure.choice)),
-        events_(chosen_.events),
         framing_(run::frame_sequence(recorded, frames_)),
         state_(in_common_range(), frames_, false) {}
 
   Figure draw(const run::ProgressReport& progress) {
-    survey();
+    arrange();
+    if (figure_.choice.by == Choice::By::changes && leave_out_alike(progress)) arrange();
     Figure out;
     out.panels = captions_.size();
     out.left_out = chosen_.left_out;
-    out.caption = run::caption_of(recorded_, captions_);
-    layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
-                      figure_.legend ? bar_ : std::nullopt, figure_.caption ? out.caption : "", options());
+    out.caption = caption();
     const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
     const std::optional<render::Rgba> background = frames_.paper();
     const std::string program = "lrbscope " + recorded_.trace->header.lrbscope;
@@ -88,7 +86,7 @@ class FigureJob {
 
   const render::Style& style() const { return style_of(frames_.style); }
   bool flat() const { return framing_.dim == 2; }
-  std::size_t moments() const { return events_.size(); }
+  std::size_t moments() const { return chosen_.events.size(); }
 
   LayoutOptions options() const {
     constexpr double kWidest =
@@ -108,7 +106,7 @@ class FigureJob {
     if (out.value_range || !shows_values()) return out;
     run::FrameState state(recorded_, frames_, false);
     std::optional<std::array<double, 2>>& range = out.value_range;
-    for (const trace::EventId event : events_) {
+    for (const trace::EventId event : chosen_.events) {
       state.seek(event);
       const render::Scene scene = state.scene();
       if (!scene.scale) continue;
@@ -139,7 +137,7 @@ class FigureJob {
   }
 
   render::Scene scene(const View& view, std::size_t moment) {
-    state_.seek(events_[moment]);
+    state_.seek(chosen_.events[moment]);
     render::Scene scene = state_.scene(view.wrapper, true);
     const auto least = static_cast<float>(kHairline);
     for (render::DrawLine& l : scene.list.lines) l.width = std::max(l.width, least);
@@ -147,8 +145,65 @@ class FigureJob {
     return scene;
   }
 
+  std::string caption() const { return run::caption_of(recorded_, captions_); }
+
+  void arrange() {
+    survey();
+    layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
+                      figure_.legend ? bar_ : std::nullopt, figure_.caption ? caption() : "", options());
+  }
+
+  // ---- panels that look alike
+
+  /// Removes states whose panels cannot be distinguished in print from those of the state before; the first
+  /// and the last state stay. Returns true if any were removed.
+  bool leave_out_alike(const run::ProgressReport& progress) {
+    std::vector<std::vector<render::Image>> seen(moments());  // by state: its panels, in order of the views
+    for (std::size_t v = 0; v < views_.size(); ++v)
+      for (const std::size_t moment : views_[v].moments) {
+        progress("compare", v * moments() + moment, views_.size() * moments());
+        seen[moment].push_back(in_print(*views_[v].view, moment, layout_.blocks[v].scale));
+      }
+    std::vector<trace::EventId> kept;
+    std::size_t last_kept = 0;
+    for (std::size_t i = 0; i < moments(); ++i) {
+      if (i > 0 && alike(seen[last_kept], seen[i])) {
+        if (i + 1 < moments() || kept.size() == 1) continue;
+        kept.pop_back();
+      }
+      kept.push_back(chosen_.events[i]);
+      last_kept = i;
+    }
+    const std::size_t removed = moments() - kept.size();
+    if (removed == 0) return false;
+    chosen_.left_out = render::counted(removed, "state is", "states are") +
+                       " omitted: in grey and at this width its panel would look like the one before; "
+                       "--faces, --steps and --events show any state";
+    chosen_.events = std::move(kept);
+    return true;
+  }
+
+  static bool alike(const std::vector<render::Image>& a, const std::vector<render::Image>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const render::Image& x, const render::Image& y) { return alike_in_grey(x, y); });
+  }
+
+  /// Draws the whole view of a state as large as in the figure, with the resolution of the eye.
+  render::Image in_print(const View& view, std::size_t moment, double scale) {
+    const double pixel = render::kPointsPerInch / kEyeDpi, side = pixel * std::ceil(kViewSide * scale / pixel);
+    PanelPlace place;
+    place.box = AlignedBox2d(Vector2d(0, 0), Vector2d(side, side));
+    place.seen_from = Vector2d(options().margin, options().margin) / scale;
+    const render::Scene shown = scene(view, moment);
+    return render::paint_pixels({side, side, render::kWhite, {}, {}}, kEyeDpi, [&](render::Canvas& canvas) {
+      flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, scale)
+             : paint_deep(canvas, shown.list, camera(view, moment), place, scale, kEyeDpi);
+    });
+  }
+
   /// Determines the content and size of each panel, and the entries of the common legend.
   void survey() {
+    views_.clear(), blocks_.clear(), captions_.clear(), key_.clear();
     for (const View& view : frames_.views) {
       Block block;
       std::vector<std::size_t> shown_moments;
@@ -198,7 +253,7 @@ class FigureJob {
         const std::size_t moment = views_[v].moments[i];
         const render::Scene shown = scene(view, moment);
         flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, block.scale)
-               : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale);
+               : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale, dpi_);
         if (runs_over(blocks_[v]))
           canvas.stroke(render::corners(place.box), true, {style().faint, kHairline, 0});
         double y = place.box.max().y() + 0.65 * figure_.font_size;
@@ -229,11 +284,11 @@ class FigureJob {
     canvas.end_clip();
   }
 
-  /// Draws the faces as pixels, with whole pixels in the panel's box, and paints lines and texts over
+  /// Draws the faces as pixels of resolution `dpi`, with whole pixels in the panel's box, and paints lines and texts over
   /// them.
   void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
-                  const PanelPlace& place, double scale) {
-    const double pixel = render::kPointsPerInch / dpi_, margin = options().margin,
+                  const PanelPlace& place, double scale, double dpi) {
+    const double pixel = render::kPointsPerInch / dpi, margin = options().margin,
                  centre = 0.5 * kViewSide * scale;
     const Vector2d low =
         place.seen_from * scale - Vector2d(margin, margin);  // of the box, in the view, points
@@ -270,7 +325,6 @@ class FigureJob {
   render::FrameSpec frames_;
   double dpi_;
   Chosen chosen_;
-  const std::vector<trace::EventId>& events_;
   run::Framing framing_;
   run::FrameState state_;
   render::Rasterizer rasterizer_;

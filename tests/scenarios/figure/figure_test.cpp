@@ -132,6 +132,40 @@ TEST_CASE("panels of two bodies: time steps, including the first contact") {
   CHECK_THROWS_AS(choose(s.run, {Choice::By::layers, {}}), InputError);
 }
 
+TEST_CASE("panels are alike if almost no pixel of their content differs visibly in grey") {
+  render::Image a(100, 100, render::kWhite);
+  a.fill({10, 10, 80, 80}, {100, 100, 100});
+  render::Image b = a;
+  b.fill({20, 20, 60, 60}, {100, 110, 105});  // hardly lighter
+  CHECK(alike_in_grey(a, b));
+  b.fill({20, 20, 5, 5}, render::kBlack);  // a few pixels
+  CHECK(alike_in_grey(a, b));
+  b.fill({20, 20, 10, 10}, render::kBlack);
+  CHECK_FALSE(alike_in_grey(a, b));
+  render::Image red(100, 100, render::kWhite), green = red;
+  red.fill({10, 10, 80, 80}, {170, 0, 0});
+  green.fill({10, 10, 80, 80}, {0, 87, 0});
+  CHECK(alike_in_grey(red, green));
+}
+
+TEST_CASE("the default series omits states that look like the one before, and reports it") {
+  const Shipped s("figure2");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  CHECK(draw_figure(s.run, {}, spec, run::kSilent).left_out.empty());
+  spec.choice.panels = 26;
+  spec.width = 60 * kPointsPerMm;
+  const Figure many = draw_figure(s.run, {}, spec, run::kSilent);
+  CHECK(many.panels < 26);
+  CHECK(many.panels > 5);
+  CHECK(many.caption.find("outermost wrapper, 8 faces") != std::string::npos);
+  CHECK(many.caption.find("the body, 144 faces") != std::string::npos);
+  CHECK(many.left_out.find("omitted: in grey and at this width") != std::string::npos);
+  // States that were asked for are shown.
+  spec.choice = {Choice::By::events, {1, 2}};
+  CHECK(draw_figure(s.run, {}, spec, run::kSilent).panels == 2);
+}
+
 TEST_CASE("panels fill the width; omitted parts take no space") {
   Block block = squares(6);
   const FigureLayout bare = lay_out({block}, {}, {}, "", at_width(240));
