@@ -81,21 +81,25 @@ class CairoCanvas : public Canvas {
     cairo_set_line_join(c_, CAIRO_LINE_JOIN_ROUND);
   }
 
-  void fill(const std::vector<Loop>& loops, Rgba colour) override {
+  void fill(const std::vector<Loop>& loops, Rgba colour, double spread = 0) override {
     for (const Loop& loop : loops) path(loop, true);
     cairo_set_fill_rule(c_, CAIRO_FILL_RULE_EVEN_ODD);
     ink(colour);
-    cairo_fill(c_);
+    if (!(spread > 0)) return cairo_fill(c_);
+    cairo_fill_preserve(c_);
+    cairo_set_line_width(c_, 2 * spread);
+    cairo_set_dash(c_, nullptr, 0, 0);
+    cairo_stroke(c_);
   }
 
   void stroke(const Loop& points, bool closed, const Pen& pen) override {
     path(points, closed);
-    ink(pen.colour);
-    cairo_set_line_width(c_, pen.width);
-    // Round ends would fill the gaps between dashes.
-    cairo_set_line_cap(c_, pen.dash > 0 ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
-    cairo_set_dash(c_, &pen.dash, pen.dash > 0 ? 1 : 0, 0);
-    cairo_stroke(c_);
+    stroke_path(pen);
+  }
+
+  void strokes(const std::vector<Loop>& lines, const Pen& pen) override {
+    for (const Loop& line : lines) path(line, false);
+    stroke_path(pen);
   }
 
   void disc(const Eigen::Vector2d& at, double radius, Rgba colour) override {
@@ -147,6 +151,15 @@ class CairoCanvas : public Canvas {
   void end_clip() override { cairo_restore(c_); }
 
  private:
+  void stroke_path(const Pen& pen) {
+    ink(pen.colour);
+    cairo_set_line_width(c_, pen.width);
+    // Round ends would fill the gaps between dashes.
+    cairo_set_line_cap(c_, pen.dash > 0 ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
+    cairo_set_dash(c_, &pen.dash, pen.dash > 0 ? 1 : 0, 0);
+    cairo_stroke(c_);
+  }
+
   void path(const Loop& points, bool closed) {
     for (std::size_t i = 0; i < points.size(); ++i)
       i == 0 ? cairo_move_to(c_, points[i].x(), points[i].y())

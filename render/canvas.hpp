@@ -43,9 +43,11 @@ class Canvas {
   using Loop = std::vector<Eigen::Vector2d>;
 
   virtual ~Canvas() = default;
-  /// Fills the interior of closed loops by the even-odd rule.
-  virtual void fill(const std::vector<Loop>& loops, Rgba colour) = 0;
+  /// Fills the interior of closed loops by the even-odd rule, enlarged by `spread` on each side.
+  virtual void fill(const std::vector<Loop>& loops, Rgba colour, double spread = 0) = 0;
   virtual void stroke(const Loop& points, bool closed, const Pen& pen) = 0;
+  /// Draws open lines as one shape: translucent lines do not add up where they overlap.
+  virtual void strokes(const std::vector<Loop>& lines, const Pen& pen) = 0;
   virtual void disc(const Eigen::Vector2d& at, double radius, Rgba colour) = 0;
   virtual void text(const PaperText& text) = 0;
   virtual void picture(const Image& image, const Eigen::AlignedBox2d& place) = 0;
@@ -92,8 +94,9 @@ std::string escape_markup(std::string_view text);
 
 class SvgCanvas : public Canvas {
  public:
-  void fill(const std::vector<Loop>& loops, Rgba colour) override;
+  void fill(const std::vector<Loop>& loops, Rgba colour, double spread = 0) override;
   void stroke(const Loop& points, bool closed, const Pen& pen) override;
+  void strokes(const std::vector<Loop>& lines, const Pen& pen) override;
   void disc(const Eigen::Vector2d& at, double radius, Rgba colour) override;
   void text(const PaperText& text) override;
   void picture(const Image& image, const Eigen::AlignedBox2d& place) override;
@@ -104,6 +107,8 @@ class SvgCanvas : public Canvas {
   const std::string& elements() const { return out_; }
 
  private:
+  void stroke_path(const std::string& d, const Pen& pen);
+
   std::string out_;
   int clips_ = 0;
 };

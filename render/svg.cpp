@@ -105,15 +105,29 @@ std::string box_attributes(const Eigen::AlignedBox2d& box) {
 
 }  // namespace
 
-void SvgCanvas::fill(const std::vector<Loop>& loops, Rgba colour) {
+void SvgCanvas::fill(const std::vector<Loop>& loops, Rgba colour, double spread) {
   std::string d;
   for (const Loop& loop : loops) d += path(loop, true);
   if (d.empty()) return;
-  out_ += "<path" + attribute("d", d) + paint("fill", colour) + attribute("fill-rule", "evenodd") + "/>\n";
+  out_ += "<path" + attribute("d", d) + paint("fill", colour) + attribute("fill-rule", "evenodd");
+  if (spread > 0)
+    out_ += paint("stroke", colour) + attribute("stroke-width", number(2 * spread)) +
+            attribute("stroke-linejoin", "round");
+  out_ += "/>\n";
 }
 
 void SvgCanvas::stroke(const Loop& points, bool closed, const Pen& pen) {
-  out_ += "<path" + attribute("d", path(points, closed)) + attribute("fill", "none") +
+  stroke_path(path(points, closed), pen);
+}
+
+void SvgCanvas::strokes(const std::vector<Loop>& lines, const Pen& pen) {
+  std::string d;
+  for (const Loop& line : lines) d += path(line, false);
+  stroke_path(d, pen);
+}
+
+void SvgCanvas::stroke_path(const std::string& d, const Pen& pen) {
+  out_ += "<path" + attribute("d", d) + attribute("fill", "none") +
           paint("stroke", pen.colour) + attribute("stroke-width", number(pen.width)) +
           attribute("stroke-linejoin", "round");
   // Round ends would fill the gaps between dashes.

@@ -141,7 +141,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   if (o.close_up) run::widen_close_ups(recorded, frames.views);
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
-  if (!drawn.left_out.empty()) note(globals, {drawn.left_out});
+  note(globals, drawn.notes);
   std::filesystem::path caption(file);
   caption.replace_extension(".caption.txt");
   io::write_text(file, drawn.bytes);
@@ -185,6 +185,12 @@ void add_paper_options(CLI::App& app, FigureOptions& o) {
   app.add_option("--dpi", o.picture.dpi,
                  "Resolution of 3D faces and of PNG files, in pixels per inch [600; PNG 300]")
       ->check(CLI::Range(spec::kMinDpi, spec::kMaxDpi))
+      ->type_name("N");
+  app.add_option("--vector-faces", o.figure.vector_faces,
+                 "Maximum number of visible faces in a panel for 3D faces as vector graphics; with more they are an "
+                 "image in all panels")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}))
+      ->capture_default_str()
       ->type_name("N");
   app.add_flag("--title,!--no-title", o.figure.titles,
                "Show or hide a title below each panel, after its letter [hidden]");

@@ -7,6 +7,7 @@
 #include "render/canvas.hpp"
 #include "render/paint_list.hpp"
 #include "render/pictures/panel.hpp"
+#include "render/vector_faces.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_panels.hpp"
 #include "scenarios/frames/frame_state.hpp"
@@ -53,7 +54,8 @@ class FigureJob {
     if (figure_.choice.by == Choice::By::changes && leave_out_alike(progress)) arrange();
     Figure out;
     out.panels = captions_.size();
-    out.left_out = chosen_.left_out;
+    if (!chosen_.left_out.empty()) out.notes.push_back(chosen_.left_out);
+    if (!flat() && figure_.format != FigureSpec::Format::png) find_vector_faces(out.notes, progress);
     out.caption = caption();
     const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
     const std::optional<render::Rgba> background = frames_.paper();
@@ -253,7 +255,8 @@ class FigureJob {
         const std::size_t moment = views_[v].moments[i];
         const render::Scene shown = scene(view, moment);
         flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, block.scale)
-               : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale, dpi_);
+               : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale, dpi_,
+                          visible_.empty() ? nullptr : &visible_[panel]);
         if (runs_over(blocks_[v]))
           canvas.stroke(render::corners(place.box), true, {style().faint, kHairline, 0});
         double y = place.box.max().y() + 0.65 * figure_.font_size;
@@ -284,40 +287,97 @@ class FigureJob {
     canvas.end_clip();
   }
 
-  /// Draws the faces as pixels of resolution `dpi`, with whole pixels in the panel's box, and paints lines and texts over
-  /// them.
-  void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
-                  const PanelPlace& place, double scale, double dpi) {
-    const double pixel = render::kPointsPerInch / dpi, margin = options().margin,
-                 centre = 0.5 * kViewSide * scale;
+  /// The part of a view that a panel shows.
+  struct DeepView {
+    render::Camera camera;
+    Vector2d paper;         ///< size of the camera's picture, points
+    Eigen::Vector2i drawn;  ///< the same, pixels
+    Eigen::Vector2i from;   ///< pixel of the picture at the corner of the panel's box
+    Vector2d origin;        ///< corner of the picture on the page
+    double pixel;           ///< points
+  };
+
+  DeepView deep_view(const render::Camera& whole, const PanelPlace& place, double scale, double dpi) const {
+    DeepView out;
+    out.pixel = render::kPointsPerInch / dpi;
+    const double pixel = out.pixel, margin = options().margin, centre = 0.5 * kViewSide * scale;
     const Vector2d low =
         place.seen_from * scale - Vector2d(margin, margin);  // of the box, in the view, points
-    const Eigen::Vector2i size = (place.box.sizes() / pixel).array().round().cast<int>();
     // The central part of the view that contains the box, with a margin of one pixel on each side.
     const Vector2d reach =
         (low.array() - centre).abs().max((low + place.box.sizes()).array() - centre) + 2 * pixel;
-    const Eigen::Vector2i drawn = (2 * reach / pixel).array().ceil().cast<int>();
-    const Vector2d paper = drawn.cast<double>() * pixel;
-    const render::Camera camera = central_part(whole, paper.y() / scale);
-    const Eigen::Vector2i from =
-        ((low - Vector2d(centre, centre) + 0.5 * paper) / pixel).array().round().cast<int>();
+    out.drawn = (2 * reach / pixel).array().ceil().cast<int>();
+    out.paper = out.drawn.cast<double>() * pixel;
+    out.camera = central_part(whole, out.paper.y() / scale);
+    out.from = ((low - Vector2d(centre, centre) + 0.5 * out.paper) / pixel).array().round().cast<int>();
+    out.origin = place.box.min() - out.from.cast<double>() * pixel;
+    return out;
+  }
 
+  /// Finds the visible faces of all panels, if none has too many.
+  void find_vector_faces(std::vector<std::string>& notes, const run::ProgressReport& progress) {
+    std::size_t panel = 0;
+    for (std::size_t v = 0; v < views_.size(); ++v)
+      for (std::size_t i = 0; i < views_[v].moments.size(); ++i, ++panel) {
+        progress("find visible faces", panel, captions_.size());
+        const std::size_t moment = views_[v].moments[i];
+        const render::DrawList list = scene(*views_[v].view, moment).list;
+        const DeepView deep = deep_view(camera(*views_[v].view, moment), layout_.blocks[v].panels[i],
+                                        layout_.blocks[v].scale, dpi_);
+        const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
+        auto visible = render::visible_faces(list, projection(deep, list), depths);
+        if (visible && visible->size() <= figure_.vector_faces) {
+          visible_.push_back(std::move(*visible));
+          continue;
+        }
+        visible_.clear();
+        if (visible)
+          notes.push_back("faces are an image of " + render::short_number(dpi_) + " dpi: " +
+                          (captions_.size() > 1 ? "panel " + render::panel_letter(panel) + " has " : "") +
+                          render::counted(visible->size(), "visible face", "visible faces") +
+                          ", more than --vector-faces " + std::to_string(figure_.vector_faces));
+        return;
+      }
+  }
+
+  static render::Projection projection(const DeepView& deep, const render::DrawList& list) {
+    return {deep.camera, deep.paper.x(), deep.paper.y(), render::bounds(list)};
+  }
+
+  /// Paints the faces `visible` as vector graphics, or without them all faces as pixels of resolution `dpi`, with
+  /// whole pixels in the panel's box. Paints lines and texts over them.
+  void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
+                  const PanelPlace& place, double scale, double dpi,
+                  const std::vector<std::uint32_t>* visible = nullptr) {
+    const DeepView deep = deep_view(whole, place, scale, dpi);
+    const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
+    const render::Projection on_paper = projection(deep, list);
+    if (visible == nullptr) canvas.picture(pixels(list, deep, place), place.box);
+    canvas.begin_clip(place.box);
+    if (visible != nullptr) {
+      const render::Lighting lighting;
+      const render::FaceLooks looks(list, on_paper, 1, lighting, true);
+      render::paint_faces(canvas, list, render::painting_order(list, on_paper, looks, *visible), looks,
+                          deep.origin);
+      render::paint_visible_lines(canvas, list, on_paper, depths, deep.origin);
+    }
+    render::paint_over(canvas, list, on_paper, depths, deep.origin);
+    canvas.end_clip();
+  }
+
+  render::Image pixels(const render::DrawList& list, const DeepView& deep, const PanelPlace& place) {
+    const Eigen::Vector2i size = (place.box.sizes() / deep.pixel).array().round().cast<int>();
     render::RasterOptions raster;
-    raster.width = drawn.x(), raster.height = drawn.y();
+    raster.width = deep.drawn.x(), raster.height = deep.drawn.y();
     raster.supersample = frames_.supersampling;
-    raster.unit = 1 / pixel;
+    raster.unit = 1 / deep.pixel;
     raster.labels = false;
     raster.even_edges = true;
     raster.background = frames_.paper();
-    const render::Image picture = rasterizer_.draw(render::under_lines(list), camera, raster);
+    const render::Image picture = rasterizer_.draw(render::under_lines(list), deep.camera, raster);
     render::Image part(size.x(), size.y(), render::kTransparent);
-    part.paste(picture, -from.x(), -from.y());
-    const render::DepthImage depths = rasterizer_.depths(list, camera, drawn.x(), drawn.y());
-    canvas.picture(part, place.box);
-    canvas.begin_clip(place.box);
-    render::paint_over(canvas, list, render::Projection(camera, paper.x(), paper.y(), render::bounds(list)),
-                       depths, place.box.min() - from.cast<double>() * pixel);
-    canvas.end_clip();
+    part.paste(picture, -deep.from.x(), -deep.from.y());
+    return part;
   }
 
   const run::RecordedRun& recorded_;
@@ -338,6 +398,7 @@ class FigureJob {
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;
   FigureLayout layout_;
+  std::vector<std::vector<std::uint32_t>> visible_;  ///< (panels) faces to draw as vector graphics; empty: image
 };
 
 }  // namespace

@@ -152,7 +152,7 @@ TEST_CASE("the default series omits states that look like the one before, and re
   const Shipped s("figure2");
   FigureSpec spec;
   spec.format = FigureSpec::Format::svg;
-  CHECK(draw_figure(s.run, {}, spec, run::kSilent).left_out.empty());
+  CHECK(draw_figure(s.run, {}, spec, run::kSilent).notes.empty());
   spec.choice.panels = 26;
   spec.width = 60 * kPointsPerMm;
   const Figure many = draw_figure(s.run, {}, spec, run::kSilent);
@@ -160,7 +160,8 @@ TEST_CASE("the default series omits states that look like the one before, and re
   CHECK(many.panels > 5);
   CHECK(many.caption.find("outermost wrapper, 8 faces") != std::string::npos);
   CHECK(many.caption.find("the body, 144 faces") != std::string::npos);
-  CHECK(many.left_out.find("omitted: in grey and at this width") != std::string::npos);
+  REQUIRE(many.notes.size() == 1);
+  CHECK(many.notes[0].find("omitted: in grey and at this width") != std::string::npos);
   // States that were asked for are shown.
   spec.choice = {Choice::By::events, {1, 2}};
   CHECK(draw_figure(s.run, {}, spec, run::kSilent).panels == 2);
