@@ -90,10 +90,18 @@ Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(C
 /// Escapes text for SVG and HTML, for elements and for quoted attributes.
 std::string escape_markup(std::string_view text);
 
-// A canvas that writes SVG with real text. Gives the same bytes on every machine.
+/// Returns the outlines of a line of text as the data of an SVG path.
+std::string text_outlines(const PaperText& text);
+
+// A canvas that writes SVG. Gives the same bytes on every machine.
 
 class SvgCanvas : public Canvas {
  public:
+  /// text: names the font, which the machine that shows it may lack. outlines: shapes of the glyphs, labelled
+  /// with their text, that look the same everywhere.
+  enum class Texts : std::uint8_t { text, outlines };
+  explicit SvgCanvas(Texts texts = Texts::text) : texts_(texts) {}
+
   void fill(const std::vector<Loop>& loops, Rgba colour, double spread = 0) override;
   void stroke(const Loop& points, bool closed, const Pen& pen) override;
   void strokes(const std::vector<Loop>& lines, const Pen& pen) override;
@@ -109,6 +117,7 @@ class SvgCanvas : public Canvas {
  private:
   void stroke_path(const std::string& d, const Pen& pen);
 
+  Texts texts_;
   std::string out_;
   int clips_ = 0;
 };
@@ -118,6 +127,7 @@ struct SvgPage {
   double units_per_pixel = 1;    ///< units of the view box per screen pixel (1/96 inch): the size on paper
   std::string title;             ///< alternative text for screen readers; empty: none
   std::optional<Rgba> background = kWhite;  ///< nullopt: transparent
+  bool millimetres = false;                 ///< gives the size in mm, not in pixels
 };
 
 /// Returns a complete file.

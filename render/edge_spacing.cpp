@@ -98,7 +98,8 @@ std::vector<StyleSpacing> even_edge_spacing(const DrawList& list, const Projecti
       half = p.altitude;
       if ((sum += p.area) >= 0.5 * all) break;
     }
-    // Equilateral triangles of altitude h have edges of length 6 / h per area, counted once for each triangle.
+    // Equilateral triangles of altitude h have edges of length 6 / h per area, counted once for each
+    // triangle.
     spacing.push_back({half, borders > 0 ? 6 * all / borders : std::numeric_limits<double>::infinity()});
   }
   return spacing;

@@ -72,8 +72,7 @@ void FaceLooks::add_edges(const DrawTriangle& t, FaceLook& look) const {
   }
   const double back = shows_back(t) ? style.back : 1;
   look.edge_width = style.width * (kMinWidth + (1 - kMinWidth) * fade) * (0.5 + 0.5 * back) * scale_;
-  look.edge_colour =
-      with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade * back + 0.5));
+  look.edge_colour = with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade * back + 0.5));
 }
 
 bool FaceLooks::shows_back(const DrawTriangle& t) const {

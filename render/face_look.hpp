@@ -1,6 +1,6 @@
 #pragma once
-/// Colours of faces and edges, and widths of edges, as they are drawn: shaded, and faded where faces are small on
-/// the screen. Rasterized and vector pictures use the same.
+/// Colours of faces and edges, and widths of edges, as they are drawn: shaded, and faded where faces are
+/// small on the screen. Rasterized and vector pictures use the same.
 
 #include <cstdint>
 #include <vector>
@@ -13,10 +13,10 @@
 namespace lrb::render {
 
 struct FaceLook {
-  Rgba colour;            ///< of opaque faces: with alpha 255
+  Rgba colour;                      ///< of opaque faces: with alpha 255
   Rgba edge_colour = kTransparent;  ///< to be blended over `colour`
-  double edge_width = 0;  ///< pixels of the projection, over both faces of the edge
-  std::uint8_t edges = 0;  ///< those of DrawTriangle::edges that are drawn
+  double edge_width = 0;            ///< pixels of the projection, over both faces of the edge
+  std::uint8_t edges = 0;           ///< those of DrawTriangle::edges that are drawn
 };
 
 class FaceLooks {

@@ -18,8 +18,8 @@ void paint_flat(Canvas& canvas, const DrawList& list, const Projection& projecti
 /// Returns the part of the list that paint_over() does not paint, to be rasterised.
 DrawList under_lines(DrawList list);
 
-/// Paints the visible parts of the lines and points of the other layers, over faces that were painted as vector
-/// graphics. Arguments as in paint_over().
+/// Paints the visible parts of the lines and points of the other layers, over faces that were painted as
+/// vector graphics. Arguments as in paint_over().
 void paint_visible_lines(Canvas& canvas, const DrawList& list, const Projection& projection,
                          const DepthImage& depths, const Eigen::Vector2d& origin = {0, 0});
 

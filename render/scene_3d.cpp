@@ -23,8 +23,8 @@ constexpr float kLidEdgeBack = 0.3F;
 constexpr std::uint8_t kTellingAlpha = 175;  ///< if their colour carries information
 constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
-/// Faces that meet at a larger angle than this, in radians, have a crease between them. Connected creases shorter
-/// than a share of the body's size are the noise of scans.
+/// Faces that meet at a larger angle than this, in radians, have a crease between them. Connected creases
+/// shorter than a share of the body's size are the noise of scans.
 constexpr double kCrease = 0.5, kShortCrease = 0.08;
 /// Lids of earlier passes of a construction: share by which their colour fades, and its opacity.
 constexpr double kEarlierPale = 0.72;
@@ -38,8 +38,7 @@ class Scene3dBuilder {
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
     pale_edges_ = c.out.list.edge_style({with_alpha(ink, 90), 0.8F * c.options.scale});
     cell_edges_ = c.out.list.edge_style({with_alpha(palette::kInk, 150), 0.9F * c.options.scale});
-    lid_edges_ =
-        c.out.list.edge_style({lid_edge_colour(), 1.5F * c.options.scale, kLidEdgeBack});
+    lid_edges_ = c.out.list.edge_style({lid_edge_colour(), 1.5F * c.options.scale, kLidEdgeBack});
   }
 
   void run() {
@@ -160,9 +159,7 @@ class Scene3dBuilder {
     }
   }
 
-  Rgba lid_edge_colour() const {
-    return with_alpha(mix(c_.colour(), c_.wrapper_edge(), 0.7), kLidEdgeAlpha);
-  }
+  Rgba lid_edge_colour() const { return with_alpha(mix(c_.colour(), c_.wrapper_edge(), 0.7), kLidEdgeAlpha); }
 
   Rgba lid_colour(FaceId f) const {
     if (c_.building() && c_.options.colour_by == ColourBy::region)
@@ -333,8 +330,7 @@ class Scene3dBuilder {
     }
     std::map<VertexId, double> length;
     Eigen::AlignedBox3d box;
-    for (const auto& [a, b] : borders_)
-      length[root(a)] += (rep_.vertices()[a] - rep_.vertices()[b]).norm();
+    for (const auto& [a, b] : borders_) length[root(a)] += (rep_.vertices()[a] - rep_.vertices()[b]).norm();
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
       for (const VertexId v : rep_.face(f)) box.extend(rep_.vertices()[v]);
     const double least = kShortCrease * box.diagonal().norm();

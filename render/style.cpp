@@ -80,8 +80,8 @@ constexpr Style kScreen = {.paper = kWhite,
                            .edge_share = {palette::kEdgeShare, palette::kEdgeShare},
                            .weight = 1};
 
-/// Black on white; kinds differ more in lightness than on a screen, for greyscale print. B is lighter than A in
-/// everything: faces, pseudo faces and lines.
+/// Black on white; kinds differ more in lightness than on a screen, for greyscale print. B is lighter than A
+/// in everything: faces, pseudo faces and lines.
 constexpr Style kPrint = {.paper = kWhite,
                           .ink = kBlack,
                           .faint = {84, 86, 90},

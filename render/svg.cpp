@@ -79,9 +79,13 @@ std::string font(double height) {
          attribute("font-size", number(height / kHeightOfFont));
 }
 
-std::string svg_open(double width, double height, double units_per_pixel) {
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", number(width / units_per_pixel)) +
-         attribute("height", number(height / units_per_pixel)) +
+std::string svg_open(double width, double height, double units_per_pixel, bool millimetres) {
+  constexpr double kMmPerPixel = 25.4 / 96;  // by definition of CSS
+  const auto size = [&](double x) {
+    return millimetres ? number(x / units_per_pixel * kMmPerPixel) + "mm" : number(x / units_per_pixel);
+  };
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", size(width)) +
+         attribute("height", size(height)) +
          attribute("viewBox", "0 0 " + number(width) + " " + number(height)) + ">\n";
 }
 
@@ -127,9 +131,8 @@ void SvgCanvas::strokes(const std::vector<Loop>& lines, const Pen& pen) {
 }
 
 void SvgCanvas::stroke_path(const std::string& d, const Pen& pen) {
-  out_ += "<path" + attribute("d", d) + attribute("fill", "none") +
-          paint("stroke", pen.colour) + attribute("stroke-width", number(pen.width)) +
-          attribute("stroke-linejoin", "round");
+  out_ += "<path" + attribute("d", d) + attribute("fill", "none") + paint("stroke", pen.colour) +
+          attribute("stroke-width", number(pen.width)) + attribute("stroke-linejoin", "round");
   // Round ends would fill the gaps between dashes.
   out_ +=
       pen.dash > 0 ? attribute("stroke-dasharray", number(pen.dash)) : attribute("stroke-linecap", "round");
@@ -142,6 +145,15 @@ void SvgCanvas::disc(const Eigen::Vector2d& at, double radius, Rgba colour) {
 }
 
 void SvgCanvas::text(const PaperText& t) {
+  if (texts_ == Texts::outlines) {
+    const std::string d = attribute("d", text_outlines(t));
+    if (t.halo.a > 0)
+      out_ += "<path" + d + attribute("fill", "none") + paint("stroke", t.halo) +
+              attribute("stroke-width", number(2 * kTextHalo * t.height)) +
+              attribute("stroke-linejoin", "round") + "/>\n";
+    out_ += "<path" + attribute("aria-label", escape_markup(t.text)) + d + paint("fill", t.colour) + "/>\n";
+    return;
+  }
   // A baseline instead of dominant-baseline, which not all SVG editors and printers support.
   out_ += "<text" + attribute("x", number(t.at.x())) +
           attribute("y", number(t.at.y() + kBaseline * t.height)) + font(t.height);
@@ -174,7 +186,7 @@ void SvgCanvas::end_clip() {
 }
 
 std::string svg_file(const SvgCanvas& canvas, const SvgPage& page) {
-  std::string out = svg_open(page.width, page.height, page.units_per_pixel);
+  std::string out = svg_open(page.width, page.height, page.units_per_pixel, page.millimetres);
   if (!page.title.empty()) out += "<title>" + escape_markup(page.title) + "</title>\n";
   if (page.background)
     out += "<rect" + attribute("width", number(page.width)) + attribute("height", number(page.height)) +

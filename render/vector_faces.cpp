@@ -21,7 +21,7 @@ constexpr double kNarrow = 0.004;
 constexpr double kSameDepth = 1e-9;
 /// Opaque faces are painted this many pixels larger on each side, so that the paper does not show between
 /// neighbours in programs that smooth the border of each.
-constexpr double kSpread = 0.05;
+constexpr double kSpread = 0.12;
 /// Mean number of faces in a cell of the search grid.
 constexpr double kPerCell = 2;
 
@@ -43,8 +43,8 @@ bool is_narrow(const std::vector<Vector2d>& x) {
   return !(std::abs(twice_area(x)) > kNarrow * around);
 }
 
-/// Keeps the part of a convex polygon with value(x) >= 0, where `value` is linear (Sutherland and Hodgman 1974).
-/// `edges` belongs to the corners; the new edge along the cut gets -1.
+/// Keeps the part of a convex polygon with value(x) >= 0, where `value` is linear (Sutherland and Hodgman
+/// 1974). `edges` belongs to the corners; the new edge along the cut gets -1.
 template <class Value>
 void clip(std::vector<Vector2d>& corners, std::vector<std::int8_t>& edges, const Value& value) {
   std::vector<Vector2d> x;
@@ -67,7 +67,8 @@ std::vector<Vector2d> intersection(const std::vector<Vector2d>& p, const std::ve
   std::vector<std::int8_t> edges(p.size(), 0);
   for (std::size_t i = 0; i < q.size() && out.size() >= 3; ++i) {
     const Vector2d a = q[i], along = q[(i + 1) % q.size()] - a;
-    clip(out, edges, [&](const Vector2d& x) { return along.x() * (x.y() - a.y()) - along.y() * (x.x() - a.x()); });
+    clip(out, edges,
+         [&](const Vector2d& x) { return along.x() * (x.y() - a.y()) - along.y() * (x.x() - a.x()); });
     edges.resize(out.size());
   }
   return out;
@@ -128,7 +129,8 @@ bool is_visible(const ScreenFace& f, const DepthImage& depths, double unit) {
   for (std::size_t i = 0; i < 6; ++i) {
     const Vector2d a = f.corners[i / 2],
                    at = i % 2 == 0 ? a : Vector2d(0.5 * (a + f.corners[(i / 2 + 1) % 3]));
-    const int x = static_cast<int>(std::floor(at.x() / unit)), y = static_cast<int>(std::floor(at.y() / unit));
+    const int x = static_cast<int>(std::floor(at.x() / unit)),
+              y = static_cast<int>(std::floor(at.y() / unit));
     if (x < 0 || y < 0 || x >= depths.width || y >= depths.height) continue;
     if (f.depth_at(at) - 4 * slack <= depths.at(x, y)) return true;
   }
@@ -232,7 +234,8 @@ class PaintSorter {
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
     const AlignedBox2d box = box_of(f);
-    std::erase_if(out, [&](std::size_t i) { return faces_[i].done || !box.intersects(box_of(faces_[i].face)); });
+    std::erase_if(out,
+                  [&](std::size_t i) { return faces_[i].done || !box.intersects(box_of(faces_[i].face)); });
     return out;
   }
 
@@ -253,14 +256,15 @@ class PaintSorter {
     std::vector<ScreenFace> out;
     for (const double sign : {1.0, -1.0}) {
       ScreenFace part = p;
-      clip(part.corners, part.edges, [&](const Vector2d& x) { return sign * (p.depth_at(x) - by.depth_at(x)); });
+      clip(part.corners, part.edges,
+           [&](const Vector2d& x) { return sign * (p.depth_at(x) - by.depth_at(x)); });
       if (!is_narrow(part.corners)) out.push_back(std::move(part));
     }
     return out;
   }
 
-  /// Adds a face, or makes parts of it or of a face that it intersects: rather of an opaque one, because parts of
-  /// translucent ones are visible where they meet.
+  /// Adds a face, or makes parts of it or of a face that it intersects: rather of an opaque one, because
+  /// parts of translucent ones are visible where they meet.
   void insert(ScreenFace face) {
     for (const std::size_t i : near(face)) {
       if (relation(face, faces_[i].face) != Relation::crossing) continue;
@@ -314,8 +318,8 @@ class PaintSorter {
     set_ready(i);
   }
 
-  /// Removes and returns a face that waits for no other one: of the same colour as the last, if possible, so that
-  /// few runs of faces with equal colour result.
+  /// Removes and returns a face that waits for no other one: of the same colour as the last, if possible, so
+  /// that few runs of faces with equal colour result.
   std::optional<std::size_t> next_ready() {
     auto same = ready_.find(last_);
     if (same == ready_.end()) same = ready_.begin();
@@ -336,7 +340,8 @@ class PaintSorter {
     std::set<std::size_t> seen = {path[0]};
     for (;;) {
       const std::vector<std::size_t>& before = faces_[path.back()].before;
-      const auto next = std::find_if(before.begin(), before.end(), [&](std::size_t i) { return !faces_[i].done; });
+      const auto next =
+          std::find_if(before.begin(), before.end(), [&](std::size_t i) { return !faces_[i].done; });
       path.push_back(*next);
       if (!seen.insert(*next).second) break;
     }
@@ -423,14 +428,16 @@ class FacePainter {
     return swapped ? Segment{b.x(), b.y(), a.x(), a.y()} : Segment{a.x(), a.y(), b.x(), b.y()};
   }
 
-  static std::uint32_t pack(Rgba c) { return static_cast<std::uint32_t>(c.r) << 24 | c.g << 16 | c.b << 8 | c.a; }
+  static std::uint32_t pack(Rgba c) {
+    return static_cast<std::uint32_t>(c.r) << 24 | c.g << 16 | c.b << 8 | c.a;
+  }
   static Rgba unpack(std::uint32_t c) {
     const auto byte = [c](int shift) { return static_cast<std::uint8_t>(c >> shift & 255); };
     return {byte(24), byte(16), byte(8), byte(0)};
   }
 
   bool overlaps_run(const ScreenFace& f) const {
-    constexpr std::size_t kLongest = 256;  // bounds the time of this test
+    constexpr std::size_t kLongest = 4096;  // bounds the time of this test
     if (run_.size() >= kLongest) return true;
     const AlignedBox2d box = box_of(f);
     return std::any_of(run_.begin(), run_.end(), [&](const ScreenFace* g) {

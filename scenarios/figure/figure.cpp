@@ -10,6 +10,7 @@
 #include "render/vector_faces.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_panels.hpp"
+#include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/frames/framing.hpp"
 #include <lrbscope/error.hpp>
@@ -57,7 +58,12 @@ class FigureJob {
     if (!chosen_.left_out.empty()) out.notes.push_back(chosen_.left_out);
     if (!flat() && figure_.format != FigureSpec::Format::png) find_vector_faces(out.notes, progress);
     out.caption = caption();
-    const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
+    const auto paint = [&](render::Canvas& canvas) {
+      if (figure_.tex.empty()) return paint_all(canvas, progress);
+      TextOverlay overlay(canvas);
+      paint_all(overlay, progress);
+      out.tex = overlay.tex(figure_.tex, figure_.width, layout_.height, figure_.font_size);
+    };
     const std::optional<render::Rgba> background = frames_.paper();
     const std::string program = "lrbscope " + recorded_.trace->header.lrbscope;
     const render::PaperPage page{figure_.width, layout_.height, background, recorded_.title, program};
@@ -66,10 +72,10 @@ class FigureJob {
         out.bytes = render::paint_pdf(page, paint);
         break;
       case FigureSpec::Format::svg: {
-        render::SvgCanvas canvas;
+        render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
         paint(canvas);
         out.bytes = render::svg_file(
-            canvas, {page.width, page.height, kPointsPerScreenPixel, page.title, background});
+            canvas, {page.width, page.height, kPointsPerScreenPixel, page.title, background, true});
         break;
       }
       case FigureSpec::Format::png: {
@@ -161,10 +167,11 @@ class FigureJob {
   /// and the last state stay. Returns true if any were removed.
   bool leave_out_alike(const run::ProgressReport& progress) {
     std::vector<std::vector<render::Image>> seen(moments());  // by state: its panels, in order of the views
-    for (std::size_t v = 0; v < views_.size(); ++v)
-      for (const std::size_t moment : views_[v].moments) {
-        progress("compare", v * moments() + moment, views_.size() * moments());
-        seen[moment].push_back(in_print(*views_[v].view, moment, layout_.blocks[v].scale));
+    std::size_t done = 0;
+    for (std::size_t b = 0; b < panels_.size(); ++b)
+      for (const auto& [view, moment] : panels_[b]) {
+        progress("compare", done++, captions_.size());
+        seen[moment].push_back(in_print(*view, moment, layout_.blocks[b].scale));
       }
     std::vector<trace::EventId> kept;
     std::size_t last_kept = 0;
@@ -192,7 +199,8 @@ class FigureJob {
 
   /// Draws the whole view of a state as large as in the figure, with the resolution of the eye.
   render::Image in_print(const View& view, std::size_t moment, double scale) {
-    const double pixel = render::kPointsPerInch / kEyeDpi, side = pixel * std::ceil(kViewSide * scale / pixel);
+    const double pixel = render::kPointsPerInch / kEyeDpi,
+                 side = pixel * std::ceil(kViewSide * scale / pixel);
     PanelPlace place;
     place.box = AlignedBox2d(Vector2d(0, 0), Vector2d(side, side));
     place.seen_from = Vector2d(options().margin, options().margin) / scale;
@@ -205,23 +213,22 @@ class FigureJob {
 
   /// Determines the content and size of each panel, and the entries of the common legend.
   void survey() {
-    views_.clear(), blocks_.clear(), captions_.clear(), key_.clear();
+    panels_.clear(), blocks_.clear(), captions_.clear(), key_.clear();
     for (const View& view : frames_.views) {
-      Block block;
-      std::vector<std::size_t> shown_moments;
+      if (blocks_.empty() || !figure_.contact_sheet) blocks_.emplace_back(), panels_.emplace_back();
       for (std::size_t i = 0; i < moments(); ++i) {
         const render::Scene shown = scene(view, i);
         if (!shows_anything(view)) continue;
         run::merge_key(key_, shown.key);
         if (shown.scale) bar_ = shown.scale;
-        block.seen.push_back(seen_box(shown.list, camera(view, i)));
+        blocks_.back().seen.push_back(seen_box(shown.list, camera(view, i)));
         const std::string text = shortened(state_.short_caption());
-        captions_.push_back(view.title.empty() ? text : view.title + ", " + text);
-        shown_moments.push_back(i);
+        captions_.push_back(view.title.empty()      ? text
+                            : figure_.contact_sheet ? view.title
+                                                    : view.title + ", " + text);
+        panels_.back().push_back({&view, i});
       }
-      if (block.seen.empty()) continue;
-      blocks_.push_back(std::move(block));
-      views_.push_back({&view, std::move(shown_moments)});
+      if (panels_.back().empty()) blocks_.pop_back(), panels_.pop_back();
     }
     if (blocks_.empty()) throw InputError("figure of contacts: expected a panel with a contact, found none");
     letter();
@@ -246,18 +253,18 @@ class FigureJob {
 
   void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {
     std::size_t panel = 0;
-    for (std::size_t v = 0; v < views_.size(); ++v) {
-      const BlockLayout& block = layout_.blocks[v];
-      const View& view = *views_[v].view;
+    for (std::size_t b = 0; b < panels_.size(); ++b) {
+      const BlockLayout& block = layout_.blocks[b];
       for (std::size_t i = 0; i < block.panels.size(); ++i, ++panel) {
         progress("draw", panel, captions_.size());
         const PanelPlace& place = block.panels[i];
-        const std::size_t moment = views_[v].moments[i];
+        const View& view = *panels_[b][i].view;
+        const std::size_t moment = panels_[b][i].moment;
         const render::Scene shown = scene(view, moment);
         flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, block.scale)
                : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale, dpi_,
-                          visible_.empty() ? nullptr : &visible_[panel]);
-        if (runs_over(blocks_[v]))
+                            visible_.empty() ? nullptr : &visible_[panel]);
+        if (runs_over(blocks_[b]))
           canvas.stroke(render::corners(place.box), true, {style().faint, kHairline, 0});
         double y = place.box.max().y() + 0.65 * figure_.font_size;
         for (const std::string& line : place.lines) {
@@ -317,14 +324,15 @@ class FigureJob {
   /// Finds the visible faces of all panels, if none has too many.
   void find_vector_faces(std::vector<std::string>& notes, const run::ProgressReport& progress) {
     std::size_t panel = 0;
-    for (std::size_t v = 0; v < views_.size(); ++v)
-      for (std::size_t i = 0; i < views_[v].moments.size(); ++i, ++panel) {
+    for (std::size_t b = 0; b < panels_.size(); ++b)
+      for (std::size_t i = 0; i < panels_[b].size(); ++i, ++panel) {
         progress("find visible faces", panel, captions_.size());
-        const std::size_t moment = views_[v].moments[i];
-        const render::DrawList list = scene(*views_[v].view, moment).list;
-        const DeepView deep = deep_view(camera(*views_[v].view, moment), layout_.blocks[v].panels[i],
-                                        layout_.blocks[v].scale, dpi_);
-        const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
+        const auto [view, moment] = panels_[b][i];
+        const render::DrawList list = scene(*view, moment).list;
+        const DeepView deep =
+            deep_view(camera(*view, moment), layout_.blocks[b].panels[i], layout_.blocks[b].scale, dpi_);
+        const render::DepthImage depths =
+            rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
         auto visible = render::visible_faces(list, projection(deep, list), depths);
         if (visible && visible->size() <= figure_.vector_faces) {
           visible_.push_back(std::move(*visible));
@@ -344,8 +352,8 @@ class FigureJob {
     return {deep.camera, deep.paper.x(), deep.paper.y(), render::bounds(list)};
   }
 
-  /// Paints the faces `visible` as vector graphics, or without them all faces as pixels of resolution `dpi`, with
-  /// whole pixels in the panel's box. Paints lines and texts over them.
+  /// Paints the faces `visible` as vector graphics, or without them all faces as pixels of resolution `dpi`,
+  /// with whole pixels in the panel's box. Paints lines and texts over them.
   void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
                   const PanelPlace& place, double scale, double dpi,
                   const std::vector<std::uint32_t>* visible = nullptr) {
@@ -388,17 +396,18 @@ class FigureJob {
   run::Framing framing_;
   run::FrameState state_;
   render::Rasterizer rasterizer_;
-  struct ViewPanels {
+  struct ShownState {
     const View* view;
-    std::vector<std::size_t> moments;
+    std::size_t moment;
   };
-  std::vector<ViewPanels> views_;      ///< the views with content, and their events
-  std::vector<Block> blocks_;          ///< one for each of views_
-  std::vector<std::string> captions_;  ///< (panels) description of each
+  std::vector<Block> blocks_;                    ///< one for each view with content, or one for all
+  std::vector<std::vector<ShownState>> panels_;  ///< of each block
+  std::vector<std::string> captions_;            ///< (panels) description of each
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;
   FigureLayout layout_;
-  std::vector<std::vector<std::uint32_t>> visible_;  ///< (panels) faces to draw as vector graphics; empty: image
+  std::vector<std::vector<std::uint32_t>>
+      visible_;  ///< (panels) faces to draw as vector graphics; empty: image
 };
 
 }  // namespace

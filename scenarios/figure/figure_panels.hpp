@@ -38,8 +38,8 @@ Chosen choose(const run::RecordedRun& recorded, const Choice& choice);
 /// The resolution of the eye at reading distance, in pixels per inch.
 inline constexpr double kEyeDpi = 150;
 
-/// Returns true if two panels of the same size cannot be distinguished when printed in grey: almost no pixel of
-/// their content has a visibly different lightness.
+/// Returns true if two panels of the same size cannot be distinguished when printed in grey: almost no pixel
+/// of their content has a visibly different lightness.
 bool alike_in_grey(const render::Image& a, const render::Image& b);
 
 // The camera of a figure's panels: fitted to everything once, in a square with its own units; panels show

@@ -202,6 +202,24 @@ TEST_CASE("a picture on the pixel grid is unchanged") {
     for (int x = 0; x < 3; ++x) CHECK(out.at(10 + x, 20 + y) == image.at(x, y));
 }
 
+TEST_CASE("texts of an SVG may be outlines, which need no font; its size may be in mm") {
+  if (!test::have_font()) return;
+  render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
+  canvas.text({{50, 20}, "<l>", 10, false, render::kBlack, render::Align::centre, render::kWhite});
+  const std::string svg = render::svg_file(canvas, {72 / 25.4 * 85, 40, 0.75, {}, render::kWhite, true});
+  CHECK(count(svg, "width=\"85mm\"") == 1);
+  CHECK(count(svg, "<text") == 0);
+  CHECK(count(svg, "aria-label=\"&lt;l&gt;\"") == 1);
+  CHECK(count(svg, "<path") == 2);  // the halo below the text
+  // An l is a rectangle between the other two glyphs, around the middle of the line.
+  const std::string l =
+      render::text_outlines({{50, 20}, "l", 10, false, render::kBlack, render::Align::centre});
+  CHECK(count(l, "L") >= 3);
+  CHECK(count(l, "Z") == 1);
+  const double x = std::stod(l.substr(1));
+  CHECK(std::abs(x - 50) < 1);
+}
+
 TEST_CASE("an SVG canvas holds pictures and clips") {
   render::SvgCanvas canvas;
   canvas.begin_clip({Vector2d(1, 2), Vector2d(4, 6)});

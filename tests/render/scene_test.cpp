@@ -105,7 +105,7 @@ TEST_CASE("borders of regions and creases are marked on request") {
     CHECK(edges(layer, true) == edges(layer, false));
   }
   // A wrapper that is one region has no borders inside, and a ball has no creases.
-  const LrbRep ball = test::dented(shapes::uv_sphere(24, 12), 0);
+  const LrbRep ball = test::dented(shapes::icosphere(3), 0);
   std::size_t creases = 0;
   const std::vector<render::SceneBody> round = {{&ball, nullptr, {}, {}, ""}};
   for (const render::DrawTriangle& t : render::build_scene(round, {}, options).list.triangles)
@@ -116,7 +116,8 @@ TEST_CASE("borders of regions and creases are marked on request") {
 TEST_CASE("in print, bodies differ in grey in all that is drawn of them") {
   const LrbRep rep = test::dented(shapes::box(), 1);
   const Wrapper wrapper(rep);
-  const std::vector<render::SceneBody> bodies = {{&rep, &wrapper, {}, {}, "A"}, {&rep, &wrapper, {}, {}, "B"}};
+  const std::vector<render::SceneBody> bodies = {{&rep, &wrapper, {}, {}, "A"},
+                                                 {&rep, &wrapper, {}, {}, "B"}};
   render::SceneOptions options;
   options.style = render::StyleName::print;
   const render::Scene scene = render::build_scene(bodies, {}, options);

@@ -37,7 +37,7 @@ struct EdgeStyle {
 struct DrawTriangle {
   std::array<Eigen::Vector3d, 3> x{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   Rgba colour;
-  std::uint8_t edges = 0;       ///< bit i: the edge from corner i to corner i + 1 mod 3 is drawn
+  std::uint8_t edges = 0;  ///< bit i: the edge from corner i to corner i + 1 mod 3 is drawn
   /// Bit i: edge i is a border of a group of faces. With RasterOptions::even_edges it stays where faces are
   /// too small for their edges.
   std::uint8_t borders = 0;

@@ -172,14 +172,14 @@ struct Style {
   Rgba ink, faint, rule;       ///< text; secondary text; thin frames
   std::array<Rgba, 2> bodies;  ///< A's and B's
   Rgba contact, refining, under_test;
-  Rgba front, back;    ///< faces outside the focus of a picture of findings
-  Rgba edge_ink;       ///< colour that lines along bodies are mixed towards
-  Rgba solid_ink;      ///< colour that solids under regions are mixed towards, in 2D
+  Rgba front, back;  ///< faces outside the focus of a picture of findings
+  Rgba edge_ink;     ///< colour that lines along bodies are mixed towards
+  Rgba solid_ink;    ///< colour that solids under regions are mixed towards, in 2D
   // Of A and B, which differ in lightness also where colours are pale or dark:
   std::array<double, 2> solid_share;  ///< mixing share of solid_ink
   std::array<double, 2> lid_pale;     ///< share by which pseudo faces fade towards the paper
   std::array<double, 2> edge_share;   ///< mixing share of edge_ink for lines along the body's wrapper
-  float weight;        ///< factor of the widths of lines and points: paper resolves finer ones than a screen
+  float weight;  ///< factor of the widths of lines and points: paper resolves finer ones than a screen
 
   /// Returns the colour of lines along primitives of colour `c`: outlines, and edges of translucent faces.
   /// (Edges on solid faces are palette::edge_of() in every style, because they are not on paper.)
