@@ -114,8 +114,8 @@ TEST_CASE("the spacing of borders depends on their length in the area of their s
       render::DrawTriangle t;
       t.edges = 7;
       const bool left = x % 4 == 0, right = x % 4 == 3, low = y % 4 == 0, high = y % 4 == 3;
-      list.add_polygon({Vector3d(x, y, 0), {x + 1.0, y, 0}, {x + 1.0, y + 1.0, 0}, {x + 0.0, y + 1.0, 0}}, t,
-                       {low, right, high, left});
+      const auto corner = [&](int i, int j) { return Vector3d(x + i, y + j, 0); };
+      list.add_polygon({corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)}, t, {low, right, high, left});
     }
   const auto points = render::extent_points(list);
   const render::Projection projection(render::fit_top(points, 640, 640), 640, 640, render::bounds(list));

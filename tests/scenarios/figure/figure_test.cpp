@@ -280,7 +280,11 @@ TEST_CASE("texts for TeX: none in the PDF, all in the overlay, escaped") {
   FigureSpec spec;
   spec.tex = "fig_1.pdf";
   spec.titles = true;
-  const Figure figure = draw_figure(s.run, {}, spec, run::kSilent);
+  render::FrameSpec black;
+  black.style = render::StyleName::print;
+  const Figure figure = draw_figure(s.run, black, spec, run::kSilent);
+  CHECK(count(figure.tex, "\\color[") == 0);
+  CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).tex, "\\color[rgb]{0.11,0.12,0.13}") > 0);
   CHECK(count(figure.bytes, "/FontFile") == 0);
   CHECK(count(figure.tex, "\\includegraphics{\\detokenize{fig_1.pdf}}") == 1);
   CHECK(count(figure.tex, "\\begin{picture}(240.94,") == 1);
@@ -328,8 +332,8 @@ TEST_CASE("--up auto: the axis on which the body is most stable, as a note") {
     first += static_cast<int>(box.vertices.size());
   };
   write_box({0, 1, 0}, {2, 1.2, 1.5});
-  for (const double x : {0.0, 1.9})
-    for (const double z : {0.0, 1.4}) write_box({x, 0, z}, {x + 0.1, 0.99, z + 0.1});
+  for (const double x : {0.2, 1.7})
+    for (const double z : {0.2, 1.2}) write_box({x, 0, z}, {x + 0.1, 0.99, z + 0.1});
   folder.write("table.obj", obj);
   test::Outcome o =
       test::run(folder, {"figure", "table.obj", "--up", "auto", "--panels", "1", "-o", "auto.svg"});
