@@ -9,6 +9,7 @@
 #include <cairo.h>
 
 #include <lrbscope/error.hpp>
+#include <lrbscope/render/svg.hpp>
 
 namespace lrb::render {
 namespace {
@@ -68,34 +69,52 @@ Surface surface_of(const Image& image) {
   return out;
 }
 
+void set_font_options(cairo_t* c) {
+  cairo_font_options_t* options = cairo_font_options_create();
+  // Text width does not depend on the resolution.
+  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+  cairo_set_font_options(c, options);
+  cairo_font_options_destroy(options);
+}
+
+/// Selects the font of a text. Returns the left end of its baseline.
+Eigen::Vector2d begin_text(cairo_t* c, const PaperText& t) {
+  cairo_set_font_face(c, font_face(t.bold));
+  cairo_set_font_size(c, t.height / kHeightOfFont);
+  cairo_text_extents_t size;
+  cairo_text_extents(c, t.text.c_str(), &size);
+  const double share = t.align == Align::left ? 0 : t.align == Align::centre ? 0.5 : 1;
+  return {t.at.x() - share * size.x_advance, t.at.y() + kBaseline * t.height};
+}
+
 class CairoCanvas : public Canvas {
  public:
   explicit CairoCanvas(cairo_t* context) : c_(context) {
-    cairo_font_options_t* options = cairo_font_options_create();
-    cairo_font_options_set_hint_style(options,
-                                      CAIRO_HINT_STYLE_NONE);  // text width does not depend on the resolution
-    cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
-    cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
-    cairo_set_font_options(c_, options);
-    cairo_font_options_destroy(options);
+    set_font_options(c_);
     cairo_set_line_join(c_, CAIRO_LINE_JOIN_ROUND);
   }
 
-  void fill(const std::vector<Loop>& loops, Rgba colour) override {
+  void fill(const std::vector<Loop>& loops, Rgba colour, double spread = 0) override {
     for (const Loop& loop : loops) path(loop, true);
     cairo_set_fill_rule(c_, CAIRO_FILL_RULE_EVEN_ODD);
     ink(colour);
-    cairo_fill(c_);
+    if (!(spread > 0)) return cairo_fill(c_);
+    cairo_fill_preserve(c_);
+    cairo_set_line_width(c_, 2 * spread);
+    cairo_set_dash(c_, nullptr, 0, 0);
+    cairo_stroke(c_);
   }
 
   void stroke(const Loop& points, bool closed, const Pen& pen) override {
     path(points, closed);
-    ink(pen.colour);
-    cairo_set_line_width(c_, pen.width);
-    // Round ends would fill the gaps between dashes.
-    cairo_set_line_cap(c_, pen.dash > 0 ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
-    cairo_set_dash(c_, &pen.dash, pen.dash > 0 ? 1 : 0, 0);
-    cairo_stroke(c_);
+    stroke_path(pen);
+  }
+
+  void strokes(const std::vector<Loop>& lines, const Pen& pen) override {
+    for (const Loop& line : lines) path(line, false);
+    stroke_path(pen);
   }
 
   void disc(const Eigen::Vector2d& at, double radius, Rgba colour) override {
@@ -106,15 +125,10 @@ class CairoCanvas : public Canvas {
   }
 
   void text(const PaperText& t) override {
-    cairo_set_font_face(c_, font_face(t.bold));
-    cairo_set_font_size(c_, t.height / kHeightOfFont);
-    cairo_text_extents_t size;
-    cairo_text_extents(c_, t.text.c_str(), &size);
-    const double share = t.align == Align::left ? 0 : t.align == Align::centre ? 0.5 : 1;
-    const double x = t.at.x() - share * size.x_advance, y = t.at.y() + kBaseline * t.height;
+    const Eigen::Vector2d at = begin_text(c_, t);
     // The halo is the outline of the glyphs, stroked under the text.
     if (t.halo.a > 0) {
-      cairo_move_to(c_, x, y);
+      cairo_move_to(c_, at.x(), at.y());
       cairo_text_path(c_, t.text.c_str());
       ink(t.halo);
       cairo_set_line_width(c_, 2 * kTextHalo * t.height);
@@ -122,7 +136,7 @@ class CairoCanvas : public Canvas {
       cairo_stroke(c_);
     }
     ink(t.colour);
-    cairo_move_to(c_, x, y);
+    cairo_move_to(c_, at.x(), at.y());
     cairo_show_text(c_, t.text.c_str());
   }
 
@@ -147,6 +161,15 @@ class CairoCanvas : public Canvas {
   void end_clip() override { cairo_restore(c_); }
 
  private:
+  void stroke_path(const Pen& pen) {
+    ink(pen.colour);
+    cairo_set_line_width(c_, pen.width);
+    // Round ends would fill the gaps between dashes.
+    cairo_set_line_cap(c_, pen.dash > 0 ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
+    cairo_set_dash(c_, &pen.dash, pen.dash > 0 ? 1 : 0, 0);
+    cairo_stroke(c_);
+  }
+
   void path(const Loop& points, bool closed) {
     for (std::size_t i = 0; i < points.size(); ++i)
       i == 0 ? cairo_move_to(c_, points[i].x(), points[i].y())
@@ -222,6 +245,28 @@ Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(C
       };
       out.at(x, y) = {part(16), part(8), part(0), static_cast<std::uint8_t>(a)};
     }
+  }
+  return out;
+}
+
+std::string text_outlines(const PaperText& text) {
+  const Surface surface(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));
+  const Context context(cairo_create(surface.get()));
+  cairo_t* c = context.get();
+  check(cairo_status(c));
+  set_font_options(c);
+  const Eigen::Vector2d at = begin_text(c, text);
+  cairo_move_to(c, at.x(), at.y());
+  cairo_text_path(c, text.text.c_str());
+  const std::unique_ptr<cairo_path_t, Destroy<cairo_path_t, cairo_path_destroy>> path(cairo_copy_path(c));
+  check(path->status);
+  std::string out;
+  for (int i = 0; i < path->num_data; i += path->data[i].header.length) {
+    const cairo_path_data_t* d = path->data + i;
+    // A command with the points that follow it.
+    out += "MLCZ"[d->header.type];
+    for (int k = 1; k < d->header.length; ++k)
+      out += (k > 1 ? " " : "") + svg_text::number(d[k].point.x) + " " + svg_text::number(d[k].point.y);
   }
   return out;
 }

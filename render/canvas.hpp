@@ -43,9 +43,11 @@ class Canvas {
   using Loop = std::vector<Eigen::Vector2d>;
 
   virtual ~Canvas() = default;
-  /// Fills the interior of closed loops by the even-odd rule.
-  virtual void fill(const std::vector<Loop>& loops, Rgba colour) = 0;
+  /// Fills the interior of closed loops by the even-odd rule, enlarged by `spread` on each side.
+  virtual void fill(const std::vector<Loop>& loops, Rgba colour, double spread = 0) = 0;
   virtual void stroke(const Loop& points, bool closed, const Pen& pen) = 0;
+  /// Draws open lines as one shape: translucent lines do not add up where they overlap.
+  virtual void strokes(const std::vector<Loop>& lines, const Pen& pen) = 0;
   virtual void disc(const Eigen::Vector2d& at, double radius, Rgba colour) = 0;
   virtual void text(const PaperText& text) = 0;
   virtual void picture(const Image& image, const Eigen::AlignedBox2d& place) = 0;
@@ -88,12 +90,21 @@ Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(C
 /// Escapes text for SVG and HTML, for elements and for quoted attributes.
 std::string escape_markup(std::string_view text);
 
-// A canvas that writes SVG with real text. Gives the same bytes on every machine.
+/// Returns the outlines of a line of text as the data of an SVG path.
+std::string text_outlines(const PaperText& text);
+
+// A canvas that writes SVG. Gives the same bytes on every machine.
 
 class SvgCanvas : public Canvas {
  public:
-  void fill(const std::vector<Loop>& loops, Rgba colour) override;
+  /// text: names the font, which the machine that shows it may lack. outlines: shapes of the glyphs, labelled
+  /// with their text, that look the same everywhere.
+  enum class Texts : std::uint8_t { text, outlines };
+  explicit SvgCanvas(Texts texts = Texts::text) : texts_(texts) {}
+
+  void fill(const std::vector<Loop>& loops, Rgba colour, double spread = 0) override;
   void stroke(const Loop& points, bool closed, const Pen& pen) override;
+  void strokes(const std::vector<Loop>& lines, const Pen& pen) override;
   void disc(const Eigen::Vector2d& at, double radius, Rgba colour) override;
   void text(const PaperText& text) override;
   void picture(const Image& image, const Eigen::AlignedBox2d& place) override;
@@ -104,6 +115,9 @@ class SvgCanvas : public Canvas {
   const std::string& elements() const { return out_; }
 
  private:
+  void stroke_path(const std::string& d, const Pen& pen);
+
+  Texts texts_;
   std::string out_;
   int clips_ = 0;
 };
@@ -113,6 +127,7 @@ struct SvgPage {
   double units_per_pixel = 1;    ///< units of the view box per screen pixel (1/96 inch): the size on paper
   std::string title;             ///< alternative text for screen readers; empty: none
   std::optional<Rgba> background = kWhite;  ///< nullopt: transparent
+  bool millimetres = false;                 ///< gives the size in mm, not in pixels
 };
 
 /// Returns a complete file.

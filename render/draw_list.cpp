@@ -67,8 +67,10 @@ std::uint8_t DrawList::edge_style(const EdgeStyle& style) {
   return static_cast<std::uint8_t>(index);
 }
 
-void DrawList::add_polygon(const std::vector<Eigen::Vector3d>& corners, const DrawTriangle& like) {
+void DrawList::add_polygon(const std::vector<Eigen::Vector3d>& corners, const DrawTriangle& like,
+                           const std::vector<bool>& borders) {
   const std::size_t n = corners.size();
+  const auto border = [&](std::size_t i, int bit) { return !borders.empty() && borders[i] ? 1 << bit : 0; };
   for (std::size_t i = 1; i + 1 < n; ++i) {
     // Fan of the polygon. Its diagonals must not be drawn as edges.
     DrawTriangle t = like;
@@ -76,6 +78,7 @@ void DrawList::add_polygon(const std::vector<Eigen::Vector3d>& corners, const Dr
     if (like.edges !=
         0) {  // corners 0 and i + 1 are joined by a diagonal unless the fan ends here, and so on
       t.edges = static_cast<std::uint8_t>((i == 1 ? 1 : 0) | 2 | (i + 2 == n ? 4 : 0));
+      t.borders = static_cast<std::uint8_t>(t.edges & (border(0, 0) | border(i, 1) | border(n - 1, 2)));
     }
     triangles.push_back(t);
   }

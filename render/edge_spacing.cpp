@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 namespace lrb::render {
@@ -11,12 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The screen size of a triangle.
+/// The screen size of a triangle, and the length of its borders.
 struct OnScreen {
-  double altitude, area;
+  double altitude, area, borders;
 };
 
-/// Returns a triangle's smallest altitude on the screen and its area, or nullopt if it reaches behind the
+/// Returns a triangle's size on the screen, with its smallest altitude, or nullopt if it reaches behind the
 /// eye.
 std::optional<OnScreen> on_screen(const DrawTriangle& t, const Projection& projection) {
   std::array<Eigen::Vector2d, 3> at;
@@ -29,7 +30,10 @@ std::optional<OnScreen> on_screen(const DrawTriangle& t, const Projection& proje
   const double twice_area = std::abs(u.x() * v.y() - u.y() * v.x());
   // The altitude on the longest edge is the smallest.
   const double longest = std::max({u.norm(), v.norm(), (v - u).norm()});
-  return OnScreen{longest > 0 ? twice_area / longest : 0, twice_area / 2};
+  double borders = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    if ((t.borders >> i & 1) != 0) borders += (at[(i + 1) % 3] - at[i]).norm();
+  return OnScreen{longest > 0 ? twice_area / longest : 0, twice_area / 2, borders};
 }
 
 struct Corner {
@@ -76,30 +80,29 @@ std::vector<double> edge_spacing(const DrawList& list, const Projection& project
   return spacing;
 }
 
-std::vector<double> even_edge_spacing(const DrawList& list, const Projection& projection) {
+std::vector<StyleSpacing> even_edge_spacing(const DrawList& list, const Projection& projection) {
   // Step 1: the visible triangles of each style.
   std::vector<std::vector<OnScreen>> styles(list.edge_styles.size());
   for (const DrawTriangle& t : list.triangles) {
     if (t.edges == 0) continue;
     if (const std::optional<OnScreen> seen = on_screen(t, projection)) styles[t.edge_style].push_back(*seen);
   }
-  std::vector<double> spacing;
+  std::vector<StyleSpacing> spacing;
   for (std::vector<OnScreen>& parts : styles) {
     std::sort(parts.begin(), parts.end(),
               [](const OnScreen& x, const OnScreen& y) { return x.altitude > y.altitude; });
     // Step 2: the area-weighted median of the altitudes.
-    double all = 0, sum = 0, half = projection.height();
-    for (const OnScreen& p : parts) all += p.area;
+    double all = 0, borders = 0, sum = 0, half = projection.height();
+    for (const OnScreen& p : parts) all += p.area, borders += p.borders;
     for (const OnScreen& p : parts) {
       half = p.altitude;
       if ((sum += p.area) >= 0.5 * all) break;
     }
-    spacing.push_back(half);
+    // Equilateral triangles of altitude h have edges of length 6 / h per area, counted once for each
+    // triangle.
+    spacing.push_back({half, borders > 0 ? 6 * all / borders : std::numeric_limits<double>::infinity()});
   }
-  std::vector<double> out;
-  out.reserve(list.triangles.size());
-  for (const DrawTriangle& t : list.triangles) out.push_back(t.edges == 0 ? 0 : spacing[t.edge_style]);
-  return out;
+  return spacing;
 }
 
 double fade_between(double x, double gone, double full) {

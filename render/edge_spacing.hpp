@@ -15,9 +15,16 @@ namespace lrb::render {
 /// patchy; these means vary gradually. 0 for triangles without edges.
 std::vector<double> edge_spacing(const DrawList& list, const Projection& projection);
 
-/// Returns, for each triangle with edges, the median of edge_spacing() over its style, weighted by area on
-/// the screen, so that all edges of a style fade together.
-std::vector<double> even_edge_spacing(const DrawList& list, const Projection& projection);
+/// The spacing of the edges of one style, in pixels.
+struct StyleSpacing {
+  double all = 0;  ///< median altitude of the triangles, weighted by area on the screen
+  /// Mean spacing of borders alone: the altitude of equilateral triangles with as much edge length in the
+  /// same area. Infinite: the style has none.
+  double borders = 0;
+};
+
+/// Returns the spacing of each style, so that all edges of a style fade together.
+std::vector<StyleSpacing> even_edge_spacing(const DrawList& list, const Projection& projection);
 
 /// Rises smoothly from 0 at `gone` to 1 at `full`.
 double fade_between(double x, double gone, double full);

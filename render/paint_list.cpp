@@ -250,6 +250,25 @@ DrawList under_lines(DrawList list) {
   return list;
 }
 
+void paint_visible_lines(Canvas& canvas, const DrawList& list, const Projection& projection,
+                         const DepthImage& depths, const Vector2d& origin) {
+  const HiddenLines hidden(projection, depths);
+  ListPainter painter(canvas, projection, origin);
+  for (const Layer layer : {Layer::opaque, Layer::translucent}) {
+    for (const DrawLine& l : list.lines) {
+      if (l.layer != layer || l.points.size() < 2) continue;
+      std::vector<Run> runs = hidden.runs(l);
+      for (Run& run : runs) {
+        if (!run.seen) continue;
+        for (Vector2d& x : run.points) x += origin;
+        paint_run(canvas, l, run, l.closed && runs.size() == 1);
+      }
+    }
+    for (const DrawPoint& p : list.points)
+      if (p.layer == layer && hidden.seen(p)) painter.point(p);
+  }
+}
+
 void paint_over(Canvas& canvas, const DrawList& list, const Projection& projection, const DepthImage& depths,
                 const Vector2d& origin) {
   const HiddenLines hidden(projection, depths);

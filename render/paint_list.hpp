@@ -18,6 +18,11 @@ void paint_flat(Canvas& canvas, const DrawList& list, const Projection& projecti
 /// Returns the part of the list that paint_over() does not paint, to be rasterised.
 DrawList under_lines(DrawList list);
 
+/// Paints the visible parts of the lines and points of the other layers, over faces that were painted as
+/// vector graphics. Arguments as in paint_over().
+void paint_visible_lines(Canvas& canvas, const DrawList& list, const Projection& projection,
+                         const DepthImage& depths, const Eigen::Vector2d& origin = {0, 0});
+
 /// Paints the lines and points of Layer::on_top and the labels over a picture of the rest. Parts hidden by
 /// faces, according to `depths`, are painted as in Rasterizer::draw(): lines thinner and dashed, points as
 /// rings. `depths` must be of the same list and camera.

@@ -72,9 +72,10 @@ Rgba Context::colour_of(FaceId f, CellId cell) const {
   return options.colour_by == ColourBy::kind ? colour() : style().pale(colour(), palette::kGroundPale);
 }
 
-void Context::add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const {
+void Context::add_key(LegendItem::Mark mark, Rgba colour, const std::string& text,
+                      const std::optional<LegendItem::Swatch>& swatch) const {
   const auto same = [&](const LegendItem& i) { return i.text == text; };
-  if (std::none_of(out.key.begin(), out.key.end(), same)) out.key.push_back({mark, colour, text});
+  if (std::none_of(out.key.begin(), out.key.end(), same)) out.key.push_back({mark, colour, text, swatch});
 }
 
 std::vector<Chain> chains(const std::vector<std::array<VertexId, 2>>& segments) {

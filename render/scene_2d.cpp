@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 using Mark = LegendItem::Mark;
 
 constexpr double kGhost = 0.82;  ///< share by which ghosts fade
+constexpr std::uint8_t kRegionAlpha = 78;
 
 class Scene2dBuilder {
  public:
@@ -54,13 +55,15 @@ class Scene2dBuilder {
     fill.id = region_id(c_.side, r);
     // By priority: construction, refinement, colouring by layer or region, the body's colour.
     const bool telling = c_.options.colour_by == ColourBy::layer || c_.options.colour_by == ColourBy::region;
-    fill.colour = telling ? style_.pale(c_.region_colour(r), 0.35) : with_alpha(body_, 78);
+    fill.colour = telling ? style_.pale(c_.region_colour(r), 0.35) : with_alpha(body_, kRegionAlpha);
     if (c_.refining(r)) fill.colour = style_.pale(style_.refining, kRefining2d);
     if (c_.building()) fill.colour = built_colour(r);
     for (const FaceId f : rep_.collector(r)) add_segment(fill, f, moved(r));
     c_.out.list.fills.push_back(std::move(fill));
     if (c_.building()) return built_key(r);
-    if (!telling && !c_.refining(r)) c_.add_key(Mark::translucent, body_, c_.name() + ", regions");
+    if (!telling && !c_.refining(r))
+      c_.add_key(Mark::translucent, body_, c_.name() + ", regions",
+                 LegendItem::Swatch{with_alpha(body_, kRegionAlpha), region_edge(), style_.paper});
     if (c_.options.colour_by == ColourBy::region)
       c_.add_key(Mark::solid, palette::category(0), "regions, one colour each");
   }
@@ -80,7 +83,7 @@ class Scene2dBuilder {
     DrawFill fill;
     fill.id = region_id(c_.side, 0) | ((1U << 30) - 1);
     const bool ghost = c_.isolating();
-    fill.colour = style_.solid_2d(body_);
+    fill.colour = style_.solid_2d(body_, c_.side);
     if (ghost && !c_.options.ghost_rest) return;
     if (ghost) fill.colour = style_.pale(fill.colour, kGhost);
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) add_segment(fill, f, Vector3d::Zero());
@@ -109,6 +112,8 @@ class Scene2dBuilder {
     if (!pseudo.empty()) c_.add_key(Mark::dashed, style_.contact, "intersecting pseudo faces");
   }
 
+  Rgba region_edge() const { return style_.pale(body_, 0.15); }
+
   /// Draws thin lines between regions, dashed between refined ones.
   void region_lines() {
     std::vector<FaceId> inside, gone;
@@ -124,7 +129,7 @@ class Scene2dBuilder {
         gone.push_back(f);
       }
     }
-    add_lines(inside, style_.pale(body_, 0.15), 1.1F, 0);
+    add_lines(inside, region_edge(), 1.1F, 0);
     // In a construction these regions do not exist yet.
     if (!c_.building()) add_lines(gone, style_.pale(body_, 0.45), 1, 5);
     if (!gone.empty() && !c_.building())
@@ -133,7 +138,7 @@ class Scene2dBuilder {
 
   void wrapper_line() {
     const std::vector<FaceId> boundary = c_.body.wrapper->boundary();
-    const Rgba colour = style_.edge_of(body_);
+    const Rgba colour = c_.wrapper_edge();
     if (c_.options.colour_by == ColourBy::value && !c_.body.face_values.empty()) {
       for (const FaceId f : boundary) add_lines({f}, c_.colour_of(f, kSolid), 4, 0);
       return;

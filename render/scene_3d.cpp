@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
 #include <vector>
 
 #include "render/scene_parts.hpp"
@@ -20,6 +23,9 @@ constexpr float kLidEdgeBack = 0.3F;
 constexpr std::uint8_t kTellingAlpha = 175;  ///< if their colour carries information
 constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
+/// Faces that meet at a larger angle than this, in radians, have a crease between them. Connected creases
+/// shorter than a share of the body's size are the noise of scans.
+constexpr double kCrease = 0.5, kShortCrease = 0.08;
 /// Lids of earlier passes of a construction: share by which their colour fades, and its opacity.
 constexpr double kEarlierPale = 0.72;
 constexpr std::uint8_t kEarlierAlpha = 215;
@@ -32,8 +38,7 @@ class Scene3dBuilder {
     real_edges_ = c.out.list.edge_style({with_alpha(ink, 150), 0.9F * c.options.scale});
     pale_edges_ = c.out.list.edge_style({with_alpha(ink, 90), 0.8F * c.options.scale});
     cell_edges_ = c.out.list.edge_style({with_alpha(palette::kInk, 150), 0.9F * c.options.scale});
-    lid_edges_ = c.out.list.edge_style({with_alpha(mix(body, style_.edge_of(body), 0.7), kLidEdgeAlpha),
-                                        1.5F * c.options.scale, kLidEdgeBack});
+    lid_edges_ = c.out.list.edge_style({lid_edge_colour(), 1.5F * c.options.scale, kLidEdgeBack});
   }
 
   void run() {
@@ -68,6 +73,7 @@ class Scene3dBuilder {
       if (!rep_.is_real(f) && !c_.in_contact(f) && !drawn_apart) lids.push_back(f);
     }
     const bool telling = c_.options.colour_by != ColourBy::kind;
+    if (c_.options.borders) mark_region_borders(lids);
     // Translucent, in the painting order that the rasterizer determines.
     for (const FaceId f : lids) {
       DrawTriangle t = translucent(lid_colour(f));
@@ -79,7 +85,9 @@ class Scene3dBuilder {
     }
     if (c_.building()) return built_lids(!lids.empty());
     if (lids.empty()) return;
-    if (!telling) c_.add_key(Mark::translucent, c_.colour(), c_.name() + ", pseudo faces");
+    if (!telling)
+      c_.add_key(Mark::translucent, c_.colour(), c_.name() + ", pseudo faces",
+                 LegendItem::Swatch{lid_colour(lids.front()), lid_edge_colour(), c_.colour()});
     if (c_.options.colour_by == ColourBy::region) {
       c_.add_key(Mark::translucent, palette::category(0), "pseudo faces, one colour per region");
     }
@@ -128,6 +136,7 @@ class Scene3dBuilder {
 
   void real_faces() {
     bool any_in_contact = false;
+    if (c_.options.borders) mark_creases();
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
       DrawTriangle t;
       t.colour = c_.in_contact(f) ? style_.contact : c_.colour_of(f, kSolid);
@@ -139,6 +148,7 @@ class Scene3dBuilder {
       any_in_contact |= c_.in_contact(f);
       add_face(f, t);
     }
+    borders_.clear();
     if (any_in_contact) c_.add_key(Mark::solid, style_.contact, c_.body.contact_name);
     if (c_.options.colour_by == ColourBy::value) {
       c_.add_key(Mark::solid, style_.pale(c_.colour(), palette::kNoValuePale),
@@ -149,13 +159,15 @@ class Scene3dBuilder {
     }
   }
 
+  Rgba lid_edge_colour() const { return with_alpha(mix(c_.colour(), c_.wrapper_edge(), 0.7), kLidEdgeAlpha); }
+
   Rgba lid_colour(FaceId f) const {
     if (c_.building() && c_.options.colour_by == ColourBy::region)
       return with_alpha(style_.pale(c_.colour_of(f, rep_.inner_cell(f)), kEarlierPale), kEarlierAlpha);
     const Rgba colour = c_.colour_of(f, rep_.inner_cell(f));
     switch (c_.options.colour_by) {
       case ColourBy::kind:
-        return with_alpha(style_.pale(colour, style_.lid_pale), kLidAlpha);
+        return with_alpha(style_.pale(colour, style_.lid_pale[static_cast<std::size_t>(c_.side)]), kLidAlpha);
       case ColourBy::value:
         return with_alpha(colour, c_.has_value(f) ? kTellingAlpha : kLidAlpha);
       default:
@@ -246,9 +258,83 @@ class Scene3dBuilder {
     return t;
   }
 
+  using Edge = std::array<VertexId, 2>;  ///< the smaller vertex first
+  Edge edge(FaceId f, std::size_t i) const {
+    const auto corners = rep_.face(f);
+    const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
+    return {std::min(a, b), std::max(a, b)};
+  }
+
   void add_face(FaceId f, DrawTriangle like, const Vector3d& moved = Vector3d::Zero()) {
     like.id = face_id(c_.side, f);
-    c_.out.list.add_polygon(c_.corners(f, moved), like);
+    std::vector<bool> borders;
+    for (std::size_t i = 0; !borders_.empty() && i < rep_.face(f).size(); ++i)
+      borders.push_back(std::binary_search(borders_.begin(), borders_.end(), edge(f, i)));
+    c_.out.list.add_polygon(c_.corners(f, moved), like, borders);
+  }
+
+  // ---- borders
+
+  struct SharedEdge {
+    Edge edge;
+    FaceId face;
+  };
+
+  /// Sets borders_ to the edges of faces that have one side only, or for whose pair of faces `apart` holds.
+  template <class Apart>
+  void mark_borders(const std::vector<FaceId>& faces, const Apart& apart) {
+    std::vector<SharedEdge> edges;
+    for (const FaceId f : faces)
+      for (std::size_t i = 0; i < rep_.face(f).size(); ++i) edges.push_back({edge(f, i), f});
+    std::sort(edges.begin(), edges.end(), [](const SharedEdge& x, const SharedEdge& y) {
+      return x.edge != y.edge ? x.edge < y.edge : x.face < y.face;
+    });
+    borders_.clear();
+    for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
+      for (end = first; end < edges.size() && edges[end].edge == edges[first].edge;) ++end;
+      if (end - first != 2 || apart(edges[first].face, edges[first + 1].face))
+        borders_.push_back(edges[first].edge);
+    }
+  }
+
+  void mark_region_borders(const std::vector<FaceId>& lids) {
+    mark_borders(lids, [&](FaceId f, FaceId g) { return rep_.inner_cell(f) != rep_.inner_cell(g); });
+  }
+
+  void mark_creases() {
+    std::vector<FaceId> real(rep_.real_face_count());
+    std::iota(real.begin(), real.end(), FaceId{0});
+    const auto normal = [&](FaceId f) -> Vector3d {
+      // The area vector of the polygon.
+      const std::vector<Vector3d> x = c_.corners(f);
+      Vector3d sum = Vector3d::Zero();
+      for (std::size_t i = 1; i + 1 < x.size(); ++i) sum += (x[i] - x[0]).cross(x[i + 1] - x[0]);
+      return sum.normalized();
+    };
+    mark_borders(real, [&](FaceId f, FaceId g) { return normal(f).dot(normal(g)) < std::cos(kCrease); });
+    remove_short_creases();
+  }
+
+  /// Removes the connected components of borders_ that are short.
+  void remove_short_creases() {
+    // Disjoint sets of vertices: each edge joins the sets of its ends.
+    std::map<VertexId, VertexId> parent;
+    const auto root = [&](VertexId v) {
+      while (parent.at(v) != v) v = parent[v] = parent.at(parent.at(v));
+      return v;
+    };
+    for (const auto& [a, b] : borders_) {
+      parent.try_emplace(a, a);
+      parent.try_emplace(b, b);
+      parent[root(a)] = root(b);
+    }
+    std::map<VertexId, double> length;
+    Eigen::AlignedBox3d box;
+    for (const auto& [a, b] : borders_) length[root(a)] += (rep_.vertices()[a] - rep_.vertices()[b]).norm();
+    for (FaceId f = 0; f < rep_.real_face_count(); ++f)
+      for (const VertexId v : rep_.face(f)) box.extend(rep_.vertices()[v]);
+    const double least = kShortCrease * box.diagonal().norm();
+    std::erase_if(borders_, [&](const Edge& e) { return length.at(root(e[0])) < least; });
   }
 
   enum class Edges : std::uint8_t {
@@ -289,6 +375,7 @@ class Scene3dBuilder {
   const Context& c_;
   const LrbRep& rep_;
   const Style& style_;
+  std::vector<Edge> borders_;  ///< of the faces that are being added, ascending
   std::uint8_t real_edges_ = 0, pale_edges_ = 0, lid_edges_ = 0, cell_edges_ = 0, refining_edges_ = 0;
 };
 

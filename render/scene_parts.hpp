@@ -42,7 +42,9 @@ struct Context {
   Rgba region_colour(RegionId r) const;
   /// Returns the colour of a region that a construction has just made.
   Rgba built_colour(RegionId r) const;
-  void add_key(LegendItem::Mark mark, Rgba colour, const std::string& text) const;
+  Rgba wrapper_edge() const { return style().wrapper_edge(colour(), side); }
+  void add_key(LegendItem::Mark mark, Rgba colour, const std::string& text,
+               const std::optional<LegendItem::Swatch>& swatch = {}) const;
 };
 
 /// Share by which the colour of regions being refined fades in 2D, as a fill under lines.

@@ -8,7 +8,7 @@
 #include <glm/common.hpp>
 
 #include "render/depth_order.hpp"
-#include "render/edge_spacing.hpp"
+#include "render/face_look.hpp"
 #include <lrbscope/render/rasterize.hpp>
 
 namespace lrb::render {
@@ -23,13 +23,6 @@ constexpr double kSnap = 256;
 constexpr double kHaloNudge = 0.25;
 /// Corners farther outside than this many picture sizes are clipped, so that float coordinates stay precise.
 constexpr double kGuard = 8;
-/// Edges fade where faces are too small for them (see edge_spacing.hpp): they are full if the altitude is at
-/// least the first number of edge widths, and invisible at the second, ...
-constexpr double kEdgesFull = 9, kEdgesGone = 1.5;
-/// ... where their width is reduced to this share.
-constexpr double kMinWidth = 0.6;
-/// Factor by which translucent faces are shaded more weakly than opaque ones.
-constexpr double kSoften = 0.6;
 /// Margin for the soft border of lines, pixels.
 constexpr double kRim = 1;
 
@@ -46,12 +39,7 @@ class ScreenMeshBuilder {
  public:
   ScreenMeshBuilder(const DrawList& list, const Projection& projection, double scale,
                     const Lighting& lighting, bool even_edges)
-      : list_(list), p_(projection), scale_(scale), lighting_(lighting), soft_(lighting) {
-    spacing_ = even_edges ? even_edge_spacing(list, projection) : edge_spacing(list, projection);
-    // Softer lighting: part of each directional light moves to the ambient one.
-    soft_.ambient = lighting.ambient + kSoften * (1 - lighting.ambient);
-    for (double* share : {&soft_.head, &soft_.key, &soft_.fill}) *share *= 1 - kSoften;
-  }
+      : list_(list), p_(projection), scale_(scale), looks_(list, projection, scale, lighting, even_edges) {}
 
   ScreenMesh build() {
     for (const DrawFill& f : list_.fills) add_fill(f);
@@ -174,29 +162,28 @@ class ScreenMeshBuilder {
   /// Adds a convex part of a triangle, given in the eye's frame.
   void add_face(const DrawTriangle& t, const std::vector<Vector3d>& polygon) {
     if (polygon.size() < 3) return;
-    // Flat shading, from the normal in world coordinates.
-    const Vector3d normal = (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]);
-    const double length = normal.norm();
+    const FaceLook look = looks_.of(t);
     FaceVertex v;
-    Rgba colour = t.layer == Layer::opaque ? with_alpha(t.colour, 255) : t.colour;
-    if (t.lit && length > 0) {
-      const Lighting& lighting = t.layer == Layer::opaque ? lighting_ : soft_;
-      colour = shade(colour, normal / length, p_.axes(), lighting);
-    }
-    v.colour = to_bytes(colour);
+    v.colour = to_bytes(look.colour);
     v.id = t.id;
+    v.half_width = to_float(0.5 * look.edge_width);
+    v.edge_colour = to_bytes(look.edge_colour);
+    // An opaque face stays opaque under its edges: blend them here, exactly.
+    if (t.layer == Layer::opaque && t.edges != 0)
+      v.edge_colour = to_bytes(over(look.edge_colour, with_alpha(look.colour, 255)));
     // Distances to the edges of the whole triangle are stored at each corner; the shader draws edges from
     // these.
     const std::array<Vector3d, 3> h = {homogeneous(p_, p_.to_eye(t.x[0])), homogeneous(p_, p_.to_eye(t.x[1])),
                                        homogeneous(p_, p_.to_eye(t.x[2]))};
-    const std::array<Vector3d, 3> lines = edge_lines(t, h, v);
+    const std::array<Vector3d, 3> lines = {edge_line(h[0], h[1]), edge_line(h[1], h[2]),
+                                           edge_line(h[2], h[0])};
     corners_.clear();
     for (const Vector3d& e : polygon) {
       const Vector3d at = homogeneous(p_, e);
       v.x = device(snapped_screen(e), t.nudge);
       for (int i = 0; i < 3; ++i) {
         // Bit i: edge i is drawn.
-        v.edge[i] = (t.edges >> i & 1) != 0 ? to_float(std::abs(lines[i].dot(at) / at.z())) : kNoEdge;
+        v.edge[i] = (look.edges >> i & 1) != 0 ? to_float(std::abs(lines[i].dot(at) / at.z())) : kNoEdge;
       }
       corners_.push_back(v);
     }
@@ -204,33 +191,6 @@ class ScreenMeshBuilder {
     for (std::size_t i = 1; i + 1 < corners_.size(); ++i) {
       mesh_.faces.insert(mesh_.faces.end(), {corners_[0], corners_[i], corners_[i + 1]});
     }
-  }
-
-  bool shows_back(const DrawTriangle& t) const {
-    const Vector3d normal = (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]);
-    return normal.dot(p_.towards_viewer(t.x[0])) < 0;
-  }
-
-  /// Computes the lines of the three edges and the vertex's edge style, faded where faces are small on the
-  /// screen.
-  std::array<Vector3d, 3> edge_lines(const DrawTriangle& t, const std::array<Vector3d, 3>& h,
-                                     FaceVertex& v) const {
-    std::array<Vector3d, 3> lines;
-    for (int i = 0; i < 3; ++i) lines[i] = edge_line(h[i], h[(i + 1) % 3]);
-    if (t.edges == 0) return lines;
-    const EdgeStyle& style = list_.edge_styles[t.edge_style];
-    // Fade colour and width where the face is small on the screen.
-    const double spacing =
-        spacing_[static_cast<std::size_t>(&t - list_.triangles.data())] / (style.width * scale_);
-    const double fade = fade_between(spacing, kEdgesGone, kEdgesFull), back = shows_back(t) ? style.back : 1;
-    const double width = style.width * (kMinWidth + (1 - kMinWidth) * fade) * (0.5 + 0.5 * back);
-    v.half_width = to_float(0.5 * width * scale_);
-    v.edge_colour =
-        to_bytes(with_alpha(style.colour, static_cast<std::uint8_t>(style.colour.a * fade * back + 0.5)));
-    if (t.layer != Layer::opaque) return lines;
-    // An opaque face stays opaque under its edges: blend them here, exactly.
-    v.edge_colour = to_bytes(over(to_rgba(v.edge_colour), with_alpha(to_rgba(v.colour), 255)));
-    return lines;
   }
 
   // ---- fills
@@ -354,26 +314,12 @@ class ScreenMeshBuilder {
   const DrawList& list_;
   const Projection& p_;
   double scale_;
-  const Lighting& lighting_;
-  Lighting soft_;                ///< of translucent faces: they should tint, not darken
-  std::vector<double> spacing_;  ///< see edge_spacing(): by triangle
+  FaceLooks looks_;
   ScreenMesh mesh_;
   std::vector<FaceVertex> corners_;
 };
 
 }  // namespace
-
-Rgba shade(Rgba colour, const Vector3d& normal, const Eigen::Matrix3d& axes, const Lighting& lighting) {
-  // Eye coordinates with z towards the viewer. Both sides of a face are lit.
-  Vector3d n(axes.row(0).dot(normal), axes.row(1).dot(normal), -axes.row(2).dot(normal));
-  if (n.z() < 0) n = -n;
-  const auto from = [&](const Vector3d& light) { return std::max(0.0, n.dot(light.normalized())); };
-  const double light = lighting.ambient + lighting.head * n.z() + lighting.key * from(lighting.key_from) +
-                       lighting.fill * from(lighting.fill_from);
-  const Rgba dark{0, 0, 0, colour.a}, bright{255, 255, 255, colour.a};
-  // Above one, the colour is mixed towards white, so that bright faces keep their differences.
-  return light <= 1 ? mix(dark, colour, light) : mix(colour, bright, std::min(1.0, light - 1));
-}
 
 ScreenMesh make_screen_mesh(const DrawList& list, const Projection& projection, double scale,
                             const Lighting& lighting, bool even_edges) {

@@ -75,11 +75,13 @@ constexpr Style kScreen = {.paper = kWhite,
                            .back = palette::kPaleBack,
                            .edge_ink = palette::kEdgeInk,
                            .solid_ink = palette::kSolidInk,
-                           .solid_share = palette::kSolidShare,
-                           .lid_pale = palette::kLidPale,
+                           .solid_share = {palette::kSolidShare, palette::kSolidShare},
+                           .lid_pale = {palette::kLidPale, palette::kLidPale},
+                           .edge_share = {palette::kEdgeShare, palette::kEdgeShare},
                            .weight = 1};
 
-/// Black on white; kinds differ more in lightness than on a screen, for greyscale print.
+/// Black on white; kinds differ more in lightness than on a screen, for greyscale print. B is lighter than A
+/// in everything: faces, pseudo faces and lines.
 constexpr Style kPrint = {.paper = kWhite,
                           .ink = kBlack,
                           .faint = {84, 86, 90},
@@ -92,8 +94,9 @@ constexpr Style kPrint = {.paper = kWhite,
                           .back = palette::kPaleBack,
                           .edge_ink = kBlack,
                           .solid_ink = palette::kSolidInk,
-                          .solid_share = 0.34,
-                          .lid_pale = palette::kLidPale,
+                          .solid_share = {0.48, 0.28},
+                          .lid_pale = {0.45, 0.85},
+                          .edge_share = {0.80, 0.50},
                           .weight = 0.7F};
 
 /// For slides: almost black background, light lines and texts.
@@ -109,8 +112,9 @@ constexpr Style kDark = {.paper = {20, 22, 27},
                          .back = {78, 68, 60},
                          .edge_ink = {240, 242, 245},
                          .solid_ink = {240, 242, 245},
-                         .solid_share = 0,
-                         .lid_pale = 0.25,
+                         .solid_share = {0, 0},
+                         .lid_pale = {0.25, 0.25},
+                         .edge_share = {palette::kEdgeShare, palette::kEdgeShare},
                          .weight = 1.15F};
 
 }  // namespace

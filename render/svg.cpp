@@ -79,9 +79,13 @@ std::string font(double height) {
          attribute("font-size", number(height / kHeightOfFont));
 }
 
-std::string svg_open(double width, double height, double units_per_pixel) {
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", number(width / units_per_pixel)) +
-         attribute("height", number(height / units_per_pixel)) +
+std::string svg_open(double width, double height, double units_per_pixel, bool millimetres) {
+  constexpr double kMmPerPixel = 25.4 / 96;  // by definition of CSS
+  const auto size = [&](double x) {
+    return millimetres ? number(x / units_per_pixel * kMmPerPixel) + "mm" : number(x / units_per_pixel);
+  };
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", size(width)) +
+         attribute("height", size(height)) +
          attribute("viewBox", "0 0 " + number(width) + " " + number(height)) + ">\n";
 }
 
@@ -105,17 +109,30 @@ std::string box_attributes(const Eigen::AlignedBox2d& box) {
 
 }  // namespace
 
-void SvgCanvas::fill(const std::vector<Loop>& loops, Rgba colour) {
+void SvgCanvas::fill(const std::vector<Loop>& loops, Rgba colour, double spread) {
   std::string d;
   for (const Loop& loop : loops) d += path(loop, true);
   if (d.empty()) return;
-  out_ += "<path" + attribute("d", d) + paint("fill", colour) + attribute("fill-rule", "evenodd") + "/>\n";
+  out_ += "<path" + attribute("d", d) + paint("fill", colour) + attribute("fill-rule", "evenodd");
+  if (spread > 0)
+    out_ += paint("stroke", colour) + attribute("stroke-width", number(2 * spread)) +
+            attribute("stroke-linejoin", "round");
+  out_ += "/>\n";
 }
 
 void SvgCanvas::stroke(const Loop& points, bool closed, const Pen& pen) {
-  out_ += "<path" + attribute("d", path(points, closed)) + attribute("fill", "none") +
-          paint("stroke", pen.colour) + attribute("stroke-width", number(pen.width)) +
-          attribute("stroke-linejoin", "round");
+  stroke_path(path(points, closed), pen);
+}
+
+void SvgCanvas::strokes(const std::vector<Loop>& lines, const Pen& pen) {
+  std::string d;
+  for (const Loop& line : lines) d += path(line, false);
+  stroke_path(d, pen);
+}
+
+void SvgCanvas::stroke_path(const std::string& d, const Pen& pen) {
+  out_ += "<path" + attribute("d", d) + attribute("fill", "none") + paint("stroke", pen.colour) +
+          attribute("stroke-width", number(pen.width)) + attribute("stroke-linejoin", "round");
   // Round ends would fill the gaps between dashes.
   out_ +=
       pen.dash > 0 ? attribute("stroke-dasharray", number(pen.dash)) : attribute("stroke-linecap", "round");
@@ -128,6 +145,15 @@ void SvgCanvas::disc(const Eigen::Vector2d& at, double radius, Rgba colour) {
 }
 
 void SvgCanvas::text(const PaperText& t) {
+  if (texts_ == Texts::outlines) {
+    const std::string d = attribute("d", text_outlines(t));
+    if (t.halo.a > 0)
+      out_ += "<path" + d + attribute("fill", "none") + paint("stroke", t.halo) +
+              attribute("stroke-width", number(2 * kTextHalo * t.height)) +
+              attribute("stroke-linejoin", "round") + "/>\n";
+    out_ += "<path" + attribute("aria-label", escape_markup(t.text)) + d + paint("fill", t.colour) + "/>\n";
+    return;
+  }
   // A baseline instead of dominant-baseline, which not all SVG editors and printers support.
   out_ += "<text" + attribute("x", number(t.at.x())) +
           attribute("y", number(t.at.y() + kBaseline * t.height)) + font(t.height);
@@ -160,7 +186,7 @@ void SvgCanvas::end_clip() {
 }
 
 std::string svg_file(const SvgCanvas& canvas, const SvgPage& page) {
-  std::string out = svg_open(page.width, page.height, page.units_per_pixel);
+  std::string out = svg_open(page.width, page.height, page.units_per_pixel, page.millimetres);
   if (!page.title.empty()) out += "<title>" + escape_markup(page.title) + "</title>\n";
   if (page.background)
     out += "<rect" + attribute("width", number(page.width)) + attribute("height", number(page.height)) +

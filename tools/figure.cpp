@@ -1,7 +1,9 @@
 #include "scenarios/figure/figure.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
@@ -17,6 +19,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/render/svg.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::cli {
@@ -26,7 +29,8 @@ struct FigureOptions {
   std::string source, file, width, line_width;
   std::vector<std::string> bodies;
   std::vector<std::uint32_t> faces, events, steps;
-  bool layers = false, close_up = false;
+  bool layers = false, close_up = false, tex = false, try_views = false;
+  std::size_t views = 0;  ///< 0: chosen by the number of bodies
   PictureOptions picture;
   figure::FigureSpec figure;
 };
@@ -106,18 +110,69 @@ figure::FigureSpec figure_spec(const FigureOptions& o, const std::string& file) 
     spec.line_width = figure::parse_length(o.line_width, "--line-width", figure::kHairline, 3);
   if (o.picture.dpi) spec.dpi = *o.picture.dpi;
   spec.choice = choice_of(o);
+  if (o.tex && spec.format != figure::FigureSpec::Format::pdf)
+    throw InputError("--tex: sets texts over a .pdf file, found \"" + file + "\"");
+  if (o.tex) spec.tex = std::filesystem::path(file).filename().string();
+  spec.contact_sheet = o.try_views;
+  if (o.try_views) spec.titles = true, spec.legend = false;
   return spec;
 }
 
-render::FrameSpec frame_spec(const FigureOptions& o, const Source& source) {
+/// Returns the axis that points up: as given, or guessed, which is noted.
+std::string up_axis(const FigureOptions& o, const Source& source, const Globals& globals) {
+  if (o.picture.camera.up != "auto") return o.picture.camera.up;
+  const std::optional<int> guess = run::likely_up(source.recording.bodies[0].rep);
+  note(globals, {guess ? std::string("--up auto: the body is most stable with --up ") + "xyz"[*guess]
+                       : "--up auto: the body would fall over whichever axis is up; z is up"});
+  return {"xyz"[guess.value_or(2)]};
+}
+
+/// Returns views to choose from, with the options for them as titles: two for each axis that may point up, or
+/// six around the one given.
+std::vector<render::FrameSpec::View> views_to_try(const std::string& up, const LrbRep& rep) {
+  constexpr double kElevation = 0.45;
+  std::vector<render::FrameSpec::View> out;
+  for (const char axis : up.empty() ? std::string("zyx") : up) {
+    render::FrameSpec::View view;
+    view.directed = true;
+    view.up = turned_up({view.from, view.up}, axis - 'x').up;
+    const Eigen::Vector3d side = run::broadside(run::box_of(rep), view.up);
+    const int turns = up.empty() ? 2 : 6;
+    for (int i = 0; i < turns; ++i) {
+      const Eigen::Vector3d flat = side - view.up * side.dot(view.up);
+      const Eigen::AngleAxisd rotation(2 * std::numbers::pi * i / turns, view.up);
+      // Rounded as in the title, so that the options give the same view.
+      const Eigen::Vector3d from = rotation * flat.normalized() + kElevation * view.up;
+      view.title = std::string("--up ") + axis + " --from ";
+      for (int k = 0; k < 3; ++k) {
+        view.from[k] = std::round(100 * from[k]) / 100;
+        view.title += (k > 0 ? "," : "") + render::svg_text::number(view.from[k]);
+      }
+      out.push_back(view);
+    }
+  }
+  return out;
+}
+
+render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const Globals& globals) {
   render::FrameSpec frames = source.frames;
   if (o.close_up) frames.views = whole_and_contact(frames.views);
+  // Two bodies: one view by default, so that the figure takes at most half a page.
+  const std::size_t views = o.views > 0                                         ? o.views
+                            : source.recording.bodies.size() == 1 || o.close_up ? 26
+                                                                                : 1;
+  if (frames.views.size() > views) frames.views.resize(views);
   PictureOptions picture = o.picture;
+  picture.camera.up = up_axis(o, source, globals);
+  if (o.try_views) {
+    frames.views = views_to_try(picture.camera.up, source.recording.bodies[0].rep);
+    picture.camera.up.clear();
+  }
   picture.dpi.reset();  // set for the whole figure
   if (!picture.style) picture.style = render::StyleName::print;
   apply(picture, frames);
   run::check_views(frames.views, source.recording.bodies[0].rep.dim());
-  if (source.own_view && picture.camera.from.empty()) {
+  if (source.own_view && picture.camera.from.empty() && !o.try_views) {
     if (frames.views.empty()) frames.views.emplace_back();
     for (render::FrameSpec::View& view : frames.views)
       view.from = run::broadside(run::box_of(source.recording.bodies[0].rep), view.up);
@@ -135,18 +190,26 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // check the file before an expensive run
   const Source source = open_source(o, progress);
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
-  const figure::FigureSpec spec = figure_spec(o, file);
-  render::FrameSpec frames = frame_spec(o, source);
+  figure::FigureSpec spec = figure_spec(o, file);
+  render::FrameSpec frames = frame_spec(o, source, globals);
+  if (o.try_views && source.recording.trace.events.size() > 0)
+    spec.choice = {figure::Choice::By::events,
+                   {static_cast<std::uint32_t>(source.recording.trace.events.size() - 1)}};
   const run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
   if (o.close_up) run::widen_close_ups(recorded, frames.views);
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
-  if (!drawn.left_out.empty()) note(globals, {drawn.left_out});
+  note(globals, drawn.notes);
   std::filesystem::path caption(file);
   caption.replace_extension(".caption.txt");
   io::write_text(file, drawn.bytes);
   io::write_text(caption.string(), drawn.caption + "\n");
   print(file + "\n");
+  if (spec.tex.empty()) return kOk;
+  std::filesystem::path tex(file);
+  tex.replace_extension(".tex");
+  io::write_text(tex.string(), drawn.tex);
+  print(tex.string() + "\n");
   return kOk;
 }
 
@@ -186,11 +249,22 @@ void add_paper_options(CLI::App& app, FigureOptions& o) {
                  "Resolution of 3D faces and of PNG files, in pixels per inch [600; PNG 300]")
       ->check(CLI::Range(spec::kMinDpi, spec::kMaxDpi))
       ->type_name("N");
+  app.add_option(
+         "--vector-faces", o.figure.vector_faces,
+         "Maximum number of visible faces in a panel for 3D faces as vector graphics; with more they are an "
+         "image in all panels")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_flag("--title,!--no-title", o.figure.titles,
                "Show or hide a title below each panel, after its letter [hidden]");
   app.add_flag("--legend,!--no-legend", o.figure.legend, "Show or hide the legend and colour bar [shown]");
   app.add_flag("--caption", o.figure.caption,
                "Set the caption below the panels; it is always written to FIG.caption.txt");
+  app.add_flag(
+      "--tex", o.tex,
+      "Leave texts out of the PDF, and write FIG.tex, which includes it and sets the texts in the font of the "
+      "document");
   add_style_option(app, o.picture, "print");
   app.add_flag("--transparent", o.picture.transparent, "Transparent background");
 }
@@ -212,8 +286,14 @@ Command add_figure(CLI::App& root, const Globals& globals) {
       ->expected(1, 2);
   add_panel_options(*app, *o);
   add_paper_options(*app, *o);
+  app->add_option("--views", o->views,
+                  "Maximum number of the run's views to show [one body: all; two bodies: 1]")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{26}))
+      ->type_name("N");
+  app->add_flag("--try-views", o->try_views,
+                "Show the last state from several directions instead, each with the options for it");
   app->add_flag("--close-up", o->close_up, "Add panels that show the contact close up, without wrappers");
-  add_camera_options(*app, o->picture.camera);
+  add_camera_options(*app, o->picture.camera, true);
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);
   return {app, [o, &globals] { return run_figure(*o, globals); }};

@@ -215,7 +215,7 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
   apply(options.camera, spec.views);
 }
 
-void add_camera_options(CLI::App& app, CameraOptions& options) {
+void add_camera_options(CLI::App& app, CameraOptions& options, bool automatic_up) {
   app.add_option("--from", options.from, "Direction from the bodies to the camera, in file axes")
       ->type_name("X,Y,Z");
   app.add_option("--look-at", options.look_at, "Point to centre the picture on [centre of the bodies]")
@@ -229,7 +229,7 @@ void add_camera_options(CLI::App& app, CameraOptions& options) {
          "Camera projection")
       ->check(CLI::IsMember({"perspective", "orthographic"}).description(""))
       ->type_name("perspective|orthographic");
-  add_up_option(app, options.up);
+  add_up_option(app, options.up, automatic_up);
 }
 
 void add_orbit_option(CLI::App& app, CameraOptions& options) {
@@ -273,10 +273,14 @@ void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& v
   }
 }
 
-void add_up_option(CLI::App& app, std::string& up) {
-  app.add_option("--up", up, "Axis that points up in the pictures [z]")
-      ->check(CLI::IsMember({"x", "y", "z"}).description(""))
-      ->type_name("x|y|z");
+void add_up_option(CLI::App& app, std::string& up, bool automatic) {
+  std::vector<std::string> axes = {"x", "y", "z"};
+  if (automatic) axes.emplace_back("auto");
+  app.add_option("--up", up,
+                 std::string("Axis that points up in the pictures") +
+                     (automatic ? "; auto: the one on which the body is most stable [z]" : " [z]"))
+      ->check(CLI::IsMember(axes).description(""))
+      ->type_name(automatic ? "x|y|z|auto" : "x|y|z");
 }
 
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
@@ -289,8 +293,9 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
 }
 
 void add_animation_option(CLI::App& app, PictureOptions& options) {
-  app.add_option("--animate", options.animation, "Also write the frames as an animation (needs ffmpeg)")
-      ->type_name("OUT.mp4|gif|webp");
+  app.add_option("--animate", options.animation,
+                 "Also write the frames as an animation; formats other than PNG need ffmpeg")
+      ->type_name("OUT.png|mp4|gif|webp");
 }
 
 void add_live_option(CLI::App& app, bool& live) {

@@ -135,7 +135,7 @@ struct CameraOptions {
   std::optional<double> zoom;
   std::optional<bool> orthographic;
 };
-void add_camera_options(CLI::App& app, CameraOptions& options);
+void add_camera_options(CLI::App& app, CameraOptions& options, bool automatic_up = false);
 /// Adds --orbit, for pictures of several frame states.
 void add_orbit_option(CLI::App& app, CameraOptions& options);
 /// Applies the options to all views. --up rotates existing views; --from and --look-at are given in the axes
@@ -175,8 +175,8 @@ void animate_frames(const PictureOptions& options, const std::string& folder);
 /// Adds --live, for commands that write a run.
 void add_live_option(CLI::App& app, bool& live);
 
-/// Adds --up, which takes x, y or z.
-void add_up_option(CLI::App& app, std::string& up);
+/// Adds --up, which takes x, y or z, or also auto.
+void add_up_option(CLI::App& app, std::string& up, bool automatic = false);
 /// Returns a view rotated so that an axis (0, 1, 2) points up instead of z.
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 

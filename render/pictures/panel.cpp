@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <lrbscope/core/file.hpp>
 
@@ -202,6 +203,84 @@ std::vector<Vector3d> region_corners(const LrbRep& rep, RegionId region) {
 
 Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
   return bounds(real_corners(rep, pose));
+}
+
+namespace {
+
+double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+}
+
+/// Returns the convex hull of points, counterclockwise (Andrew 1979).
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+    return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y();
+  });
+  std::vector<Eigen::Vector2d> out;
+  // The lower chain from left to right, then the upper one back.
+  for (const bool back : {false, true}) {
+    const std::size_t first = out.size();
+    for (const Eigen::Vector2d& p : points) {
+      while (out.size() >= first + 2 && turn(out[out.size() - 2], out.back(), p) <= 0) out.pop_back();
+      out.push_back(p);
+    }
+    if (!out.empty()) out.pop_back();
+    if (!back) std::reverse(points.begin(), points.end());
+  }
+  return out;
+}
+
+/// Returns the centre of mass of the solid, or of the vertices if it has no volume.
+Vector3d centre_of_mass(const LrbRep& rep) {
+  const std::vector<Vector3d> corners = real_corners(rep);
+  const Vector3d origin = bounds(corners).center();
+  Vector3d sum = Vector3d::Zero();
+  double volume = 0;
+  // Tetrahedra from the origin to the triangles of each face.
+  for (FaceId f = 0; f < rep.real_face_count(); ++f) {
+    const std::vector<Vector3d> x = corners_of(rep, f, {});
+    for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+      const Vector3d a = x[0] - origin, b = x[i] - origin, c = x[i + 1] - origin;
+      const double part = a.cross(b).dot(c);
+      volume += part;
+      sum += part * (a + b + c) / 4;
+    }
+  }
+  if (volume > 0) return origin + sum / volume;
+  return std::accumulate(corners.begin(), corners.end(), Vector3d(Vector3d::Zero())) /
+         static_cast<double>(corners.size());
+}
+
+}  // namespace
+
+std::optional<int> likely_up(const LrbRep& rep) {
+  constexpr double kBase = 0.02;    // of the height: points below are on the ground
+  constexpr double kClearly = 1.1;  // factor by which an axis must be better than one before it
+  const std::vector<Vector3d> corners = real_corners(rep);
+  const Eigen::AlignedBox3d box = bounds(corners);
+  const Vector3d centre = centre_of_mass(rep), size = box.sizes();
+  std::optional<int> best;
+  double most = 0;
+  for (const int axis : {2, 1, 0}) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    std::vector<Eigen::Vector2d> ground;
+    for (const Vector3d& x : corners)
+      if (x[axis] - box.min()[axis] <= kBase * size[axis]) ground.emplace_back(x[u], x[v]);
+    const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(ground));
+    const Eigen::Vector2d below(centre[u], centre[v]);
+    double area = 0;
+    bool stable = hull.size() > 2;
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const double part = turn(below, hull[i], hull[(i + 1) % hull.size()]) / 2;
+      area += part;
+      stable = stable && part > 0;
+    }
+    const double share = area / (size[u] * size[v]);
+    if (!stable || !(share > kClearly * most)) continue;
+    best = axis;
+    most = share;
+  }
+  return best;
 }
 
 Vector3d broadside(const Eigen::AlignedBox3d& box, const Vector3d& up) {

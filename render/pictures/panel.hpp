@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -122,6 +123,11 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose = {});
 inline double size_of(const PosedBodies& bodies) {
   return box_of(bodies.a, bodies.pose_a).merged(box_of(bodies.b, bodies.pose_b)).diagonal().norm();
 }
+
+/// Returns the axis (0, 1, 2) that is likely to point up: the body is most stable on its lower end. Its
+/// points near that end span the largest share of its outline from above, with its centre of mass over them.
+/// Returns nullopt if it would fall over whichever axis is up.
+std::optional<int> likely_up(const LrbRep& rep);
 
 /// Returns a direction that shows a box from its longer horizontal side, obliquely and slightly from above.
 /// `up` is an axis.

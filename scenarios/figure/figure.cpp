@@ -7,8 +7,10 @@
 #include "render/canvas.hpp"
 #include "render/paint_list.hpp"
 #include "render/pictures/panel.hpp"
+#include "render/vector_faces.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_panels.hpp"
+#include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/frames/framing.hpp"
 #include <lrbscope/error.hpp>
@@ -45,19 +47,23 @@ class FigureJob {
         frames_(in_points(frames, figure)),
         dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
         chosen_(choose(recorded, figure.choice)),
-        events_(chosen_.events),
         framing_(run::frame_sequence(recorded, frames_)),
         state_(in_common_range(), frames_, false) {}
 
   Figure draw(const run::ProgressReport& progress) {
-    survey();
+    arrange();
+    if (figure_.choice.by == Choice::By::changes && leave_out_alike(progress)) arrange();
     Figure out;
     out.panels = captions_.size();
-    out.left_out = chosen_.left_out;
-    out.caption = run::caption_of(recorded_, captions_);
-    layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
-                      figure_.legend ? bar_ : std::nullopt, figure_.caption ? out.caption : "", options());
-    const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
+    if (!chosen_.left_out.empty()) out.notes.push_back(chosen_.left_out);
+    if (!flat() && figure_.format != FigureSpec::Format::png) find_vector_faces(out.notes, progress);
+    out.caption = caption();
+    const auto paint = [&](render::Canvas& canvas) {
+      if (figure_.tex.empty()) return paint_all(canvas, progress);
+      TextOverlay overlay(canvas);
+      paint_all(overlay, progress);
+      out.tex = overlay.tex(figure_.tex, figure_.width, layout_.height, figure_.font_size);
+    };
     const std::optional<render::Rgba> background = frames_.paper();
     const std::string program = "lrbscope " + recorded_.trace->header.lrbscope;
     const render::PaperPage page{figure_.width, layout_.height, background, recorded_.title, program};
@@ -66,10 +72,10 @@ class FigureJob {
         out.bytes = render::paint_pdf(page, paint);
         break;
       case FigureSpec::Format::svg: {
-        render::SvgCanvas canvas;
+        render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
         paint(canvas);
         out.bytes = render::svg_file(
-            canvas, {page.width, page.height, kPointsPerScreenPixel, page.title, background});
+            canvas, {page.width, page.height, kPointsPerScreenPixel, page.title, background, true});
         break;
       }
       case FigureSpec::Format::png: {
@@ -88,7 +94,7 @@ class FigureJob {
 
   const render::Style& style() const { return style_of(frames_.style); }
   bool flat() const { return framing_.dim == 2; }
-  std::size_t moments() const { return events_.size(); }
+  std::size_t moments() const { return chosen_.events.size(); }
 
   LayoutOptions options() const {
     constexpr double kWidest =
@@ -108,7 +114,7 @@ class FigureJob {
     if (out.value_range || !shows_values()) return out;
     run::FrameState state(recorded_, frames_, false);
     std::optional<std::array<double, 2>>& range = out.value_range;
-    for (const trace::EventId event : events_) {
+    for (const trace::EventId event : chosen_.events) {
       state.seek(event);
       const render::Scene scene = state.scene();
       if (!scene.scale) continue;
@@ -139,7 +145,7 @@ class FigureJob {
   }
 
   render::Scene scene(const View& view, std::size_t moment) {
-    state_.seek(events_[moment]);
+    state_.seek(chosen_.events[moment]);
     render::Scene scene = state_.scene(view.wrapper, true);
     const auto least = static_cast<float>(kHairline);
     for (render::DrawLine& l : scene.list.lines) l.width = std::max(l.width, least);
@@ -147,24 +153,82 @@ class FigureJob {
     return scene;
   }
 
+  std::string caption() const { return run::caption_of(recorded_, captions_); }
+
+  void arrange() {
+    survey();
+    layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
+                      figure_.legend ? bar_ : std::nullopt, figure_.caption ? caption() : "", options());
+  }
+
+  // ---- panels that look alike
+
+  /// Removes states whose panels cannot be distinguished in print from those of the state before; the first
+  /// and the last state stay. Returns true if any were removed.
+  bool leave_out_alike(const run::ProgressReport& progress) {
+    std::vector<std::vector<render::Image>> seen(moments());  // by state: its panels, in order of the views
+    std::size_t done = 0;
+    for (std::size_t b = 0; b < panels_.size(); ++b)
+      for (const auto& [view, moment] : panels_[b]) {
+        progress("compare", done++, captions_.size());
+        seen[moment].push_back(in_print(*view, moment, layout_.blocks[b].scale));
+      }
+    std::vector<trace::EventId> kept;
+    std::size_t last_kept = 0;
+    for (std::size_t i = 0; i < moments(); ++i) {
+      if (i > 0 && alike(seen[last_kept], seen[i])) {
+        if (i + 1 < moments() || kept.size() == 1) continue;
+        kept.pop_back();
+      }
+      kept.push_back(chosen_.events[i]);
+      last_kept = i;
+    }
+    const std::size_t removed = moments() - kept.size();
+    if (removed == 0) return false;
+    chosen_.left_out = render::counted(removed, "state is", "states are") +
+                       " omitted: in grey and at this width its panel would look like the one before; "
+                       "--faces, --steps and --events show any state";
+    chosen_.events = std::move(kept);
+    return true;
+  }
+
+  static bool alike(const std::vector<render::Image>& a, const std::vector<render::Image>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const render::Image& x, const render::Image& y) { return alike_in_grey(x, y); });
+  }
+
+  /// Draws the whole view of a state as large as in the figure, with the resolution of the eye.
+  render::Image in_print(const View& view, std::size_t moment, double scale) {
+    const double pixel = render::kPointsPerInch / kEyeDpi,
+                 side = pixel * std::ceil(kViewSide * scale / pixel);
+    PanelPlace place;
+    place.box = AlignedBox2d(Vector2d(0, 0), Vector2d(side, side));
+    place.seen_from = Vector2d(options().margin, options().margin) / scale;
+    const render::Scene shown = scene(view, moment);
+    return render::paint_pixels({side, side, render::kWhite, {}, {}}, kEyeDpi, [&](render::Canvas& canvas) {
+      flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, scale)
+             : paint_deep(canvas, shown.list, camera(view, moment), place, scale, kEyeDpi);
+    });
+  }
+
   /// Determines the content and size of each panel, and the entries of the common legend.
   void survey() {
+    panels_.clear(), blocks_.clear(), captions_.clear(), key_.clear();
     for (const View& view : frames_.views) {
-      Block block;
-      std::vector<std::size_t> shown_moments;
+      if (blocks_.empty() || !figure_.contact_sheet) blocks_.emplace_back(), panels_.emplace_back();
       for (std::size_t i = 0; i < moments(); ++i) {
         const render::Scene shown = scene(view, i);
         if (!shows_anything(view)) continue;
         run::merge_key(key_, shown.key);
         if (shown.scale) bar_ = shown.scale;
-        block.seen.push_back(seen_box(shown.list, camera(view, i)));
+        blocks_.back().seen.push_back(seen_box(shown.list, camera(view, i)));
         const std::string text = shortened(state_.short_caption());
-        captions_.push_back(view.title.empty() ? text : view.title + ", " + text);
-        shown_moments.push_back(i);
+        captions_.push_back(view.title.empty()      ? text
+                            : figure_.contact_sheet ? view.title
+                                                    : view.title + ", " + text);
+        panels_.back().push_back({&view, i});
       }
-      if (block.seen.empty()) continue;
-      blocks_.push_back(std::move(block));
-      views_.push_back({&view, std::move(shown_moments)});
+      if (panels_.back().empty()) blocks_.pop_back(), panels_.pop_back();
     }
     if (blocks_.empty()) throw InputError("figure of contacts: expected a panel with a contact, found none");
     letter();
@@ -189,17 +253,18 @@ class FigureJob {
 
   void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {
     std::size_t panel = 0;
-    for (std::size_t v = 0; v < views_.size(); ++v) {
-      const BlockLayout& block = layout_.blocks[v];
-      const View& view = *views_[v].view;
+    for (std::size_t b = 0; b < panels_.size(); ++b) {
+      const BlockLayout& block = layout_.blocks[b];
       for (std::size_t i = 0; i < block.panels.size(); ++i, ++panel) {
         progress("draw", panel, captions_.size());
         const PanelPlace& place = block.panels[i];
-        const std::size_t moment = views_[v].moments[i];
+        const View& view = *panels_[b][i].view;
+        const std::size_t moment = panels_[b][i].moment;
         const render::Scene shown = scene(view, moment);
         flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, block.scale)
-               : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale);
-        if (runs_over(blocks_[v]))
+               : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale, dpi_,
+                            visible_.empty() ? nullptr : &visible_[panel]);
+        if (runs_over(blocks_[b]))
           canvas.stroke(render::corners(place.box), true, {style().faint, kHairline, 0});
         double y = place.box.max().y() + 0.65 * figure_.font_size;
         for (const std::string& line : place.lines) {
@@ -229,40 +294,98 @@ class FigureJob {
     canvas.end_clip();
   }
 
-  /// Draws the faces as pixels, with whole pixels in the panel's box, and paints lines and texts over
-  /// them.
-  void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
-                  const PanelPlace& place, double scale) {
-    const double pixel = render::kPointsPerInch / dpi_, margin = options().margin,
-                 centre = 0.5 * kViewSide * scale;
+  /// The part of a view that a panel shows.
+  struct DeepView {
+    render::Camera camera;
+    Vector2d paper;         ///< size of the camera's picture, points
+    Eigen::Vector2i drawn;  ///< the same, pixels
+    Eigen::Vector2i from;   ///< pixel of the picture at the corner of the panel's box
+    Vector2d origin;        ///< corner of the picture on the page
+    double pixel;           ///< points
+  };
+
+  DeepView deep_view(const render::Camera& whole, const PanelPlace& place, double scale, double dpi) const {
+    DeepView out;
+    out.pixel = render::kPointsPerInch / dpi;
+    const double pixel = out.pixel, margin = options().margin, centre = 0.5 * kViewSide * scale;
     const Vector2d low =
         place.seen_from * scale - Vector2d(margin, margin);  // of the box, in the view, points
-    const Eigen::Vector2i size = (place.box.sizes() / pixel).array().round().cast<int>();
     // The central part of the view that contains the box, with a margin of one pixel on each side.
     const Vector2d reach =
         (low.array() - centre).abs().max((low + place.box.sizes()).array() - centre) + 2 * pixel;
-    const Eigen::Vector2i drawn = (2 * reach / pixel).array().ceil().cast<int>();
-    const Vector2d paper = drawn.cast<double>() * pixel;
-    const render::Camera camera = central_part(whole, paper.y() / scale);
-    const Eigen::Vector2i from =
-        ((low - Vector2d(centre, centre) + 0.5 * paper) / pixel).array().round().cast<int>();
+    out.drawn = (2 * reach / pixel).array().ceil().cast<int>();
+    out.paper = out.drawn.cast<double>() * pixel;
+    out.camera = central_part(whole, out.paper.y() / scale);
+    out.from = ((low - Vector2d(centre, centre) + 0.5 * out.paper) / pixel).array().round().cast<int>();
+    out.origin = place.box.min() - out.from.cast<double>() * pixel;
+    return out;
+  }
 
+  /// Finds the visible faces of all panels, if none has too many.
+  void find_vector_faces(std::vector<std::string>& notes, const run::ProgressReport& progress) {
+    std::size_t panel = 0;
+    for (std::size_t b = 0; b < panels_.size(); ++b)
+      for (std::size_t i = 0; i < panels_[b].size(); ++i, ++panel) {
+        progress("find visible faces", panel, captions_.size());
+        const auto [view, moment] = panels_[b][i];
+        const render::DrawList list = scene(*view, moment).list;
+        const DeepView deep =
+            deep_view(camera(*view, moment), layout_.blocks[b].panels[i], layout_.blocks[b].scale, dpi_);
+        const render::DepthImage depths =
+            rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
+        auto visible = render::visible_faces(list, projection(deep, list), depths);
+        if (visible && visible->size() <= figure_.vector_faces) {
+          visible_.push_back(std::move(*visible));
+          continue;
+        }
+        visible_.clear();
+        if (visible)
+          notes.push_back("faces are an image of " + render::short_number(dpi_) + " dpi: " +
+                          (captions_.size() > 1 ? "panel " + render::panel_letter(panel) + " has " : "") +
+                          render::counted(visible->size(), "visible face", "visible faces") +
+                          ", more than --vector-faces " + std::to_string(figure_.vector_faces));
+        return;
+      }
+  }
+
+  static render::Projection projection(const DeepView& deep, const render::DrawList& list) {
+    return {deep.camera, deep.paper.x(), deep.paper.y(), render::bounds(list)};
+  }
+
+  /// Paints the faces `visible` as vector graphics, or without them all faces as pixels of resolution `dpi`,
+  /// with whole pixels in the panel's box. Paints lines and texts over them.
+  void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
+                  const PanelPlace& place, double scale, double dpi,
+                  const std::vector<std::uint32_t>* visible = nullptr) {
+    const DeepView deep = deep_view(whole, place, scale, dpi);
+    const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
+    const render::Projection on_paper = projection(deep, list);
+    if (visible == nullptr) canvas.picture(pixels(list, deep, place), place.box);
+    canvas.begin_clip(place.box);
+    if (visible != nullptr) {
+      const render::Lighting lighting;
+      const render::FaceLooks looks(list, on_paper, 1, lighting, true);
+      render::paint_faces(canvas, list, render::painting_order(list, on_paper, looks, *visible), looks,
+                          deep.origin);
+      render::paint_visible_lines(canvas, list, on_paper, depths, deep.origin);
+    }
+    render::paint_over(canvas, list, on_paper, depths, deep.origin);
+    canvas.end_clip();
+  }
+
+  render::Image pixels(const render::DrawList& list, const DeepView& deep, const PanelPlace& place) {
+    const Eigen::Vector2i size = (place.box.sizes() / deep.pixel).array().round().cast<int>();
     render::RasterOptions raster;
-    raster.width = drawn.x(), raster.height = drawn.y();
+    raster.width = deep.drawn.x(), raster.height = deep.drawn.y();
     raster.supersample = frames_.supersampling;
-    raster.unit = 1 / pixel;
+    raster.unit = 1 / deep.pixel;
     raster.labels = false;
     raster.even_edges = true;
     raster.background = frames_.paper();
-    const render::Image picture = rasterizer_.draw(render::under_lines(list), camera, raster);
+    const render::Image picture = rasterizer_.draw(render::under_lines(list), deep.camera, raster);
     render::Image part(size.x(), size.y(), render::kTransparent);
-    part.paste(picture, -from.x(), -from.y());
-    const render::DepthImage depths = rasterizer_.depths(list, camera, drawn.x(), drawn.y());
-    canvas.picture(part, place.box);
-    canvas.begin_clip(place.box);
-    render::paint_over(canvas, list, render::Projection(camera, paper.x(), paper.y(), render::bounds(list)),
-                       depths, place.box.min() - from.cast<double>() * pixel);
-    canvas.end_clip();
+    part.paste(picture, -deep.from.x(), -deep.from.y());
+    return part;
   }
 
   const run::RecordedRun& recorded_;
@@ -270,20 +393,21 @@ class FigureJob {
   render::FrameSpec frames_;
   double dpi_;
   Chosen chosen_;
-  const std::vector<trace::EventId>& events_;
   run::Framing framing_;
   run::FrameState state_;
   render::Rasterizer rasterizer_;
-  struct ViewPanels {
+  struct ShownState {
     const View* view;
-    std::vector<std::size_t> moments;
+    std::size_t moment;
   };
-  std::vector<ViewPanels> views_;      ///< the views with content, and their events
-  std::vector<Block> blocks_;          ///< one for each of views_
-  std::vector<std::string> captions_;  ///< (panels) description of each
+  std::vector<Block> blocks_;                    ///< one for each view with content, or one for all
+  std::vector<std::vector<ShownState>> panels_;  ///< of each block
+  std::vector<std::string> captions_;            ///< (panels) description of each
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;
   FigureLayout layout_;
+  std::vector<std::vector<std::uint32_t>>
+      visible_;  ///< (panels) faces to draw as vector graphics; empty: image
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_panels.hpp"
@@ -18,9 +19,15 @@ struct FigureSpec {
   double font_size = 8;      ///< points
   double line_width = 0.35;  ///< of a thin line, points; outlines and contacts are wider in proportion
   double dpi = 0;            ///< of rasterised parts; 0: default_dpi()
-  bool titles = false;       ///< below each panel its description; else only its letter
-  bool legend = true;        ///< one for all panels, or a colour bar
-  bool caption = false;      ///< below the figure
+  /// Faces of 3D bodies are vector graphics if no panel has more visible ones than this, else an image.
+  std::size_t vector_faces = 5000;
+  bool titles = false;         ///< below each panel its description; else only its letter
+  bool legend = true;          ///< one for all panels, or a colour bar
+  bool caption = false;        ///< below the figure
+  bool contact_sheet = false;  ///< all views in one block of panels, for comparison; each has its own scale
+  /// Name of the PDF for the TeX file that sets the texts over it; the PDF itself has none. Empty: no TeX
+  /// file.
+  std::string tex;
 };
 
 /// The minimum line width, in points: printing presses lose thinner lines.
@@ -32,9 +39,10 @@ double default_dpi(FigureSpec::Format format);
 
 struct Figure {
   std::string bytes;    ///< of the file
+  std::string tex;      ///< text of the TeX file, if requested
   std::string caption;  ///< text for print below the figure
   std::size_t panels = 0;
-  std::string left_out;  ///< requested states that are not shown, as text; empty: none
+  std::vector<std::string> notes;  ///< about states that are not shown, and faces that are an image
 };
 
 /// Draws the figure. `frames` defines the meaning of colours, the visible regions and the viewpoint. Throws

@@ -264,6 +264,14 @@ void paint_mark(render::Canvas& canvas, const AlignedBox2d& box, const render::L
       canvas.stroke(render::corners(box), true, {style.edge_of(item.colour), 0.5 * thick, 0});
       break;
     case Mark::translucent:
+      if (item.swatch) {
+        // As drawn: half of the mark over what is under the face, half over paper.
+        const AlignedBox2d half(box.min(), Vector2d(box.center().x(), box.max().y()));
+        canvas.fill({render::corners(half)}, item.swatch->under);
+        canvas.fill({render::corners(box)}, item.swatch->face);
+        canvas.stroke(render::corners(box), true, {item.swatch->edge, thick, 0});
+        break;
+      }
       canvas.fill({render::corners(box)}, render::with_alpha(item.colour, 80));
       canvas.stroke(render::corners(box), true, {render::mix(item.colour, style.ink, 0.3), thick, 0});
       break;

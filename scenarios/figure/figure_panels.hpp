@@ -10,6 +10,7 @@
 #include "scenarios/frames/frames.hpp"
 #include <lrbscope/render/camera.hpp>
 #include <lrbscope/render/draw_list.hpp>
+#include <lrbscope/render/image.hpp>
 
 namespace lrb::figure {
 
@@ -33,6 +34,13 @@ struct Chosen {
 /// Chooses the states. Of more than kMaxPanels layers it takes kMaxPanels, evenly spaced, with the first and
 /// the last. Throws InputError for numbers that the run does not have, and for choices that it cannot offer.
 Chosen choose(const run::RecordedRun& recorded, const Choice& choice);
+
+/// The resolution of the eye at reading distance, in pixels per inch.
+inline constexpr double kEyeDpi = 150;
+
+/// Returns true if two panels of the same size cannot be distinguished when printed in grey: almost no pixel
+/// of their content has a visibly different lightness.
+bool alike_in_grey(const render::Image& a, const render::Image& b);
 
 // The camera of a figure's panels: fitted to everything once, in a square with its own units; panels show
 // parts of this square.

@@ -1,5 +1,5 @@
 #pragma once
-/// Animations of frames, by ffmpeg.
+/// Animations of frames: animated PNG, or other formats by ffmpeg.
 
 #include <string>
 #include <vector>
@@ -8,9 +8,13 @@ namespace lrb::run {
 
 /// Returns true if ffmpeg, or the program named by $LRB_FFMPEG, is installed.
 bool has_ffmpeg();
-/// Throws InputError unless the name ends in .mp4, .gif or .webp, and EnvironmentError if ffmpeg is
-/// missing.
+/// Throws InputError unless the name ends in .png, .apng, .mp4, .gif or .webp, and EnvironmentError if the
+/// format needs ffmpeg and it is missing.
 void check_animation(const std::string& file);
+
+/// Returns an animated PNG, 12 frames per second, of frames that are PNG files. Frames equal to the one
+/// before extend it. Throws InputError if there are none, or if they differ in size or kind.
+std::string animated_png(const std::vector<std::string>& frames);
 
 /// Makes an animation of the frames in folder/frames, 12 per second. Throws EnvironmentError if ffmpeg fails;
 /// an existing file is then unchanged.

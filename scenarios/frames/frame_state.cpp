@@ -203,8 +203,9 @@ void FrameState::add_marks(render::Scene& scene, bool plain) const {
 
 render::Scene FrameState::scene(bool wrapper, bool plain) const {
   const SceneParts parts = scene_parts(wrapper);
-  render::Scene scene =
-      render::build_scene(parts.bodies, scene_highlight(wrapper, plain), scene_options(parts));
+  render::SceneOptions options = scene_options(parts);
+  options.borders = plain;
+  render::Scene scene = render::build_scene(parts.bodies, scene_highlight(wrapper, plain), options);
   add_marks(scene, plain);
   return scene;
 }

@@ -28,12 +28,17 @@ done <<<"$commands"
 for file in fig.pdf titled.pdf; do # 85 mm are 240.945 points
   "$pdf_text" <"$file" | grep -aE '/MediaBox \[ 0 0 240\.94[0-9]* ' >/dev/null || { echo "$file: expected a width of 85 mm"; exit 1; }
 done
-grep -q 'width="321.26"' tests.svg || { echo "tests.svg: expected a width of 85 mm"; exit 1; }
+grep -q 'width="85mm"' tests.svg || { echo "tests.svg: expected a width of 85 mm"; exit 1; }
 [ -s fig.caption.txt ] || { echo "fig.caption.txt is empty"; exit 1; }
 if command -v pdflatex >/dev/null; then
   block tex >paper.tex
   pdflatex -halt-on-error -interaction=batchmode paper.tex >/dev/null 2>&1 || { cat paper.log; exit 1; }
   [ -s paper.pdf ] || { echo "paper.pdf was not made"; exit 1; }
+  # The overlay of --tex, as the page describes.
+  sed 's/\\includegraphics{fig.pdf}/\\input{fig}/' paper.tex >overlay.tex
+  grep -q 'input{fig}' overlay.tex || { echo "overlay.tex: found no figure"; exit 1; }
+  pdflatex -halt-on-error -interaction=batchmode overlay.tex >/dev/null 2>&1 || { cat overlay.log; exit 1; }
+  grep -q 'Overfull' overlay.log && { cat overlay.log; exit 1; }
   echo "included by LaTeX"
 else
   echo "skipped: including the figure; needs pdflatex"

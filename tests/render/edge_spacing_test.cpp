@@ -1,9 +1,11 @@
 #include "render/edge_spacing.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "render/face_look.hpp"
 #include "tests/render/triangles.hpp"
 
 using namespace lrb;
@@ -97,10 +99,39 @@ TEST_CASE("the uniform spacing of edges is one number per style, weighted by cov
   list.triangles.push_back(t);
   const auto points = render::extent_points(list);
   const render::Projection projection(render::fit_top(points, 640, 480), 640, 480, render::bounds(list));
-  const std::vector<double> spacing = render::even_edge_spacing(list, projection);
-  REQUIRE(spacing.size() == list.triangles.size());
-  for (std::size_t i = 0; i < 10; ++i)
-    CHECK(spacing[i] == doctest::Approx(altitude(list.triangles[0], projection)));
-  CHECK(spacing[10] == doctest::Approx(altitude(list.triangles[10], projection)));
-  CHECK(spacing[11] == 0);
+  const std::vector<render::StyleSpacing> spacing = render::even_edge_spacing(list, projection);
+  REQUIRE(spacing.size() == 2);
+  CHECK(spacing[0].all == doctest::Approx(altitude(list.triangles[0], projection)));
+  CHECK(spacing[1].all == doctest::Approx(altitude(list.triangles[10], projection)));
+  CHECK(std::isinf(spacing[0].borders));
+}
+
+TEST_CASE("the spacing of borders depends on their length in the area of their style") {
+  // A grid of 8 x 8 squares of two triangles each, in blocks of 4 x 4 squares with borders.
+  render::DrawList list;
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y) {
+      render::DrawTriangle t;
+      t.edges = 7;
+      const bool left = x % 4 == 0, right = x % 4 == 3, low = y % 4 == 0, high = y % 4 == 3;
+      const auto corner = [&](int i, int j) { return Vector3d(x + i, y + j, 0); };
+      list.add_polygon({corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)}, t, {low, right, high, left});
+    }
+  const auto points = render::extent_points(list);
+  const render::Projection projection(render::fit_top(points, 640, 640), 640, 640, render::bounds(list));
+  const std::vector<render::StyleSpacing> spacing = render::even_edge_spacing(list, projection);
+  REQUIRE(spacing.size() == 1);
+  const double unit = projection.focal();
+  CHECK(spacing[0].all == doctest::Approx(unit / std::sqrt(2.0)));
+  CHECK(spacing[0].borders == doctest::Approx(6 * 64 * unit / 64));  // four blocks of circumference 16
+  // Only borders are left where faces are too small for the width of edges.
+  for (const double width : {1.0, 40.0}) {
+    CAPTURE(width);
+    list.edge_styles[0].width = static_cast<float>(width);
+    const render::FaceLooks looks(list, projection, 1, {}, true);
+    const render::FaceLook inner = looks.of(list.triangles[2 * 9]), corner = looks.of(list.triangles[0]);
+    CHECK(inner.edges == (width > 1 ? 0 : 3));
+    CHECK(corner.edges == (width > 1 ? 1 : 3));
+    CHECK(corner.edge_colour.a > 0);
+  }
 }

@@ -178,11 +178,11 @@ TEST_CASE("texts, lines and bodies stand out from the background of each style")
     CHECK(contrast(style.contact) > 4.5);
     for (const Side side : {Side::a, Side::b}) {
       CHECK(contrast(style.edge_of(style.body(side))) > 7);
-      CHECK(contrast(style.solid_2d(style.body(side))) > 3);
+      CHECK(contrast(style.solid_2d(style.body(side), side)) > 3);
       // The solid stands out from the regions around it, whose fill lets the paper through, and contacts from
       // both.
       const render::Rgba region = render::over(render::with_alpha(style.body(side), 78), style.paper);
-      CHECK(std::abs(luma(style.solid_2d(style.body(side))) - luma(region)) > 40);
+      CHECK(std::abs(luma(style.solid_2d(style.body(side), side)) - luma(region)) > 40);
       CHECK(std::abs(lab(style.contact, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})[0] -
                      lab(style.body(side), {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})[0]) > 8);
     }

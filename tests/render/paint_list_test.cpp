@@ -26,12 +26,15 @@ struct Notes : render::Canvas {
     bool closed = false;
     render::Pen pen;
   };
-  std::vector<Stroke> strokes;
+  std::vector<Stroke> drawn;
   std::vector<Vector2d> discs;
 
-  void fill(const std::vector<Loop>& /*loops*/, render::Rgba /*colour*/) override {}
+  void fill(const std::vector<Loop>& /*loops*/, render::Rgba /*colour*/, double /*spread*/) override {}
   void stroke(const Loop& points, bool closed, const render::Pen& pen) override {
-    strokes.push_back({points, closed, pen});
+    drawn.push_back({points, closed, pen});
+  }
+  void strokes(const std::vector<Loop>& lines, const render::Pen& pen) override {
+    for (const Loop& line : lines) stroke(line, false, pen);
   }
   void disc(const Vector2d& at, double /*radius*/, render::Rgba /*colour*/) override { discs.push_back(at); }
   void text(const render::PaperText& /*text*/) override {}
@@ -83,8 +86,8 @@ TEST_CASE("a line on top is split where a face begins to hide it, and dashed fro
   render::DrawList list = half_covered();
   list.lines.push_back(line_on_top(0));
   const Notes notes = painted(list);
-  REQUIRE(notes.strokes.size() == 2);
-  const Notes::Stroke &hidden = notes.strokes[0], &seen = notes.strokes[1];
+  REQUIRE(notes.drawn.size() == 2);
+  const Notes::Stroke &hidden = notes.drawn[0], &seen = notes.drawn[1];
   // From -0.8 to 0.8 of [-1, 1] on 200, moved by (10, 20).
   CHECK((seen.points.front() - Vector2d(30, 120)).norm() < 1e-9);
   CHECK((seen.points.back() - Vector2d(110, 120)).norm() < 1);
@@ -102,8 +105,8 @@ TEST_CASE("a line above or on a face is visible entirely") {
     render::DrawList list = half_covered();
     list.lines.push_back(line_on_top(z));
     const Notes notes = painted(list);
-    REQUIRE(notes.strokes.size() == 1);
-    CHECK(notes.strokes[0].pen.dash == 0);
+    REQUIRE(notes.drawn.size() == 1);
+    CHECK(notes.drawn[0].pen.dash == 0);
   }
 }
 
@@ -118,8 +121,8 @@ TEST_CASE("a hidden point on top is drawn as a ring") {
   const Notes notes = painted(list);
   REQUIRE(notes.discs.size() == 1);
   CHECK((notes.discs[0] - Vector2d(60, 120)).norm() < 1e-9);
-  REQUIRE(notes.strokes.size() == 1);
-  CHECK(notes.strokes[0].closed);
+  REQUIRE(notes.drawn.size() == 1);
+  CHECK(notes.drawn[0].closed);
 }
 
 TEST_CASE("items are painted either into a picture or over it") {
@@ -197,6 +200,24 @@ TEST_CASE("a picture on the pixel grid is unchanged") {
       });
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 3; ++x) CHECK(out.at(10 + x, 20 + y) == image.at(x, y));
+}
+
+TEST_CASE("texts of an SVG may be outlines, which need no font; its size may be in mm") {
+  if (!test::have_font()) return;
+  render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
+  canvas.text({{50, 20}, "<l>", 10, false, render::kBlack, render::Align::centre, render::kWhite});
+  const std::string svg = render::svg_file(canvas, {72 / 25.4 * 85, 40, 0.75, {}, render::kWhite, true});
+  CHECK(count(svg, "width=\"85mm\"") == 1);
+  CHECK(count(svg, "<text") == 0);
+  CHECK(count(svg, "aria-label=\"&lt;l&gt;\"") == 1);
+  CHECK(count(svg, "<path") == 2);  // the halo below the text
+  // An l is a rectangle between the other two glyphs, around the middle of the line.
+  const std::string l =
+      render::text_outlines({{50, 20}, "l", 10, false, render::kBlack, render::Align::centre});
+  CHECK(count(l, "L") >= 3);
+  CHECK(count(l, "Z") == 1);
+  const double x = std::stod(l.substr(1));
+  CHECK(std::abs(x - 50) < 1);
 }
 
 TEST_CASE("an SVG canvas holds pictures and clips") {

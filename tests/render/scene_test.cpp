@@ -85,6 +85,63 @@ TEST_CASE("lids have edges; a refined region's are lines, each once") {
   CHECK(scene.list.lines.size() == 3);  // one triangular lid over three real faces
 }
 
+TEST_CASE("borders of regions and creases are marked on request") {
+  const LrbRep rep = test::dented(shapes::box(), 1);  // a region under each of its faces; dents have creases
+  const Wrapper wrapper(rep);
+  const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
+  render::SceneOptions options;
+  const auto edges = [&](render::Layer layer, bool borders) {
+    std::size_t n = 0;
+    for (const render::DrawTriangle& t : render::build_scene(body, {}, options).list.triangles)
+      for (int i = 0; i < 3; ++i)
+        if (t.layer == layer) n += ((borders ? t.borders : t.edges) >> i & 1);
+    return n;
+  };
+  CHECK(edges(render::Layer::opaque, true) == 0);
+  CHECK(edges(render::Layer::translucent, true) == 0);
+  options.borders = true;
+  for (const render::Layer layer : {render::Layer::opaque, render::Layer::translucent}) {
+    CHECK(edges(layer, true) > 0);
+    CHECK(edges(layer, true) == edges(layer, false));
+  }
+  // A wrapper that is one region has no borders inside, and a ball has no creases.
+  const LrbRep ball = test::dented(shapes::icosphere(3), 0);
+  std::size_t creases = 0;
+  const std::vector<render::SceneBody> round = {{&ball, nullptr, {}, {}, ""}};
+  for (const render::DrawTriangle& t : render::build_scene(round, {}, options).list.triangles)
+    creases += t.borders;
+  CHECK(creases == 0);
+}
+
+TEST_CASE("in print, bodies differ in grey in all that is drawn of them") {
+  const LrbRep rep = test::dented(shapes::box(), 1);
+  const Wrapper wrapper(rep);
+  const std::vector<render::SceneBody> bodies = {{&rep, &wrapper, {}, {}, "A"},
+                                                 {&rep, &wrapper, {}, {}, "B"}};
+  render::SceneOptions options;
+  options.style = render::StyleName::print;
+  const render::Scene scene = render::build_scene(bodies, {}, options);
+  const auto swatch = [&](const std::string& text) {
+    const auto item = std::find_if(scene.key.begin(), scene.key.end(),
+                                   [&](const render::LegendItem& i) { return i.text == text; });
+    REQUIRE(item != scene.key.end());
+    REQUIRE(item->swatch);
+    return *item->swatch;
+  };
+  const auto a = swatch("A, pseudo faces"), b = swatch("B, pseudo faces");
+  const auto on_paper = [](render::Rgba c) { return render::luma(render::over(c, render::kWhite)); };
+  CHECK(on_paper(b.edge) - on_paper(a.edge) > 50);
+  CHECK(on_paper(b.face) - on_paper(a.face) > 20);
+  CHECK(on_paper(b.under) - on_paper(a.under) > 50);
+  // The swatch is what is drawn.
+  for (const render::DrawTriangle& t : scene.list.triangles) {
+    if (t.layer != render::Layer::translucent) continue;
+    const bool of_a = (t.id >> 31) == 0;
+    CHECK(t.colour == (of_a ? a : b).face);
+    CHECK(scene.list.edge_styles[t.edge_style].colour == (of_a ? a : b).edge);
+  }
+}
+
 TEST_CASE("poses move bodies; names and sides are distinguished") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 1);
   const Pose pose = Pose::rotation({0, 1, 0}, 0.4, {3, 0, 0});

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "render/pictures/panel.hpp"
+#include "scenarios/frames/animation.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tests/support/pixels.hpp"
@@ -114,6 +115,47 @@ TEST_CASE("--animate: by ffmpeg; rejected before drawing if it is missing") {
   ::unsetenv("LRB_FFMPEG");
   for (const char* none : {"y.mp4", "z.webp"}) CHECK(!std::filesystem::exists(folder / none));
   test::check_rejected(folder, {"run", "s.json", "-o", "other", "--animate", "x.avi"});
+}
+
+TEST_CASE("--animate to a PNG: all frames in one file, without ffmpeg") {
+  const test::Folder folder;
+  folder.write("s.json",
+               R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": "gear"}},
+    "frames": {"at": "refinement", "most": 3, "size": [321, 300]}})");
+  ::setenv("LRB_FFMPEG", "/no such program", 1);
+  test::succeed(folder, {"run", "s.json", "-o", "run", "--orbit", "40", "--animate", "x.png"});
+  ::unsetenv("LRB_FFMPEG");
+  // Programs without animation show the first frame.
+  const std::string png = test::slurp(folder / "x.png");
+  CHECK(render::read_png(folder / "x.png").image ==
+        render::read_png(folder / "run/frames/frame_0000.png").image);
+  CHECK(png.find(std::string("\0\0\0\x08"
+                             "acTL\0\0\0\3",
+                             12)) != std::string::npos);
+  // The chunks of a frame, as a PNG of their own, are the frame.
+  std::vector<std::string> frames;
+  for (const char* name : {"0", "1", "2"})
+    frames.push_back(test::slurp(folder / (std::string("run/frames/frame_000") + name + ".png")));
+  const auto data_of = [](const std::string& text, const std::string& type, std::size_t from) {
+    const std::size_t at = text.find(type, from);
+    REQUIRE(at != std::string::npos);
+    std::size_t length = 0;
+    for (std::size_t i = at - 4; i < at; ++i) length = length << 8 | static_cast<unsigned char>(text[i]);
+    return text.substr(at + 4, length);
+  };
+  std::size_t at = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    at = png.find("fdAT", at + 1);
+    CHECK(data_of(png, "fdAT", at).substr(4) == data_of(frames[i], "IDAT", 0));
+  }
+  // Equal frames extend the one before; frames of another size are rejected.
+  const std::string twice = run::animated_png({frames[0], frames[0], frames[1]});
+  const std::string control = data_of(twice, "fcTL", 0);
+  CHECK(control.substr(20, 4) == std::string("\0\2\0\14", 4));  // 2 of 12 seconds
+  CHECK(twice.size() < png.size());
+  render::write_png(render::Image(5, 5), folder / "small.png");
+  CHECK_THROWS_AS(run::animated_png({frames[0], test::slurp(folder / "small.png")}), InputError);
+  CHECK_THROWS_AS(run::animated_png({}), InputError);
 }
 
 TEST_CASE("collide stores its chosen view in the trace") {

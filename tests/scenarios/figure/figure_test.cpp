@@ -4,9 +4,12 @@
 
 #include <doctest/doctest.h>
 
+#include "scenarios/bodies/shapes.hpp"
 #include "scenarios/figure/figure_layout.hpp"
+#include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/shipped.hpp"
+#include "tests/support/pixels.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
@@ -16,6 +19,7 @@ using namespace lrb;
 using namespace lrb::figure;
 using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 using lrb::test::count;
 
 namespace {
@@ -111,8 +115,8 @@ TEST_CASE("titles of panels name the view if there are several") {
   frames.views[1].title = "Second";
   const Figure figure = draw_figure(s.run, frames, spec, run::kSilent);
   CHECK(figure.panels == 2);
-  CHECK(count(figure.bytes, ">(a) First, step ") == 1);
-  CHECK(count(figure.bytes, ">(b) Second, step ") == 1);
+  CHECK(count(figure.bytes, "aria-label=\"(a) First, step ") == 1);
+  CHECK(count(figure.bytes, "aria-label=\"(b) Second, step ") == 1);
 }
 
 TEST_CASE("panels of two bodies: time steps, including the first contact") {
@@ -130,6 +134,41 @@ TEST_CASE("panels of two bodies: time steps, including the first contact") {
   CHECK_THROWS_AS(choose(s.run, {Choice::By::steps, {100'000}}), InputError);
   CHECK_THROWS_AS(choose(s.run, {Choice::By::events, {100'000'000}}), InputError);
   CHECK_THROWS_AS(choose(s.run, {Choice::By::layers, {}}), InputError);
+}
+
+TEST_CASE("panels are alike if almost no pixel of their content differs visibly in grey") {
+  render::Image a(100, 100, render::kWhite);
+  a.fill({10, 10, 80, 80}, {100, 100, 100});
+  render::Image b = a;
+  b.fill({20, 20, 60, 60}, {100, 110, 105});  // hardly lighter
+  CHECK(alike_in_grey(a, b));
+  b.fill({20, 20, 5, 5}, render::kBlack);  // a few pixels
+  CHECK(alike_in_grey(a, b));
+  b.fill({20, 20, 10, 10}, render::kBlack);
+  CHECK_FALSE(alike_in_grey(a, b));
+  render::Image red(100, 100, render::kWhite), green = red;
+  red.fill({10, 10, 80, 80}, {170, 0, 0});
+  green.fill({10, 10, 80, 80}, {0, 87, 0});
+  CHECK(alike_in_grey(red, green));
+}
+
+TEST_CASE("the default series omits states that look like the one before, and reports it") {
+  const Shipped s("figure2");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  CHECK(draw_figure(s.run, {}, spec, run::kSilent).notes.empty());
+  spec.choice.panels = 26;
+  spec.width = 60 * kPointsPerMm;
+  const Figure many = draw_figure(s.run, {}, spec, run::kSilent);
+  CHECK(many.panels < 26);
+  CHECK(many.panels > 5);
+  CHECK(many.caption.find("outermost wrapper, 8 faces") != std::string::npos);
+  CHECK(many.caption.find("the body, 144 faces") != std::string::npos);
+  REQUIRE(many.notes.size() == 1);
+  CHECK(many.notes[0].find("omitted: in grey and at this width") != std::string::npos);
+  // Requested states are shown.
+  spec.choice = {Choice::By::events, {1, 2}};
+  CHECK(draw_figure(s.run, {}, spec, run::kSilent).panels == 2);
 }
 
 TEST_CASE("panels fill the width; omitted parts take no space") {
@@ -186,12 +225,12 @@ TEST_CASE("a figure of a 2D body consists of lines and text, without pixels") {
   const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
   CHECK(svg.panels == 6);
   CHECK(count(svg.bytes, "<image") == 0);
-  CHECK(count(svg.bytes, ">(f)</text>") == 1);
-  CHECK(count(svg.bytes, ">island, wrapper</text>") == 1);
+  CHECK(count(svg.bytes, "aria-label=\"(f)\"") == 1);
+  CHECK(count(svg.bytes, "aria-label=\"island, wrapper\"") == 1);
   CHECK(svg.caption.find("(a) outermost wrapper, 8 faces; (b)") != std::string::npos);
   spec.legend = false;
   const Figure bare = draw_figure(s.run, {}, spec, run::kSilent);
-  CHECK(count(bare.bytes, ">island, wrapper</text>") == 0);
+  CHECK(count(bare.bytes, "aria-label=\"island, wrapper\"") == 0);
   spec.titles = true;
   CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).bytes, "(a) outermost") == 1);
   spec.format = FigureSpec::Format::pdf;
@@ -200,22 +239,121 @@ TEST_CASE("a figure of a 2D body consists of lines and text, without pixels") {
   CHECK(pdf.bytes == draw_figure(s.run, {}, spec, run::kSilent).bytes);
 }
 
-TEST_CASE("a figure of 3D bodies: faces as pixels, contacts and texts as lines and text") {
+TEST_CASE("a figure of 3D bodies: vector graphics, or faces as pixels if there are many") {
   const Shipped s("stick_through_wall");
   FigureSpec spec;
   spec.format = FigureSpec::Format::svg;
   spec.dpi = 150;
   spec.choice.panels = 2;
+  const Figure vectors = draw_figure(s.run, {}, spec, run::kSilent);
+  CHECK(vectors.notes.empty());
+  CHECK(count(vectors.bytes, "<image") == 0);
+  CHECK(count(vectors.bytes, "stroke=\"#c41230\"") > 0);
+  CHECK(count(vectors.bytes, "width=\"85mm\"") == 1);
+  spec.vector_faces = 10;
   const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
   CHECK(count(svg.bytes, "<image") == svg.panels);
+  REQUIRE(svg.notes.size() == 1);
+  CHECK(svg.notes[0].starts_with("faces are an image of 150 dpi: panel (a) has "));
   CHECK(count(svg.bytes, "stroke=\"#c41230\"") > 0);  // palette::kContact
-  CHECK(count(svg.bytes, ">(a)</text>") == 1);
+  CHECK(count(svg.bytes, "aria-label=\"(a)\"") == 1);
+  CHECK(count(svg.bytes, "<text") == 0);
   spec.format = FigureSpec::Format::png;
   const Figure png = draw_figure(s.run, {}, spec, run::kSilent);
   const auto bytes = std::vector<std::uint8_t>(png.bytes.begin(), png.bytes.end());
   const render::DecodedPng read = render::decode_png(bytes);
   CHECK(read.image.width() == static_cast<int>(std::ceil(85 / 25.4 * 150)));
   CHECK(read.dpi == doctest::Approx(150).epsilon(0.001));
+}
+
+TEST_CASE("the figure of a mesh of 4,480 faces: below 300 kB, without pixels") {
+  const Shipped s("figure2_mesh");
+  const Figure pdf = draw_figure(s.run, s.scenario.frames, {}, run::kSilent);
+  CHECK(pdf.panels == 6);
+  CHECK(pdf.bytes.size() < 300'000);
+  CHECK(count(pdf.bytes, "/Subtype /Image") == 0);
+  CHECK(pdf.bytes == draw_figure(s.run, s.scenario.frames, {}, run::kSilent).bytes);
+}
+
+TEST_CASE("texts for TeX: none in the PDF, all in the overlay, escaped") {
+  const Shipped s("figure2");
+  FigureSpec spec;
+  spec.tex = "fig_1.pdf";
+  spec.titles = true;
+  render::FrameSpec black;
+  black.style = render::StyleName::print;
+  const Figure figure = draw_figure(s.run, black, spec, run::kSilent);
+  CHECK(count(figure.tex, "\\color[") == 0);
+  CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).tex, "\\color[rgb]{0.11,0.12,0.13}") > 0);
+  CHECK(count(figure.bytes, "/FontFile") == 0);
+  CHECK(count(figure.tex, "\\includegraphics{\\detokenize{fig_1.pdf}}") == 1);
+  CHECK(count(figure.tex, "\\begin{picture}(240.94,") == 1);
+  CHECK(count(figure.tex, "{\\smash{(a) outermost") == 1);
+  CHECK(count(figure.tex, "{\\smash{island, wrapper}}") == 1);
+  CHECK(escape_tex("50 % of a_b & {c}, 1\u202f000 \u2265 \\") ==
+        "50 \\% of a\\_b \\& \\{c\\}, 1\\,000 $\\geq$ \\textbackslash{}");
+  spec.tex.clear();
+  const Figure plain = draw_figure(s.run, {}, spec, run::kSilent);
+  CHECK(plain.tex.empty());
+  CHECK(count(plain.bytes, "/FontFile") > 0);
+}
+
+TEST_CASE("a contact sheet: all views in one block, titled with their options") {
+  const test::Folder folder;
+  test::Outcome o = test::run(folder, {"figure", "figure2_mesh", "--try-views", "-o", "views.svg"});
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  const std::string sheet = test::slurp(folder / "views.svg");
+  for (const char* up : {"--up z --from ", "--up y --from ", "--up x --from "}) {
+    CAPTURE(std::string(up));
+    CHECK(count(test::slurp(folder / "views.caption.txt"), up) == 2);
+  }
+  CHECK(count(sheet, "aria-label=\"(f)") == 1);
+  CHECK(count(sheet, "aria-label=\"(g)") == 0);
+  o = test::run(folder, {"figure", "figure2_mesh", "--try-views", "--up", "y", "-o", "around.svg"});
+  CHECK(count(test::slurp(folder / "around.caption.txt"), "--up y --from ") == 6);
+  test::check_rejected(folder, {"figure", "figure2", "--try-views", "-o", "flat.svg"});
+}
+
+TEST_CASE("--up auto: the axis on which the body is most stable, as a note") {
+  const test::Folder folder;
+  // A table: a plate on four thin legs along y.
+  std::string obj;
+  int first = 1;
+  const auto write_box = [&](const Vector3d& low, const Vector3d& high) {
+    const Mesh box = shapes::box(low, high);
+    for (const Vector3d& x : box.vertices)
+      obj += "v " + std::to_string(x.x()) + " " + std::to_string(x.y()) + " " + std::to_string(x.z()) + "\n";
+    for (FaceId f = 0; f < box.face_count(); ++f) {
+      obj += "f";
+      for (const VertexId v : box.face(f)) obj += " " + std::to_string(first + static_cast<int>(v));
+      obj += "\n";
+    }
+    first += static_cast<int>(box.vertices.size());
+  };
+  write_box({0, 1, 0}, {2, 1.2, 1.5});
+  for (const double x : {0.2, 1.7})
+    for (const double z : {0.2, 1.2}) write_box({x, 0, z}, {x + 0.1, 0.99, z + 0.1});
+  folder.write("table.obj", obj);
+  test::Outcome o =
+      test::run(folder, {"figure", "table.obj", "--up", "auto", "--panels", "1", "-o", "auto.svg"});
+  CAPTURE(o.err);
+  REQUIRE(o.code == 0);
+  CHECK(o.err.find("--up auto: the body is most stable with --up y") != std::string::npos);
+  test::succeed(folder, {"figure", "table.obj", "--up", "y", "--panels", "1", "-o", "given.svg"});
+  CHECK(test::slurp(folder / "auto.svg") == test::slurp(folder / "given.svg"));
+  test::check_rejected(folder, {"inspect", "table.obj", "--render", "--up", "auto", "-o", "no.png"});
+}
+
+TEST_CASE("two bodies: one view unless more are requested") {
+  const test::Folder folder;
+  const auto panels = [&](const std::vector<std::string>& more) {
+    test::succeed(folder,
+                  test::joined({"figure", "stick_through_wall", "--panels", "2", "-o", "fig.svg"}, more));
+    return count(test::slurp(folder / "fig.svg"), "aria-label=\"(");
+  };
+  CHECK(panels({}) == 2);
+  CHECK(panels({"--close-up"}) > 2);
 }
 
 TEST_CASE("colours of numbers mean the same in all panels") {
@@ -226,7 +364,7 @@ TEST_CASE("colours of numbers mean the same in all panels") {
   render::FrameSpec frames;
   frames.colour_by = render::FrameSpec::ColourBy::face_tests;
   const Figure all = draw_figure(s.run, frames, spec, run::kSilent);
-  CHECK(count(all.bytes, ">face tests</text>") == 1);
+  CHECK(count(all.bytes, "aria-label=\"face tests\"") == 1);
 }
 
 TEST_CASE("lrbscope figure: files, and errors before it writes anything") {
@@ -242,6 +380,7 @@ TEST_CASE("lrbscope figure: files, and errors before it writes anything") {
   CHECK(test::run(folder, {"figure", "cube.obj", "-o", "cube.svg", "--columns", "1", "--up", "y"}).code == 0);
   const std::vector<std::vector<std::string>> bad = {
       {"figure", "figure1", "-o", "fig.eps"},
+      {"figure", "figure1", "-o", "fig.svg", "--tex"},
       {"figure", "figure1", "-o", "fig.pdf", "--width", "85"},
       {"figure", "figure1", "-o", "fig.pdf", "--width", "2mm"},
       {"figure", "figure1", "-o", "fig.pdf", "--line-width", "0.1pt"},

@@ -37,7 +37,10 @@ struct EdgeStyle {
 struct DrawTriangle {
   std::array<Eigen::Vector3d, 3> x{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   Rgba colour;
-  std::uint8_t edges = 0;       ///< bit i: the edge from corner i to corner i + 1 mod 3 is drawn
+  std::uint8_t edges = 0;  ///< bit i: the edge from corner i to corner i + 1 mod 3 is drawn
+  /// Bit i: edge i is a border of a group of faces. With RasterOptions::even_edges it stays where faces are
+  /// too small for their edges.
+  std::uint8_t borders = 0;
   std::uint8_t edge_style = 0;  ///< index into DrawList::edge_styles
   Layer layer = Layer::opaque;
   bool lit = true;           ///< shaded by its normal, flat over the triangle; else the plain colour
@@ -97,8 +100,10 @@ struct DrawList {
   /// Returns the index of a style, which is added if the list has no equal one. Throws InputError beyond 256
   /// styles.
   std::uint8_t edge_style(const EdgeStyle& style);
-  /// Adds a convex polygon as a fan, with its outline as edges.
-  void add_polygon(const std::vector<Eigen::Vector3d>& corners, const DrawTriangle& like);
+  /// Adds a convex polygon as a fan, with its outline as edges. `borders`: DrawTriangle::borders of the
+  /// polygon's edges; empty: none.
+  void add_polygon(const std::vector<Eigen::Vector3d>& corners, const DrawTriangle& like,
+                   const std::vector<bool>& borders = {});
   void append(const DrawList& other);
   bool empty() const;
 };

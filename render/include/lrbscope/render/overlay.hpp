@@ -52,6 +52,12 @@ struct LegendItem {
   enum class Mark : std::uint8_t { solid, translucent, line, dashed, point } mark = Mark::solid;
   Rgba colour;
   std::string text;
+  /// The colours that translucent faces are drawn in: of the face, of its edges, and of the surface under it.
+  /// nullopt: derived from `colour`.
+  struct Swatch {
+    Rgba face, edge, under;
+  };
+  std::optional<Swatch> swatch = {};
 };
 
 /// Meaning of the viridis colours in this picture.

@@ -125,6 +125,8 @@ struct SceneOptions {
   bool real_edges = true;
   /// 3D: faces in contact get a border that is visible through faces in front of it.
   bool contact_rims = false;
+  /// 3D: marks the borders of regions, and the creases of the body, as DrawTriangle::borders.
+  bool borders = false;
   float scale = 1;  ///< factor of line widths and points: for large pictures and print
   StyleName style = StyleName::screen;
 };

@@ -172,12 +172,14 @@ struct Style {
   Rgba ink, faint, rule;       ///< text; secondary text; thin frames
   std::array<Rgba, 2> bodies;  ///< A's and B's
   Rgba contact, refining, under_test;
-  Rgba front, back;    ///< faces outside the focus of a picture of findings
-  Rgba edge_ink;       ///< colour that lines along bodies are mixed towards
-  Rgba solid_ink;      ///< colour that solids under regions are mixed towards, in 2D
-  double solid_share;  ///< mixing share of solid_ink
-  double lid_pale;     ///< share by which pseudo faces fade towards the paper
-  float weight;        ///< factor of the widths of lines and points: paper resolves finer ones than a screen
+  Rgba front, back;  ///< faces outside the focus of a picture of findings
+  Rgba edge_ink;     ///< colour that lines along bodies are mixed towards
+  Rgba solid_ink;    ///< colour that solids under regions are mixed towards, in 2D
+  // Of A and B, which differ in lightness also where colours are pale or dark:
+  std::array<double, 2> solid_share;  ///< mixing share of solid_ink
+  std::array<double, 2> lid_pale;     ///< share by which pseudo faces fade towards the paper
+  std::array<double, 2> edge_share;   ///< mixing share of edge_ink for lines along the body's wrapper
+  float weight;  ///< factor of the widths of lines and points: paper resolves finer ones than a screen
 
   /// Returns the colour of lines along primitives of colour `c`: outlines, and edges of translucent faces.
   /// (Edges on solid faces are palette::edge_of() in every style, because they are not on paper.)
@@ -186,7 +188,13 @@ struct Style {
   constexpr Rgba pale(Rgba c, double share) const { return mix(c, paper, share); }
   /// Returns the colour of a solid under pseudo faces in 2D, which contrasts with the regions around it
   /// (figure 1 of the paper).
-  constexpr Rgba solid_2d(Rgba c) const { return mix(c, solid_ink, solid_share); }
+  constexpr Rgba solid_2d(Rgba c, Side side) const {
+    return mix(c, solid_ink, solid_share[static_cast<std::size_t>(side)]);
+  }
+  /// Returns the colour of the wrapper's lines of a body of colour `c`.
+  constexpr Rgba wrapper_edge(Rgba c, Side side) const {
+    return mix(c, edge_ink, edge_share[static_cast<std::size_t>(side)]);
+  }
   /// Returns the colour of a body.
   constexpr Rgba body(Side side) const { return bodies[static_cast<std::size_t>(side)]; }
   /// Returns this style's colour for one of the palette's kinds; any other colour unchanged.

@@ -53,6 +53,7 @@ std::string paint(const std::string& what, Rgba c);
 /// Returns font and size of text with height `height` from ascent to descent, as in TextStyle.
 std::string font(double height);
 /// Returns the root element's start tag. `units_per_pixel`: units of the view box per screen pixel.
-std::string svg_open(double width, double height, double units_per_pixel = 1);
+/// `millimetres`: the size is in mm, not in pixels.
+std::string svg_open(double width, double height, double units_per_pixel = 1, bool millimetres = false);
 
 }  // namespace lrb::render::svg_text
