@@ -49,7 +49,7 @@ PYTHON
 # Fonts are the wheel's. Pictures are drawn, or refused in one line, with or without Mesa.
 lrbscope doctor >doctor.txt 2>&1 || true
 grep -q "$work/venv/share/lrbscope/DejaVuSans.ttf" doctor.txt || { cat doctor.txt && fail "the program does not use the fonts of the wheel"; }
-if lrbscope --quiet run collision --max-frames 2 -o run >run.txt 2>&1; then
+if lrbscope --quiet run collision -o run >run.txt 2>&1; then
   [ -s run/index.html ] && echo "lrbscope run: drawn"
 else
   code=$?
