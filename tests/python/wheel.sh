@@ -58,5 +58,5 @@ else
   lrbscope --quiet run collision --frames none -o without || fail "a run without frames failed"
 fi
 if "$python" -c 'import pytest' 2>/dev/null; then
-  bash "$here/python.sh" "$work/venv/bin/python" "$(dirname "$(ls -d "$work"/venv/lib*/python*/site-packages/lrbscope)")"
+  bash "$here/python.sh" "$work/venv/bin/python" "$("$work/venv/bin/python" -c 'import os, lrbscope; print(os.path.dirname(os.path.dirname(lrbscope.__file__)))')"
 fi
