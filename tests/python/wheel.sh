@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # wheel.sh WHEEL PYTHON: checks that the programs of a wheel need no library but those of glibc and of gcc, of the versions that the
 # wheel's tag allows; installs it in a new environment of PYTHON, without an index (which needs NumPy there), and runs the program
-# and a query; then the tests of the package, if PYTHON has pytest.
+# and a query; then the tests of the package, if PYTHON has pytest and pictures can be drawn.
 set -euo pipefail
 wheel=$(readlink -f "${1:?a wheel}") python=${2:?a Python}
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -49,14 +49,15 @@ PYTHON
 # Fonts are the wheel's. Pictures are drawn, or refused in one line, with or without Mesa.
 lrbscope doctor >doctor.txt 2>&1 || true
 grep -q "$work/venv/share/lrbscope/DejaVuSans.ttf" doctor.txt || { cat doctor.txt && fail "the program does not use the fonts of the wheel"; }
-if lrbscope --quiet run collision --max-frames 2 -o run >run.txt 2>&1; then
-  [ -s run/index.html ] && echo "lrbscope run: drawn"
+drawn=0
+if lrbscope --quiet run collision -o run >run.txt 2>&1; then
+  [ -s run/index.html ] && echo "lrbscope run: drawn" && drawn=1
 else
   code=$?
   [ $code = 3 ] && [ "$(wc -l <run.txt)" = 1 ] || { cat run.txt && fail "lrbscope run ended with $code"; }
   echo "lrbscope run: refused: $(cat run.txt)"
   lrbscope --quiet run collision --frames none -o without || fail "a run without frames failed"
 fi
-if "$python" -c 'import pytest' 2>/dev/null; then
-  bash "$here/python.sh" "$work/venv/bin/python" "$(dirname "$(ls -d "$work"/venv/lib*/python*/site-packages/lrbscope)")"
+if [ $drawn = 1 ] && "$python" -c 'import pytest' 2>/dev/null; then
+  bash "$here/python.sh" "$work/venv/bin/python" "$("$work/venv/bin/python" -c 'import os, lrbscope; print(os.path.dirname(os.path.dirname(lrbscope.__file__)))')"
 fi
