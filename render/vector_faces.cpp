@@ -351,6 +351,7 @@ class PaintSorter {
     const bool few = faces_.size() < kMaxParts * list_.triangles.size();
     for (std::size_t k = 0; few && k + 1 < path.size(); ++k)
       for (std::size_t l = 0; l + 1 < path.size(); ++l) {
+        if (l == k) continue;
         std::vector<ScreenFace> parts = split(faces_[path[k]].face, faces_[path[l]].face);
         if (parts.size() < 2) continue;
         replace(path[k], std::move(parts));
