@@ -110,7 +110,8 @@ bool is_visible(const ScreenFace& f, const DepthImage& depths, double unit) {
   const int x1 = std::min(depths.width - 1, static_cast<int>(std::ceil(box.max().x() / unit))),
             y1 = std::min(depths.height - 1, static_cast<int>(std::ceil(box.max().y() / unit)));
   // The rasterizer rounds corners to a fraction of a pixel, which changes depths by less than this.
-  const double slack = 0.25 * unit * (std::abs(f.depth.x()) + std::abs(f.depth.y())) + 1e-6;
+  const double slack = 0.02 * unit * (std::abs(f.depth.x()) + std::abs(f.depth.y())) + 1e-6;
+  constexpr double kBeside = 50;  // slack for a point that is not the centre of its pixel: a whole pixel
   bool covers = false;
   for (int y = first(box.min().y()); y <= y1; ++y)
     for (int x = first(box.min().x()); x <= x1; ++x) {
@@ -132,7 +133,7 @@ bool is_visible(const ScreenFace& f, const DepthImage& depths, double unit) {
     const int x = static_cast<int>(std::floor(at.x() / unit)),
               y = static_cast<int>(std::floor(at.y() / unit));
     if (x < 0 || y < 0 || x >= depths.width || y >= depths.height) continue;
-    if (f.depth_at(at) - 4 * slack <= depths.at(x, y)) return true;
+    if (f.depth_at(at) - kBeside * slack <= depths.at(x, y)) return true;
   }
   return false;
 }
@@ -346,13 +347,16 @@ class PaintSorter {
       if (!seen.insert(*next).second) break;
     }
     path.erase(path.begin(), std::find(path.begin(), path.end(), path.back()));
-    for (std::size_t k = 0; k + 1 < path.size(); ++k) {
-      const std::size_t i = path[k];
-      std::vector<ScreenFace> parts = split(faces_[i].face, faces_[path[k + 1]].face);
-      if (parts.size() < 2 || faces_.size() > kMaxParts * list_.triangles.size()) continue;
-      replace(i, std::move(parts));
-      return true;
-    }
+    // One of the faces crosses the plane of another one, or they would not overlap cyclically.
+    const bool few = faces_.size() < kMaxParts * list_.triangles.size();
+    for (std::size_t k = 0; few && k + 1 < path.size(); ++k)
+      for (std::size_t l = 0; l + 1 < path.size(); ++l) {
+        if (l == k) continue;
+        std::vector<ScreenFace> parts = split(faces_[path[k]].face, faces_[path[l]].face);
+        if (parts.size() < 2) continue;
+        replace(path[k], std::move(parts));
+        return true;
+      }
     faces_[path[0]].waits = 0;
     set_ready(path[0]);
     return true;
