@@ -283,7 +283,7 @@ TEST_CASE("texts for TeX: none in the PDF, all in the overlay, escaped") {
   render::FrameSpec black;
   black.style = render::StyleName::print;
   const Figure figure = draw_figure(s.run, black, spec, run::kSilent);
-  CHECK(count(figure.tex, "\\color[") == 0);
+  CHECK(count(figure.tex, "\\color[rgb]") == 0);
   CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).tex, "\\color[rgb]{0.11,0.12,0.13}") > 0);
   CHECK(count(figure.bytes, "/FontFile") == 0);
   CHECK(count(figure.tex, "\\includegraphics{\\detokenize{fig_1.pdf}}") == 1);

@@ -229,7 +229,7 @@ TEST_CASE("paper --experiment: only the requested parts, on your own bodies; pic
   }
   CHECK(page.find("href=\"heat_maps.png\"><img src=\"data:image/") != std::string::npos);
   // In the page itself, where a box says what it is under the pointer.
-  CHECK(page.find("href=\"refinement_tree.svg\"><svg") != std::string::npos);
+  CHECK(page.find("<div class=\"live-picture\" tabindex=\"0\"><svg") != std::string::npos);
   CHECK(page.find("</title></rect>") != std::string::npos);
   const render::Image heat = render::read_png(folder / "mine/heat_maps.png").image;
   CHECK(heat.width() > 2000);
