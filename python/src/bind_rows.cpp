@@ -149,7 +149,7 @@ ascending order of their triangles. max_pairs: a query that finds more is an Inp
 Returns NearPairs.
 
 >>> pairs = near_pairs(cube, cube, shifted(3, 0, 0), within=2)
->>> len(pairs), pairs.upper.max(), pairs.points[0, :, 0].tolist()
+>>> len(pairs), float(pairs.upper.max()), pairs.points[0, :, 0].tolist()
 (62, 2.0, [1.0, 3.0]))");
 }
 
