@@ -9,4 +9,5 @@ done
 package=$(cd "$package" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")"
 export PYTHONPATH=$package PYTHONDONTWRITEBYTECODE=1
-exec "$python" -m pytest -q -p no:cacheprovider "${@:3}"
+# Ctrl-C, which tests send, is ignored in background jobs.
+exec env --default-signal=INT "$python" -m pytest -q -p no:cacheprovider "${@:3}"
