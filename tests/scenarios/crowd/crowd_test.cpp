@@ -508,7 +508,9 @@ TEST_CASE("schema and reader agree on every key of a query") {
   const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
   const json& keys = scenario["properties"]["query"]["properties"];
   REQUIRE(keys.size() > 10);
-  for (const auto& [key, about] : keys.items()) {
+  for (const auto& item : keys.items()) {
+    const std::string& key = item.key();
+    const json& about = item.value();
     CAPTURE(key);
     json value = true;
     if (about.contains("enum"))
