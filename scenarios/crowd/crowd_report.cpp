@@ -159,9 +159,9 @@ void add_charts(report::Document& doc, const CrowdRun& run) {
              {"one inside the other",
               [](S s) { return count(s, Relation::a_inside_b) + count(s, Relation::b_inside_a); }},
              {"bodies in contact", [n](S s) { return bodies_in_contact(s, n); }}});
-  add_chart(doc, run, "Distance and depth by step", "length, of the extreme pair",
-            {{"smallest distance of separate bodies", smallest_distance},
-             {"largest penetration depth", largest_depth}});
+  add_chart(doc, run, "Smallest distance of separate bodies by step", "length",
+            {{"smallest distance", smallest_distance}});
+  add_chart(doc, run, "Largest penetration depth by step", "length", {{"largest depth", largest_depth}});
   add_chart(doc, run, "Work by step", "number in the step",
             {{"face tests", [](S s) { return sum(s).face_tests; }},
              {"refinements", [](S s) { return sum(s).refinements; }}});

@@ -580,8 +580,9 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
   const std::string text = io::read_text(folder / "c/trace.json");
   CHECK(test::trace_faults(json::parse(text)) == "");
   const std::string page = io::read_text(folder / "c/index.html");
-  for (const char* shown : {"smallest distance", "largest depth", "contact kind there", "most near pairs",
-                            "Distance and depth by step"})
+  for (const char* shown :
+       {"smallest distance", "largest depth", "contact kind there", "most near pairs",
+        "Smallest distance of separate bodies by step", "Largest penetration depth by step"})
     CHECK(page.find(shown) != std::string::npos);
   const crowd::CrowdTrace trace = crowd::read_crowd_trace(text, "t.json");
   CHECK(trace.crowd.more.distance);
