@@ -7,7 +7,7 @@ python=${1:-} tree=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # The configuration of scikit-build-core.
-cmake -S "$tree" -B "$work/wheel" -G Ninja -DSKBUILD=2 -DSKBUILD_SCRIPTS_DIR=scripts -DCMAKE_BUILD_TYPE=Release -DLRB_BUILD_TESTS=OFF \
+cmake -S "$tree" -B "$work/wheel" -G Ninja -DSKBUILD=2 "-DSKBUILD_SCRIPTS_DIR=$work/scripts" -DCMAKE_BUILD_TYPE=Release -DLRB_BUILD_TESTS=OFF \
   "-DPython3_EXECUTABLE=$python" >"$work/configure.log" 2>&1 || { cat "$work/configure.log" && exit 1; }
 cmake --install "$work/wheel" --component python --prefix "$work/installed" >/dev/null
 [ "$(ls "$work/installed")" = lrbscope ] || { echo "the wheel has more than the package:" && ls "$work/installed" && exit 1; }
