@@ -28,9 +28,9 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   if (request.is_coarse()) check_request(request);
   result.recursion = request.recursion;
   result.mode = request.mode;
-  const bool is_exact_walk = request.recursion == Recursion::complete && !request.is_coarse();
+  const bool is_coarse = request.is_coarse() && !is_answered_exactly(a, b, request);
   // Most queries of scattered bodies end here. With a probe, TreeQuery makes the test.
-  const bool tests_roots = !Probe::kEnabled && is_exact_walk;
+  const bool tests_roots = !Probe::kEnabled && request.recursion == Recursion::complete && !is_coarse;
   const bool ends_at_roots = tests_roots && roots_are_apart(a.tree(), pose_a, b.tree(), pose_b);
   if (ends_at_roots && !request.separation && a.closed() && b.closed()) {
     set_separate(result);
@@ -42,7 +42,7 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   {
     const exact::FloatingPredicates floating(request.predicates == Predicates::floating);
-    if (request.is_coarse() && !is_answered_exactly(a, b, request)) {
+    if (is_coarse) {
       CoarseQuery<Probe>(context, request, result, probe).run();
     } else {
       bool apart = false;

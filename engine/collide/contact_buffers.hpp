@@ -96,7 +96,7 @@ struct EnclosedBuffers {
     bool crosses = false;      ///< the simplex crosses another one
   };
   SparseNumbers simplices, near;  ///< simplices in contact, and their corners
-  std::vector<Cuts> cuts;         ///< of each numbered simplex
+  std::vector<Cuts> cuts;         ///< by number of the simplex
   ParitySets sides;               ///< of the near vertices: joined if it is known whether their sides differ
   enum class Location : std::uint8_t { unknown, inside, outside, on_surface };
   std::vector<Location> location;  ///< of near vertices: those on the other surface, and leaders
@@ -132,11 +132,11 @@ struct ContactBuffers {
   DisjointSets sets{0};  ///< of points
   // Chains of edges.
   std::vector<ContactGraph::Edge> edges;
-  std::vector<std::uint32_t> first_end;  ///< of each point, and the number of ends
-  std::vector<std::uint32_t> ends;       ///< edges at each point, ascending
+  std::vector<std::uint32_t> first_end;  ///< (|points| + 1) index into `ends`, by point
+  std::vector<std::uint32_t> ends;       ///< edges that end at a point, ascending; point by point
   std::vector<std::uint8_t> is_used;     ///< by edge
   std::vector<std::uint32_t> chain;      ///< points
-  std::vector<std::uint32_t> counts;     ///< of each component
+  std::vector<std::uint32_t> counts;     ///< number of pairs, by component
   EnclosedBuffers enclosed[2];           ///< vertices of A and of B
 };
 

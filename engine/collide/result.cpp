@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <string>
-#include <utility>
 
 #include "engine/collide/query_context.hpp"
 #include <lrbscope/collide.hpp>

@@ -225,7 +225,7 @@ class TreeQuery {
         if (rules_.gives_up(too_many)) break;
       if (too_many) reject_pairs(pair_limit_);
     }
-    // Had the roots' own boxes overlapped, those of their children would have been tested, too.
+    // If the roots' own boxes had overlapped, their children's boxes would have been tested.
     ends_at_roots_ = k.box_tests == 1 && !(k.nodes_a[0].is_leaf && k.nodes_b[0].is_leaf);
     result_.counters.node_pairs += k.node_pairs;
     result_.counters.box_tests += k.box_tests;

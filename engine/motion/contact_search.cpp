@@ -383,8 +383,6 @@ void FirstContactSearch::contact_in(TimeSpan span, SimplexPair pair) {
   result_.outcome = MotionOutcome::contact;
   result_.t0 = span.begin;
   result_.t1 = span.end;
-  // Wider than requested: the time before the contact is ambiguous.
-  result_.grazing = span.end - span.begin > request_.tolerance;
   result_.pair = pair;
   write_features(span.begin, pair);
   notify(span.begin, span.end);

@@ -188,8 +188,8 @@ FirstContactResult FirstContactSearch::finish() {
   // Ambiguous intervals just before the contact need not make the interval wider than requested.
   const bool is_wide =
       result_.outcome == MotionOutcome::undecided || result_.t1 - result_.t0 > request_.tolerance;
-  result_.grazing = is_wide && (result_.grazing || (result_.finished && !result_.ambiguous.empty()));
-  if (result_.grazing && result_.unresolved == Unresolved::nothing) result_.unresolved = Unresolved::rounding;
+  result_.grazing = is_wide && result_.finished;
+  if (result_.grazing) result_.unresolved = Unresolved::rounding;
   return std::move(result_);
 }
 

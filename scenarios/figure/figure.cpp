@@ -401,7 +401,7 @@ class FigureJob {
     std::size_t moment;
   };
   std::vector<Block> blocks_;                    ///< one for each view with content, or one for all
-  std::vector<std::vector<ShownState>> panels_;  ///< of each block
+  std::vector<std::vector<ShownState>> panels_;  ///< by block
   std::vector<std::string> captions_;            ///< (panels) description of each
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;

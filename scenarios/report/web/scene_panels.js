@@ -968,14 +968,7 @@ class RowLinks {
       link = { row, sort, numbers: numbers.map(Number) };
     if (sort === "region" && !this.events.bodies[link.numbers[0]].complete) return;
     if (sort === "boxes" && !this.controls) return;
-    row.className = "leads";
-    row.tabIndex = 0;
-    row.addEventListener("click", () => this.follow(link));
-    row.addEventListener("keydown", (e) => {
-      if (e.key !== "Enter") return;
-      e.preventDefault();
-      this.follow(link);
-    });
+    linkRow(row, () => this.follow(link));
     this.rows.push(link);
   }
 

@@ -214,16 +214,20 @@ class SceneCamera {
 }
 
 // ---- clicks in the view: picks the face
+/** Calls `action` for clicks on a canvas, but not at the end of a rotation. */
+function onClick(canvas, action) {
+  let down = null;
+  canvas.addEventListener("pointerdown", (e) => (down = [e.clientX, e.clientY]));
+  canvas.addEventListener("click", (e) => {
+    if (!down || Math.hypot(e.clientX - down[0], e.clientY - down[1]) <= 4) action(e);
+  });
+}
+
 class Picker {
   constructor(view) {
     this.view = view;
     const { canvas, selection } = view;
-    let down = null;
-    canvas.addEventListener("pointerdown", (e) => {
-      down = [e.clientX, e.clientY];
-    });
-    canvas.addEventListener("click", (e) => {
-      if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was rotated
+    onClick(canvas, (e) => {
       const hit = this.under(e.clientX, e.clientY, e.altKey);
       if (hit) selection.pickFace(hit.side, hit.face, hit.simplex);
       else selection.pick(null);

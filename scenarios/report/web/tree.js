@@ -242,21 +242,12 @@ class TreePage {
   }
 
   connect() {
-    const selectable = (element, id) => {
-      element.addEventListener("click", () => {
-        this.selectId(id);
-        byId("stage").scrollIntoView({ block: "nearest" });
-      });
+    const follow = (id) => () => {
+      this.selectId(id);
+      byId("stage").scrollIntoView({ block: "nearest" });
     };
-    for (const box of document.querySelectorAll("[data-node]")) selectable(box, box.dataset.node);
-    for (const row of document.querySelectorAll("tr[data-to^=node]")) {
-      row.className = "leads";
-      row.tabIndex = 0;
-      selectable(row, row.dataset.to.slice(5));
-      row.addEventListener("keydown", (e) => {
-        if (e.key === "Enter") row.click();
-      });
-    }
+    for (const box of document.querySelectorAll("[data-node]")) box.addEventListener("click", follow(box.dataset.node));
+    for (const row of document.querySelectorAll("tr[data-to^=node]")) linkRow(row, follow(row.dataset.to.slice(5)));
     byId("node").onchange = () => this.selectId(byId("node").value);
     window.addEventListener("hashchange", () => this.selectId(location.hash.replace(/^#node=/, "")));
     if (!this.view) return;
@@ -268,11 +259,7 @@ class TreePage {
       byId("orthographic").setAttribute("aria-pressed", String(this.view.camera.orthographic));
     };
     document.addEventListener("keydown", (e) => this.press(e));
-    const { canvas } = this.view;
-    let down = null;
-    canvas.addEventListener("pointerdown", (e) => (down = [e.clientX, e.clientY]));
-    canvas.addEventListener("click", (e) => {
-      if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) > 4) return; // the view was turned
+    onClick(this.view.canvas, (e) => {
       const hit = this.view.nearest(e.clientX, e.clientY, [this.view.views[0].real]),
         leaf = hit ? this.nodes.leafOf(hit.face) : -1;
       if (leaf >= 0) this.select(leaf);
