@@ -6,6 +6,12 @@
 
 namespace lrb::cli {
 
+PoseLines::PoseLines(const std::string& path) {
+  io::PoseList list = path.empty() ? io::PoseList{{Pose{}}, {"B in place"}} : io::open_poses(path);
+  poses = std::move(list.poses);
+  places = std::move(list.places);
+}
+
 void PoseLines::check(const LrbRep& a, const LrbRep& b) const {
   check_query(a, Pose{}, b, Pose{});
   for (std::size_t i = 0; i < poses.size(); ++i) at(i, [&] { check_query(a, Pose{}, b, poses[i]); });
@@ -14,7 +20,7 @@ void PoseLines::check(const LrbRep& a, const LrbRep& b) const {
 void add_posed_files(CLI::App& app, PosedFiles& files) {
   app.add_option("A", files.a, "Mesh or .lrb file; does not move")->required();
   app.add_option("B", files.b, "Mesh or .lrb file; moved to each pose")->required();
-  app.add_option("--poses", files.poses, io::kPoseFileHelp)->required();
+  app.add_option("--poses", files.poses, io::kPoseFileHelp + std::string(" [B stays in place]"));
 }
 
 std::array<bodies::LoadedBody, 2> load_noted(const std::string& a, const std::string& b,

@@ -52,8 +52,8 @@ double median_us(std::uint32_t repeat, const Query& run_query) {
 
 /// The poses of a command, and the location of each in its file.
 struct PoseLines {
-  explicit PoseLines(const std::string& path) : PoseLines(io::open_poses(path)) {}
-  explicit PoseLines(io::PoseList list) : poses(std::move(list.poses)), places(std::move(list.places)) {}
+  /// Reads a file of poses. Without one, B stays in place.
+  explicit PoseLines(const std::string& path);
 
   /// Calls run_query(), and prefixes the message of an InputError with the location of the pose.
   template <class Query>

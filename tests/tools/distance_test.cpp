@@ -19,6 +19,24 @@ struct Boxes : Command {
   }
 };
 
+TEST_CASE("without --poses, B stays in place, in every command that takes poses") {
+  Command c({"--quiet"});
+  c.folder.write("in_place.txt", "1 0 0 0  0 1 0 0  0 0 1 0\n");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"query", "cube.obj", "small.obj", "--pairs", "--distance"},
+        {"distance", "cube.obj", "small.obj"},
+        {"clash", "cube.obj", "small.obj"},
+        {"near", "cube.obj", "small.obj", "--within", "0.3"},
+        {"manifold", "cube.obj", "small.obj", "--margin", "0.3"}}) {
+    CAPTURE(command[0]);
+    const auto in_place = c.lines(command);
+    REQUIRE(in_place.size() == 1);
+    std::vector<std::string> posed = command;
+    posed.insert(posed.end(), {"--poses", "in_place.txt"});
+    CHECK(c.lines(posed) == in_place);
+  }
+}
+
 TEST_CASE("distance: intervals, points, and solids") {
   const auto lines = Boxes().lines();
   REQUIRE(lines.size() == 4);
