@@ -1,7 +1,8 @@
-// fcl A.obj B.obj POSES [ROUNDS]: FCL's collision of two trees of OBBRSS, whose queries lrbscope_capture.h
-// records if LRBCAP_OUT names a file. FCL itself is not changed: a subclass of its traversal reports the
-// tests. POSES: a line of 12 numbers for each pose of B (3x4, row by row). Prints for each pose how many
-// pairs of triangles intersect, and on stderr the time of a query, the least of ROUNDS.
+// fcl A.obj B.obj POSES [ROUNDS [distance]]: FCL's collision, or distance, of two trees of OBBRSS, whose
+// queries lrbscope_capture.h records if LRBCAP_OUT names a file. FCL itself is not changed: subclasses of its
+// traversals report the tests. POSES: a line of 12 numbers for each pose of B (3x4, row by row). Prints for
+// each pose how many pairs of triangles intersect, or the distance, and on stderr the time of a query, the
+// least of ROUNDS.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -19,6 +20,8 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
+#include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
+#include <fcl/narrowphase/distance.h>
 #define LRBCAP_IMPLEMENTATION  // in one source file of a program
 #include <lrbscope_capture.h>
 
@@ -40,6 +43,21 @@ struct Traversal final : fcl::detail::MeshCollisionTraversalNodeOBBRSSd {
     Base::leafTesting(a, b);
     LRBCAP_PRIM(model1->getBV(a).primitiveId(), model2->getBV(b).primitiveId(),
                 result->numContacts() != before);
+  }
+};
+
+/// The same for distances. FCL descends into a pair that is closer than the closest triangles so far.
+struct DistanceTraversal final : fcl::detail::MeshDistanceTraversalNodeOBBRSSd {
+  using Base = fcl::detail::MeshDistanceTraversalNodeOBBRSSd;
+
+  double BVTesting(int a, int b) const override {
+    const double gap = Base::BVTesting(a, b);
+    LRBCAP_NODE(a, b, gap < result->min_distance, LRBCAP_NO_AXIS);
+    return gap;
+  }
+  void leafTesting(int a, int b) const override {
+    Base::leafTesting(a, b);
+    LRBCAP_PRIM(model1->getBV(a).primitiveId(), model2->getBV(b).primitiveId(), result->min_distance <= 0);
   }
 };
 
@@ -68,10 +86,10 @@ void read_obj(Body& body, const std::string& path) {
   }
 }
 
-/// Reports mesh and tree to the recorder.
-void describe(Body& body, const std::string& name) {
+/// Reports mesh and tree to the recorder, with the volumes that FCL tests: OBB, or RSS for distances.
+void describe(Body& body, const std::string& name, bool distance) {
   std::vector<std::uint32_t> first_child{0}, child, first_prim{0}, prim;
-  std::vector<double> boxes;
+  std::vector<double> volumes;
   for (int i = 0; i < body.model.getNumBVs(); ++i) {
     const auto& node = body.model.getBV(i);
     if (node.isLeaf()) {
@@ -82,25 +100,28 @@ void describe(Body& body, const std::string& name) {
     }
     first_child.push_back(static_cast<std::uint32_t>(child.size()));
     first_prim.push_back(static_cast<std::uint32_t>(prim.size()));
-    const auto& box = node.bv.obb;  // FCL tests these; the RSS are for distances
-    for (int k = 0; k < 3; ++k) boxes.push_back(box.To[k]);
-    for (int axis = 0; axis < 3; ++axis)
-      for (int k = 0; k < 3; ++k) boxes.push_back(box.axis(k, axis) * box.extent[axis]);
+    const auto& box = node.bv.obb;
+    const auto& rss = node.bv.rss;
+    for (int k = 0; k < 3; ++k) volumes.push_back(distance ? rss.To[k] : box.To[k]);
+    for (int axis = 0; axis < (distance ? 2 : 3); ++axis)
+      for (int k = 0; k < 3; ++k)
+        volumes.push_back(distance ? rss.axis(k, axis) * rss.l[axis] : box.axis(k, axis) * box.extent[axis]);
+    if (distance) volumes.push_back(rss.r);
   }
   lrbcap_tree tree = {};
   tree.mesh = LRBCAP_MESH(name.c_str(), body.vertices.size() / 3, body.vertices.data(),
                           body.triangles.size() / 3, body.triangles.data());
   tree.nodes = static_cast<std::uint32_t>(body.model.getNumBVs());
-  tree.volume = LRBCAP_OBB;
+  tree.volume = distance ? LRBCAP_RSS : LRBCAP_OBB;
   tree.first_child = first_child.data();
   tree.child = child.data();
   tree.first_prim = first_prim.data();
   tree.prim = prim.data();
-  tree.volumes = boxes.data();
+  tree.volumes = volumes.data();
   body.tree = LRBCAP_TREE(&tree);
 }
 
-void load(Body& body, const std::string& path) {
+void load(Body& body, const std::string& path, bool distance) {
   read_obj(body, path);
   std::vector<fcl::Vector3d> vertices;
   std::vector<fcl::Triangle> triangles;
@@ -111,18 +132,35 @@ void load(Body& body, const std::string& path) {
   body.model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
   body.model.addSubModel(vertices, triangles);
   body.model.endModel();
-  describe(body, path);
+  describe(body, path, distance);
+}
+
+fcl::Transform3d transform(const std::array<double, 12>& pose) {
+  fcl::Transform3d out = fcl::Transform3d::Identity();
+  for (int k = 0; k < 12; ++k) out.matrix()(k / 4, k % 4) = pose[static_cast<std::size_t>(k)];
+  return out;
+}
+
+/// Returns the distance, with B at a pose.
+double query_distance(const Body& a, const Body& b, const std::array<double, 12>& pose) {
+  fcl::DistanceResultd result;
+  DistanceTraversal traversal;
+  fcl::detail::initialize(traversal, std::as_const(a.model), fcl::Transform3d::Identity(),
+                          std::as_const(b.model), transform(pose), fcl::DistanceRequestd(), result);
+  LRBCAP_BEGIN(LRBCAP_DISTANCE, a.tree, nullptr, b.tree, pose.data());
+  LRBCAP_NODE(0, 0, 1, LRBCAP_NO_AXIS);  // FCL begins below the roots
+  fcl::detail::distance(&traversal);
+  LRBCAP_END(result.min_distance <= 0 ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, 0);
+  return result.min_distance;
 }
 
 /// Returns the number of pairs that intersect, with B at a pose.
 std::size_t query(const Body& a, const Body& b, const std::array<double, 12>& pose) {
-  fcl::Transform3d pose_a = fcl::Transform3d::Identity(), pose_b = pose_a;
-  for (int k = 0; k < 12; ++k) pose_b.matrix()(k / 4, k % 4) = pose[static_cast<std::size_t>(k)];
   const fcl::CollisionRequestd request(a.triangles.size() * b.triangles.size(), false);
   fcl::CollisionResultd result;
   Traversal traversal;
-  fcl::detail::initialize(traversal, std::as_const(a.model), pose_a, std::as_const(b.model), pose_b, request,
-                          result);
+  fcl::detail::initialize(traversal, std::as_const(a.model), fcl::Transform3d::Identity(),
+                          std::as_const(b.model), transform(pose), request, result);
   LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, a.tree, nullptr, b.tree, pose.data());
   fcl::detail::collide(&traversal);
   LRBCAP_END(result.numContacts() ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, result.numContacts());
@@ -132,12 +170,14 @@ std::size_t query(const Body& a, const Body& b, const std::array<double, 12>& po
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc != 4 && argc != 5) throw std::runtime_error("usage: fcl A.obj B.obj POSES [ROUNDS]");
-  const int rounds = argc == 5 ? std::atoi(argv[4]) : 1;
+  const bool distance = argc == 6 && std::string(argv[5]) == "distance";
+  if (argc < 4 || argc > 6 || (argc == 6 && !distance))
+    throw std::runtime_error("usage: fcl A.obj B.obj POSES [ROUNDS [distance]]");
+  const int rounds = argc > 4 ? std::atoi(argv[4]) : 1;
   LRBCAP_OPEN("FCL " FCL_VERSION ", BVHModel<OBBRSS>", nullptr);
   Body a, b;
-  load(a, argv[1]);
-  load(b, argv[2]);
+  load(a, argv[1], distance);
+  load(b, argv[2], distance);
   std::vector<std::array<double, 12>> poses;
   std::ifstream in(argv[3]);
   for (std::string line; std::getline(in, line);) {
@@ -146,14 +186,16 @@ int main(int argc, char** argv) try {
     for (double& x : pose) numbers >> x;
     if (numbers) poses.push_back(pose);
   }
+  std::cout.precision(15);
   std::vector<double> least(poses.size(), 1e30);
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const auto begin = std::chrono::steady_clock::now();
-      const std::size_t pairs = query(a, b, poses[i]);
+      const double answer =
+          distance ? query_distance(a, b, poses[i]) : static_cast<double>(query(a, b, poses[i]));
       const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
       least[i] = std::min(least[i], took.count());
-      if (round == 0) std::cout << pairs << " pairs\n";
+      if (round == 0) std::cout << answer << (distance ? "\n" : " pairs\n");
     }
   double sum = 0;
   for (const double us : least) sum += us;

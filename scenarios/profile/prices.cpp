@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "scenarios/profile/least_visits.hpp"
+#include <lrbscope/distance.hpp>
+#include <lrbscope/near_pairs.hpp>
 #include <lrbscope/render/overlay.hpp>
 
 namespace lrb::profile {
@@ -76,10 +78,12 @@ Prices PriceBook::add(const capture::Query& query, const QueryWalk* walk, std::s
                       bool split) {
   Prices out;
   count_tests(query, out);
-  const bool has_prices = walk != nullptr && (query.kind == QueryKind::all_pairs ||
-                                              query.kind == QueryKind::any || query.kind == QueryKind::self);
-  if (!has_prices) {
+  if (walk == nullptr || query.kind == QueryKind::first_contact) {
     out.unattributed = out.visits;
+    return out;
+  }
+  if (query.kind == QueryKind::distance) {
+    price_distance(*walk, exact, split, out);
     return out;
   }
   const std::vector<TrianglePair> found = found_early(*walk, exact);
@@ -107,6 +111,75 @@ Prices PriceBook::add(const capture::Query& query, const QueryWalk* walk, std::s
     out.unsplit = wasted;
   }
   return out;
+}
+
+void PriceBook::price_distance(const QueryWalk& walk, std::span<const TrianglePair> exact, bool split,
+                               Prices& out) {
+  const capture::Query& query = walk.query();
+  const LrbRep* const a = bodies_.body(bodies_.tree(walk.trees()[0]).mesh);
+  const LrbRep* const b = bodies_.body(bodies_.tree(walk.trees()[1]).mesh);
+  if (a == nullptr || b == nullptr) {
+    out.unattributed = out.visits;
+    return;
+  }
+  // Step 1: the exact distance, and all pairs of triangles at that distance.
+  std::vector<TrianglePair> closest(exact.begin(), exact.end());
+  double distance = 0;
+  if (closest.empty()) {
+    DistanceRequest request;
+    request.relation = false;
+    NearPairsRequest near;
+    near.within = distance =
+        lrb::distance(*a, query.poses[0], *b, query.poses[1], request, workspace_).value().upper;
+    for (const NearPair& pair :
+         near_pairs(*a, query.poses[0], *b, query.poses[1], near, workspace_).value().pairs)
+      closest.push_back({pair.a.value(), pair.b.value()});
+  }
+  // Step 2: the one that the engine tested first, or if none was, the first in a visited pair of leaves.
+  std::optional<TrianglePair> goal;
+  for (const Event& e : query.events) {
+    if (e.kind != EventKind::triangles) continue;
+    const bool is_closest = is_exact(walk, closest, e);
+    out.triangle_tests_for_nothing += !is_closest;
+    if (is_closest && !goal) goal = {e.a, e.b};
+  }
+  for (std::size_t i = 0; i < closest.size() && !goal; ++i)
+    if (walk.deepest_above(closest[i]) != QueryWalk::kNone) goal = closest[i];
+  // Step 3: the visits.
+  const bool touching = distance == 0;
+  price_visits(walk, goal ? std::span<const TrianglePair>(&*goal, 1) : std::span<const TrianglePair>(),
+               touching && goal.has_value(), out);
+  if (!goal || (!split && !touching)) return;
+  const std::uint64_t wasted = std::exchange(out.unsplit, 0);
+  out.order = touching ? wasted : saved_by_distance(walk, *goal, distance);
+  out.volumes = wasted - out.order;
+}
+
+std::uint64_t PriceBook::saved_by_distance(const QueryWalk& walk, const TrianglePair& goal, double distance) {
+  constexpr std::uint32_t kNone = QueryWalk::kNone;
+  constexpr double kRounding = 1e-9;  // volumes this close to the distance count as no closer
+  const std::vector<Event>& events = walk.query().events;
+  const Volumes &a = bodies_.volumes(walk.trees()[0]), &b = bodies_.volumes(walk.trees()[1]);
+  std::vector<char> needed(events.size(), 0);
+  for (std::uint32_t i = walk.deepest_above(goal); i != kNone; i = walk.parent(i)) needed[i] = 1;
+  // `ends`: at this visit, or above it, the volumes are no closer than the distance.
+  std::vector<char> attached(events.size(), 0), ends(events.size(), 0);
+  std::uint64_t saved = 0;
+  for (const std::uint32_t i : walk.from_root()) {
+    const std::uint32_t up = walk.parent(i);
+    attached[i] = up == kNone ? walk.is_start(i) : attached[up];
+    if (!attached[i]) continue;
+    const bool repeated = walk.first_visit(i) != i;
+    if (needed[i] && !repeated) continue;
+    const bool below_needed = up == kNone || needed[up];
+    const bool ended_above = !below_needed && ends[up];
+    ends[i] = ended_above || gap(a, events[i].a, walk.query().poses[0], b, events[i].b,
+                                 walk.query().poses[1]) >= distance * (1 - kRounding);
+    if (below_needed && !repeated) continue;  // proof
+    // A visit of wide nodes follows a comparison of their own volumes.
+    saved += repeated || ended_above || (walk.wide() && ends[i]);
+  }
+  return saved;
 }
 
 void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair> goals, bool one_is_enough,

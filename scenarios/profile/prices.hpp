@@ -12,11 +12,21 @@
 ///   saved them; a repeated visit was not necessary at all. An oracle makes this choice, so this is a bound.
 /// - unsplit: volumes and order together, if least_visits() was not requested or has no answer.
 /// - unattributed: the visit does not descend from a start (QueryWalk::is_start()).
-///   All visits of queries of distance and first contact, whose tests have another meaning, and of queries
-///   with a side without a tree.
+///   All visits of queries of first contact, whose tests have another meaning, and of queries with a side
+///   without a tree.
 ///
 /// A query of kind any that found an intersection needs the visits above the pairs that it found, and nothing
 /// else: all other visits are of order. An oracle would go straight to a pair.
+///
+/// A query of distance that computes the exact distance d has to come to one closest pair of triangles:
+/// - needed: the visits above the closest pair that the engine tested first.
+/// - proof: the first pair beneath a needed one without that closest pair beneath.
+/// - volumes: visits beneath a pair of proof whose volumes, and those of all pairs between, are closer than
+/// d.
+///   No engine with these volumes and this descent rule ends the descent above them.
+/// - order: the rest. If d had been known from the start, the descent would have ended above these visits: a
+///   closer pair found earlier saves them.
+/// If the bodies intersect, d is 0, and all visits but the needed ones are of order.
 ///
 /// Tests of triangles are counted separately. A test of triangles that do not intersect is a test for
 /// nothing.
@@ -29,6 +39,7 @@
 #include <vector>
 
 #include "scenarios/profile/query_walk.hpp"
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::profile {
 
@@ -90,9 +101,13 @@ class PriceBook {
   /// `goals`: the pairs of triangles that the descent has to come to.
   void price_visits(const QueryWalk& walk, std::span<const TrianglePair> goals, bool one_is_enough,
                     Prices& out);
+  void price_distance(const QueryWalk& walk, std::span<const TrianglePair> exact, bool split, Prices& out);
+  /// Returns the wasted visits of a query of distance that would be saved if the distance were known.
+  std::uint64_t saved_by_distance(const QueryWalk& walk, const TrianglePair& goal, double distance);
   void price_leaves(const QueryWalk& walk, Prices& out);
 
   CapturedBodies& bodies_;
+  Workspace workspace_;
   std::vector<DepthPrices> by_depth_;
   std::map<std::array<std::uint32_t, 4>, OwnerWaste> owners_;    ///< by trees and nodes
   std::map<std::uint32_t, std::vector<double>> waste_of_nodes_;  ///< by tree

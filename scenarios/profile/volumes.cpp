@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -508,22 +509,67 @@ std::optional<double> Volumes::shared_volume(std::uint32_t node, std::uint32_t o
   return solid(both, b.centre, b.half[0].norm() + b.half[1].norm() + b.half[2].norm()).volume;
 }
 
+namespace {
+
+Rounded placed(Rounded r, const Pose& pose) {
+  r.corner = pose.apply(r.corner);
+  for (Vector3d& side : r.side) side = pose.r * side;
+  return r;
+}
+
+/// Returns the distance of two boxes, up to rounding.
+double box_gap(const ShapeBox& a, const ShapeBox& b) {
+  if (boxes_overlap(a, b)) return 0;
+  // A point of each box is its centre plus its half edges times numbers in [-1, 1]. The squared distance is a
+  // convex quadratic function of these six numbers. Minimise it along one of them after the other.
+  constexpr int kMaxRounds = 1000;
+  constexpr double kConverged = 1e-13;
+  std::array<Vector3d, 6> along;
+  for (std::size_t k = 0; k < 3; ++k) along[k] = a.half[k], along[k + 3] = -b.half[k];
+  std::array<double, 6> at{};
+  Vector3d between = a.centre - b.centre;  // of the two points
+  double last = between.norm();
+  for (int round = 0; round < kMaxRounds; ++round) {
+    for (std::size_t k = 0; k < along.size(); ++k) {
+      const double length_sq = along[k].squaredNorm();
+      if (!(length_sq > 0)) continue;
+      const double best = std::clamp(at[k] - between.dot(along[k]) / length_sq, -1.0, 1.0);
+      between += (best - at[k]) * along[k];
+      at[k] = best;
+    }
+    const double now = between.norm();
+    if (last - now <= kConverged * last) break;
+    last = now;
+  }
+  return between.norm();
+}
+
+}  // namespace
+
 bool overlap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Volumes& b,
              std::uint32_t node_b, const Pose& pose_b) {
   if (inverted(a.tree(), node_a) || inverted(b.tree(), node_b)) return false;
   const VolumeKind of_a = a.tree().volume, of_b = b.tree().volume;
   if (is_round(of_a) && is_round(of_b)) {
-    const auto place = [](Rounded r, const Pose& pose) {
-      r.corner = pose.apply(r.corner);
-      for (Vector3d& side : r.side) side = pose.r * side;
-      return r;
-    };
-    const Rounded x = place(rounded(a.tree(), node_a), pose_a), y = place(rounded(b.tree(), node_b), pose_b);
+    const Rounded x = placed(rounded(a.tree(), node_a), pose_a),
+                  y = placed(rounded(b.tree(), node_b), pose_b);
     if (of_a == VolumeKind::sphere && of_b == VolumeKind::sphere)
       return (x.corner - y.corner).norm() <= x.radius + y.radius;
     return rectangle_distance(x, y) <= x.radius + y.radius;
   }
   return boxes_overlap(placed(a.box(node_a), pose_a), placed(b.box(node_b), pose_b));
+}
+
+double gap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Volumes& b, std::uint32_t node_b,
+           const Pose& pose_b) {
+  if (inverted(a.tree(), node_a) || inverted(b.tree(), node_b))
+    return std::numeric_limits<double>::infinity();
+  if (is_round(a.tree().volume) && is_round(b.tree().volume)) {
+    const Rounded x = placed(rounded(a.tree(), node_a), pose_a),
+                  y = placed(rounded(b.tree(), node_b), pose_b);
+    return std::max(0.0, rectangle_distance(x, y) - x.radius - y.radius);
+  }
+  return box_gap(placed(a.box(node_a), pose_a), placed(b.box(node_b), pose_b));
 }
 
 }  // namespace lrb::profile

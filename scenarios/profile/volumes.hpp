@@ -77,4 +77,9 @@ class Volumes {
 bool overlap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Volumes& b,
              std::uint32_t node_b, const Pose& pose_b);
 
+/// Returns the distance of two volumes at these poses, computed in doubles: of two spheres or RSS, otherwise
+/// of the boxes of both. 0 if they overlap; infinite if one is empty.
+double gap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Volumes& b, std::uint32_t node_b,
+           const Pose& pose_b);
+
 }  // namespace lrb::profile

@@ -31,6 +31,15 @@ for engine in "$@"; do
   head -2 "$name.pairs" | grep -q '^0 ' && fail "$name: crossing bodies without a pair: $(cat "$name.pairs")"
   cmp "$(basename "$1").pairs" "$name.pairs" || fail "$name: other pairs: $(cat "$name.pairs")"
 done
+# FCL's distances: 0 for crossing bodies, else as lrbscope's. No visit is left without a price.
+if [ $# -gt 1 ]; then
+  LRBCAP_OUT=distance.lrbcap "$2" "$gear" "$block" poses 1 distance >distances 2>/dev/null || fail "distance: exit code $?"
+  ours=$(tail -1 poses >apart && "$program" distance "$gear" "$block" --poses apart | sed 's/.*"upper":\([0-9.e+-]*\).*/\1/')
+  awk -v ours="$ours" 'NR < 3 && $1 > 0 || NR == 3 && ($1 - ours > 1e-9 || ours - $1 > 1e-9) { exit 1 }' distances ||
+    fail "distances: expected 0, 0, $ours: $(cat distances)"
+  "$program" check distance.lrbcap >said || fail "check of distances: exit code $?: $(cat said)"
+  grep -q '3 distance' said && ! grep -q unattributed said || fail "prices of distances: $(cat said)"
+fi
 [ "$(head -1 "$(basename "$1").pairs")" = "43 pairs" ] || fail "expected the 43 pairs that lrbscope finds"
 code=0
 "$1" "$gear" missing.obj poses >/dev/null 2>said || code=$?

@@ -10,6 +10,7 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/captured_trees.hpp"
+#include "tests/support/simplex_distance.hpp"
 #include <lrbscope/error.hpp>
 
 using namespace lrb;
@@ -263,6 +264,39 @@ TEST_CASE("boxes overlap if a side of one reaches into the other, flat ones too"
   }
   CHECK(met > 2000);
   CHECK(apart > 2000);
+}
+
+TEST_CASE("the gap of two boxes is the distance of their sides, of flat ones too") {
+  shapes::RandomEngine random(12);
+  // Two triangles for each side of a box; the corners are numbered by three bits.
+  const auto sides = [](const Volumes& box, const Pose& pose) {
+    const std::vector<Vector3d> c = box.corners(0);
+    std::vector<test::Points> out;
+    for (unsigned axis = 0; axis < 3; ++axis)
+      for (const unsigned high : {0U, 1U << axis}) {
+        const unsigned u = 1U << (axis + 1) % 3, v = 1U << (axis + 2) % 3;
+        const Vector3d p = pose.apply(c[high]), q = pose.apply(c[high | u]), r = pose.apply(c[high | v]),
+                       s = pose.apply(c[high | u | v]);
+        out.push_back({p, q, s});
+        out.push_back({p, r, s});
+      }
+    return out;
+  };
+  int apart = 0;
+  for (int i = 0; i < 300; ++i) {
+    const capture::Tree a = random_obb(random, i % 4), b = random_obb(random, i / 4 % 4);
+    const Volumes x(a), y(b);
+    const Pose pose = i % 5 == 0
+                          ? Pose::translation({4, 0, 0})  // parallel sides
+                          : Pose::rotation(shapes::random_direction(random), shapes::uniform(random, 0, 3),
+                                           4 * shapes::random_direction(random));
+    const double found = gap(x, 0, {}, y, 0, pose);
+    CHECK((found == 0) == overlap(x, 0, {}, y, 0, pose));
+    if (found == 0) continue;
+    CHECK(found == doctest::Approx(test::surface_distance(sides(x, {}), sides(y, pose))).epsilon(1e-7));
+    ++apart;
+  }
+  CHECK(apart > 200);
 }
 
 TEST_CASE("two volumes overlap in the frame of the world as in that of one") {
