@@ -331,6 +331,33 @@ TEST_CASE("manifolds have all pairs and points on both surfaces, for all kinds o
   CHECK(seen.gaps > 100);
 }
 
+namespace {
+
+/// Contacts of small sets of triangles (every fourth: segments in the plane) on a grid.
+ManifoldsSeen check_manifold_grids(int queries) {
+  RandomEngine random(7);
+  ManifoldsSeen seen;
+  for (int i = 0; i < queries; ++i) {
+    CAPTURE(i);
+    const int dim = i % 4 == 0 ? 2 : 3;
+    const LrbRep a = LrbRep::without_regions(test::grid_soup(random, 3, dim, i % 2 * 5), false, false),
+                 b = LrbRep::without_regions(test::grid_soup(random, 3, dim), false, false);
+    const double margin = std::sqrt(std::floor(shapes::uniform(random, 0, 4)));
+    check(a, {}, b, Pose::translation({std::floor(shapes::uniform(random, 0, 4)), 0, 0}), margin, seen);
+  }
+  return seen;
+}
+
+}  // namespace
+
+TEST_CASE("manifolds of triangles on a grid") {
+  CHECK(check_manifold_grids(500).manifolds > 250);
+}
+
+TEST_CASE("manifolds of 100,000 pairs of sets of triangles on a grid" * doctest::test_suite("long")) {
+  CHECK(check_manifold_grids(100'000).manifolds > 50'000);
+}
+
 TEST_CASE("manifolds of bodies in the plane and of degenerate faces") {
   RandomEngine random(2);
   ManifoldsSeen seen;

@@ -222,23 +222,13 @@ TEST_CASE("near pairs with a workspace are those without, also after errors") {
 
 namespace {
 
-/// Triangles between points of a grid: many are degenerate, touch, or are equally far from each other.
-LrbRep grid_triangles(RandomEngine& random, int count) {
-  Mesh mesh;
-  const auto coordinate = [&] { return std::floor(shapes::uniform(random, 0, 4)); };
-  for (std::uint32_t i = 0; i < 3 * static_cast<std::uint32_t>(count); ++i)
-    mesh.vertices.push_back({coordinate(), coordinate(), coordinate()});
-  for (std::uint32_t i = 0; i < mesh.vertices.size(); i += 3)
-    mesh.add_face(std::array{VertexId(i), VertexId(i + 1), VertexId(i + 2)});
-  return LrbRep::without_regions(mesh, false, false);
-}
-
-/// Queries of small sets of such triangles, at distances that many pairs have exactly.
-PairsSeen check_grids(int queries) {
+/// Queries of small sets of triangles on a grid, at distances that many pairs have exactly.
+PairsSeen check_near_grids(int queries) {
   RandomEngine random(4);
   PairsSeen seen;
   for (int i = 0; i < queries; ++i) {
-    const LrbRep a = grid_triangles(random, 3), b = grid_triangles(random, 3);
+    const LrbRep a = LrbRep::without_regions(test::grid_soup(random, 3), false, false),
+                 b = LrbRep::without_regions(test::grid_soup(random, 3), false, false);
     const double squared = std::floor(shapes::uniform(random, 0, 9));
     check(a, {}, b, Pose::translation({std::floor(shapes::uniform(random, 0, 4)), 0, 0}), std::sqrt(squared),
           seen);
@@ -249,13 +239,13 @@ PairsSeen check_grids(int queries) {
 }  // namespace
 
 TEST_CASE("near pairs of triangles on a grid, at distances that they have exactly") {
-  const PairsSeen seen = check_grids(1000);
+  const PairsSeen seen = check_near_grids(1000);
   CHECK(seen.close_calls > 100);
   CHECK(seen.meet > 500);
 }
 
 TEST_CASE("near pairs of 100,000 sets of triangles on a grid" * doctest::test_suite("long")) {
-  const PairsSeen seen = check_grids(100'000);
+  const PairsSeen seen = check_near_grids(100'000);
   CHECK(seen.close_calls > 10'000);
 }
 

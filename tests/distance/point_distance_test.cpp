@@ -135,7 +135,50 @@ std::vector<Vector3d> points_about(const LrbRep& rep, const Pose& pose, RandomEn
   return out;
 }
 
+/// Points of half a grid beside triangles and segments on the grid: many are on a face, or equally far from
+/// several.
+Seen check_points_by_grids(int bodies) {
+  RandomEngine random(5);
+  Seen seen;
+  for (int i = 0; i < bodies; ++i) {
+    CAPTURE(i);
+    const LrbRep body = LrbRep::without_regions(test::grid_soup(random, 4, i % 4 == 0 ? 2 : 3), false, false);
+    std::vector<Vector3d> points;
+    for (int k = 0; k < 10; ++k) {
+      const auto coordinate = [&] { return std::floor(shapes::uniform(random, -2, 10)) / 2; };
+      const double x = coordinate(), y = coordinate();
+      points.push_back({x, y, coordinate()});
+    }
+    check(body, {}, points, seen);
+  }
+  return seen;
+}
+
 }  // namespace
+
+TEST_CASE("signed distances of points to triangles on a grid") {
+  CHECK(check_points_by_grids(100).on_surface > 20);
+}
+
+TEST_CASE("signed distances of 100,000 points to triangles on a grid, and to solids" *
+          doctest::test_suite("long")) {
+  CHECK(check_points_by_grids(10'000).on_surface > 2000);
+  RandomEngine random(6);
+  const LrbRep bodies[] = {closed(shapes::quad_box()),  closed(shapes::icosphere(1)),
+                           closed(shapes::torus(8, 6)), closed(shapes::bowl(6, 3)),
+                           closed(shapes::ring_2d(12)), closed(shapes::star(5))};
+  Seen seen;
+  for (int round = 0; round < 300; ++round)
+    for (const LrbRep& body : bodies) {
+      const double turn = shapes::uniform(random, 0, 6);
+      const Pose pose = body.dim() == 2 ? Pose::rotation(Vector3d(0, 0, 1), turn, {0.3, -1.5, 0})
+                                        : Pose{shapes::random_rotation(random), {0.3, -1.5, turn}};
+      check(body, pose, points_about(body, pose, random, 60), seen);
+    }
+  CHECK(seen.points == 108'000);
+  CHECK(seen.inside > 10'000);
+  CHECK(seen.outside > 30'000);
+}
 
 TEST_CASE("signed distances of points agree with rational brute force and with winding numbers") {
   RandomEngine random(1);

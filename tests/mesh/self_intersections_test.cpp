@@ -8,6 +8,8 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/closed_body.hpp"
+#include "tests/support/hull_oracle.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include "tests/support/simplex_distance.hpp"
 #include <lrbscope/collide.hpp>
@@ -132,7 +134,63 @@ Mesh random_soup(std::uint64_t seed, int triangles, int dim) {
   return m;
 }
 
+/// Returns true if the hulls of two faces intersect beyond their common corners: if a point of both is
+/// possible with a positive weight of a corner that is not common. A linear program decides this for each
+/// such corner.
+bool intersect_beyond_shared(const Mesh& m, FaceId f, FaceId g) {
+  const std::span<const VertexId> a = m.face(f), b = m.face(g);
+  const auto corners = [&](std::span<const VertexId> face) {
+    oracle::Points<std::int64_t> out;
+    for (const VertexId v : face) {
+      out.emplace_back();
+      for (int k = 0; k < m.dim; ++k) out.back().push_back(static_cast<std::int64_t>(m.vertices[v][k]));
+    }
+    return out;
+  };
+  const auto of_a = corners(a), of_b = corners(b);
+  std::size_t own = 0;
+  for (std::size_t k = 0; k < a.size() + b.size(); ++k) {
+    const bool first = k < a.size();
+    const auto other = first ? b : a;
+    const VertexId v = first ? a[k] : b[k - a.size()];
+    if (std::find(other.begin(), other.end(), v) != other.end()) continue;
+    ++own;
+    if (oracle::meet_with_positive_weight(of_a, of_b, k)) return true;
+  }
+  return own == 0;  // the same face twice
+}
+
+/// Compares the pairs of soups on a grid, of faces with an area, with all pairs by linear programming.
+int check_self_grids(int meshes) {
+  RandomEngine random(8);
+  int found = 0;
+  for (int i = 0; i < meshes;) {
+    CAPTURE(i);
+    const Mesh m = grid_soup(random, 4, i % 4 == 0 ? 2 : 3, i % 3 == 0 ? 0 : 6);
+    const CheckedMesh checked = check(m);
+    if (checked.report()[MeshFault::zero_area_face].count > 0) continue;
+    ++i;
+    Pairs expected, pairs;
+    for (FaceId f = 0; f < m.face_count(); ++f)
+      for (FaceId g(f + 1); g < m.face_count(); ++g)
+        if (intersect_beyond_shared(m, f, g)) expected.push_back({f, g});
+    for (const SelfIntersection& pair : self_intersections(checked, 1).pairs)
+      pairs.push_back({pair.a, pair.b});
+    REQUIRE(pairs == expected);
+    found += static_cast<int>(pairs.size());
+  }
+  return found;
+}
+
 }  // namespace
+
+TEST_CASE("self-intersections of triangles on a grid, with and without common corners") {
+  CHECK(check_self_grids(1000) > 1000);
+}
+
+TEST_CASE("self-intersections of 100,000 sets of triangles on a grid" * doctest::test_suite("long")) {
+  CHECK(check_self_grids(100'000) > 100'000);
+}
 
 TEST_CASE("self-intersections agree with an oracle over all pairs") {
   check_against_oracle(several({icosphere(1), translated(icosphere(1), {1, 0.25, 0})}));

@@ -255,7 +255,9 @@ TEST_CASE("a workspace returns the errors that the functions without one throw")
   const Pose nowhere = Pose::translation({std::numeric_limits<double>::quiet_NaN(), 0, 0});
   Workspace workspace;
   CollideResult found;
-  for (const auto& [b, pose] : {std::tuple(&box, nowhere), std::tuple(&flat, Pose{})}) {
+  for (const auto& refused : {std::pair(&box, nowhere), std::pair(&flat, Pose{})}) {
+    const auto* const b = refused.first;
+    const Pose& pose = refused.second;
     const std::string reason = reason_of([&] { check_query(box, Pose{}, *b, pose); });
     CHECK(reason == reason_of([&] { (void)collide(box, Pose{}, *b, pose); }));
     CHECK(collide(box, Pose{}, *b, pose, {}, workspace).error().reason == reason);
