@@ -110,8 +110,7 @@ Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressR
   try {
     out.golden = golden::load_golden(o.goldens, g.name);
     apply(o, out.golden->spec);
-    golden::Source source =
-        g.source ? *g.source : golden::golden_source(o.goldens, g.name, out.golden->spec);
+    golden::Source source = g.source ? *g.source : golden::golden_source(o.goldens, g.name, out.golden->spec);
     if (std::holds_alternative<spec::Crowd>(source) != out.golden->spec.is_crowd)
       throw InputError(g.name + ": its golden is not of a " +
                        (out.golden->spec.is_crowd ? "scenario" : "crowd") +

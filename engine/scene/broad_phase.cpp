@@ -6,7 +6,8 @@
 ///
 /// If few boxes have moved:
 /// 1. Merge them into the order of the others.
-/// 2. Keep the pairs of the others. Compare each moved box with those that begin before it ends, and with those
+/// 2. Keep the pairs of the others. Compare each moved box with those that begin before it ends, and with
+/// those
 ///    before it in the order that are at most as far away as the longest box is long.
 
 #include <algorithm>
@@ -125,8 +126,9 @@ const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
 
 const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes,
                                                    std::span<const std::uint32_t> moved) {
-  // A moved box is compared with boxes on both sides, in a complete update with those on one: beyond a quarter
-  // of the boxes, the complete update is faster. It also chooses the axis anew after as many moves as bodies.
+  // A moved box is compared with boxes on both sides, in a complete update with those on one: beyond a
+  // quarter of the boxes, the complete update is faster. It also chooses the axis anew after as many moves as
+  // bodies.
   constexpr std::size_t kIncrementalShare = 4;
   if (order_.size() != boxes.size() || kIncrementalShare * moved.size() > boxes.size() ||
       moved_ > boxes.size())

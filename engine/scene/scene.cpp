@@ -2,7 +2,8 @@
 // collide():
 // 1. Recompute the world AABBs of moved bodies.
 // 2. Broad phase: within a scene, sort and sweep, coherent from call to call; otherwise a one-axis sweep.
-// 3. Narrow phase: an exact query for each pair, as one batch. Within a scene, pairs of which neither body has
+// 3. Narrow phase: an exact query for each pair, as one batch. Within a scene, pairs of which neither body
+// has
 //    moved keep their answers.
 // nearest(): branch and bound over pairs in ascending order of the gaps of their AABBs.
 // Candidate pairs are sorted by gap and keys, so no result depends on the number of threads.
@@ -151,11 +152,11 @@ class Scene::Impl {
     std::shared_ptr<const BodyExtent> extent;  ///< shared by all copies of a body
     ExtremeVertices last;
     bool has_moved = false, has_changed = false;  ///< is in moved_, in changed_
-    std::uint64_t moved_at = 0;  ///< by clock_
+    std::uint64_t moved_at = 0;                   ///< by clock_
   };
 
   /// A pair of the last collide() within the scene.
-  struct Asked {
+  struct Queried {
     BodyKey a{}, b{};
     std::size_t reported = kNotReported;  ///< index in reported_
   };
@@ -170,7 +171,8 @@ class Scene::Impl {
   Participant participant();
   std::vector<NearbyPair> find_near(const Participants& participants, double within);
   std::vector<NearbyPair> sweep(const Participant& all);
-  std::vector<const Asked*> find_kept(std::span<const NearbyPair> near, const CollideRequest& request) const;
+  std::vector<const Queried*> find_kept(std::span<const NearbyPair> near,
+                                        const CollideRequest& request) const;
   void measure(const Participants& participants, std::span<const NearbyPair> near, DistanceRequest request);
 
   Workers workers_;
@@ -193,10 +195,10 @@ class Scene::Impl {
   CollideAnswers answers_;
   DistanceAnswers distances_;
   std::vector<SceneAnswer> reported_, next_reported_;
-  std::uint64_t clock_ = 0;     ///< counts moves
-  std::vector<Asked> asked_;    ///< ascending by keys
-  std::uint64_t asked_at_ = 0;  ///< by clock_
-  CollideRequest asked_with_;
+  std::uint64_t clock_ = 0;       ///< counts moves
+  std::vector<Queried> queried_;  ///< ascending by keys
+  std::uint64_t queried_at_ = 0;  ///< by clock_
+  CollideRequest queried_with_;
 };
 
 std::vector<BodyKey> Scene::Impl::keys() const {
@@ -348,18 +350,18 @@ std::optional<ScenePair> Scene::Impl::nearest_boxes(const Participants& particip
 }
 
 /// Returns for each pair within the scene the last answer, if it is still valid, or null.
-std::vector<const Scene::Impl::Asked*> Scene::Impl::find_kept(std::span<const NearbyPair> near,
-                                                              const CollideRequest& request) const {
-  std::vector<const Asked*> kept(near.size());
+std::vector<const Scene::Impl::Queried*> Scene::Impl::find_kept(std::span<const NearbyPair> near,
+                                                                const CollideRequest& request) const {
+  std::vector<const Queried*> kept(near.size());
   // An answer that depends on the time taken is not repeatable.
-  if (asked_.empty() || !(asked_with_ == request) || request.max_time > 0) return kept;
-  const auto has_stayed = [&](std::uint32_t place) { return slots_[place].moved_at <= asked_at_; };
+  if (queried_.empty() || !(queried_with_ == request) || request.max_time > 0) return kept;
+  const auto has_stayed = [&](std::uint32_t place) { return slots_[place].moved_at <= queried_at_; };
   // Both lists are ascending by keys.
-  auto last = asked_.begin();
+  auto last = queried_.begin();
   for (std::size_t i = 0; i < near.size(); ++i) {
     const NearbyPair& n = near[i];
-    while (last != asked_.end() && std::tie(last->a, last->b) < std::tie(n.key_a, n.key_b)) ++last;
-    if (last == asked_.end()) break;
+    while (last != queried_.end() && std::tie(last->a, last->b) < std::tie(n.key_a, n.key_b)) ++last;
+    if (last == queried_.end()) break;
     if (last->a == n.key_a && last->b == n.key_b && has_stayed(n.a) && has_stayed(n.b)) kept[i] = &*last;
   }
   return kept;
@@ -368,7 +370,7 @@ std::vector<const Scene::Impl::Asked*> Scene::Impl::find_kept(std::span<const Ne
 std::span<const SceneAnswer> Scene::Impl::collide(const Participants& participants,
                                                   const CollideRequest& request) {
   const std::vector<NearbyPair> near = find_near(participants, 0);
-  std::vector<const Asked*> kept(near.size());
+  std::vector<const Queried*> kept(near.size());
   if (participants.is_one) kept = find_kept(near, request);
   questions_.clear();
   for (std::size_t i = 0; i < near.size(); ++i)
@@ -376,10 +378,10 @@ std::span<const SceneAnswer> Scene::Impl::collide(const Participants& participan
   work.kept = near.size() - questions_.size();
   // The narrow phase runs all exact queries as one batch.
   batch_.collide(questions_, request, answers_);
-  std::vector<Asked> asked;
+  std::vector<Queried> queried;
   std::size_t count = 0, answered = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
-    asked.push_back({near[i].key_a, near[i].key_b, kNotReported});
+    queried.push_back({near[i].key_a, near[i].key_b, kNotReported});
     Expected<CollideResult>* answer = nullptr;
     if (kept[i] == nullptr)
       answer = &answers_[answered++];
@@ -391,14 +393,14 @@ std::span<const SceneAnswer> Scene::Impl::collide(const Participants& participan
     next_reported_[count].b = near[i].key_b;
     // Swap instead of move: the buffers of earlier results are reused for the next ones.
     std::swap(next_reported_[count].result, *answer);
-    asked.back().reported = count++;
+    queried.back().reported = count++;
   }
   std::swap(reported_, next_reported_);
-  asked_.clear();
+  queried_.clear();
   if (participants.is_one) {
-    asked_ = std::move(asked);
-    asked_at_ = clock_;
-    asked_with_ = request;
+    queried_ = std::move(queried);
+    queried_at_ = clock_;
+    queried_with_ = request;
   }
   return std::span<const SceneAnswer>(reported_).first(count);
 }

@@ -88,8 +88,8 @@ class FrameState {
                   {"face tests", render::group_digits(c.face_tests)},
                   {"refined", render::group_digits(c.refinements)}};
     for (std::uint32_t k = 0; k < crowd_.kinds.size(); ++k)
-      o.key.push_back(
-          {Mark::solid, kind_colour(k), std::to_string(crowd_.kinds[k].count) + " x " + crowd_.kinds[k].name});
+      o.key.push_back({Mark::solid, kind_colour(k),
+                       std::to_string(crowd_.kinds[k].count) + " x " + crowd_.kinds[k].name});
     o.key.push_back({Mark::solid, style().contact, "faces in contact"});
     if (shows_wrappers()) o.key.push_back({Mark::translucent, style().faint, "pseudo faces"});
     return o;

@@ -376,8 +376,8 @@ void write_step(JsonWriter& w, const CrowdStep& step, std::size_t index, std::si
   w.member("box_tests", step.broad_phase.box_tests).member("swaps", step.broad_phase.swaps);
   w.member("sorted_afresh", step.broad_phase.sorted_afresh);
   w.member("pairs", std::uint64_t{step.queries.size()}).end_object();
-  const auto kept = std::count_if(step.queries.begin(), step.queries.end(),
-                                  [](const CrowdQuery& q) { return q.is_kept; });
+  const auto kept =
+      std::count_if(step.queries.begin(), step.queries.end(), [](const CrowdQuery& q) { return q.is_kept; });
   if (kept > 0) w.member("kept_answers", static_cast<std::uint64_t>(kept));
   write_relations(w, step);
   w.member("bodies_in_contact", std::uint64_t{bodies_in_contact(step, bodies)});

@@ -78,8 +78,7 @@ class Player {
       CrowdQuery& query = step.queries[at];
       if (query.is_kept && moment == nullptr) return;
       CrowdQuery repeated;  // for the picture
-      CollideResult& result =
-          ask(pairs[at], questions[at], thread, query.is_kept ? repeated : query);
+      CollideResult& result = ask(pairs[at], questions[at], thread, query.is_kept ? repeated : query);
       // Otherwise its memory is reused.
       if (moment != nullptr) results[at] = std::move(result);
     });

@@ -49,7 +49,7 @@ class CrowdMotion {
 struct CrowdQuery {
   BodyPair bodies{0, 0};
   trace::StepResult result;
-  std::uint64_t contact_regions = 0;       ///< 0 if contacts were not requested
+  std::uint64_t contact_regions = 0;  ///< 0 if contacts were not requested
   /// Faces of A and of B that intersect the other body, ascending; empty beyond CrowdRun::contact_steps.
   std::array<std::vector<std::uint32_t>, 2> contact_faces;
   /// Neither body has moved since the step before, whose answer this is. The work of this step is none.

@@ -57,8 +57,7 @@ class SceneWriter {
   void choose_frame() {
     Eigen::AlignedBox3d all;
     for (std::uint32_t i = 0; i < bodies_; ++i) all.extend(world_box(run_.rep(i), run_.motion.pose(i, 0)));
-    if (!crowd_.room.isZero())
-      all.extend(Eigen::AlignedBox3d(-crowd_.room / 2, crowd_.room / 2));
+    if (!crowd_.room.isZero()) all.extend(Eigen::AlignedBox3d(-crowd_.room / 2, crowd_.room / 2));
     if (all.isEmpty() || !std::isfinite(all.diagonal().norm())) return;
     frame_.origin = all.center();
     if (const double size = all.diagonal().norm(); size > 0)
@@ -91,7 +90,8 @@ class SceneWriter {
       const double over = std::max(static_cast<double>(poses) / static_cast<double>(limits_.poses),
                                    static_cast<double>(queries) / static_cast<double>(limits_.queries));
       if (over <= 1 || count <= 1) return;
-      count = std::clamp<std::size_t>(static_cast<std::size_t>(static_cast<double>(count) / over), 1, count - 1);
+      count =
+          std::clamp<std::size_t>(static_cast<std::size_t>(static_cast<double>(count) / over), 1, count - 1);
     }
   }
 
@@ -175,12 +175,8 @@ class SceneWriter {
       }
       ends.push_back(static_cast<std::uint32_t>(moved_bodies.size()));
     }
-    return {{"index", packed(steps_)},
-            {"ends", packed(ends)},
-            {"moved", packed(moved_bodies)},
-            {"poses", packed(poses)},
-            {"all", run_.steps.size()},
-            {"contacts", run_.contact_steps}};
+    return {{"index", packed(steps_)}, {"ends", packed(ends)},     {"moved", packed(moved_bodies)},
+            {"poses", packed(poses)},  {"all", run_.steps.size()}, {"contacts", run_.contact_steps}};
   }
 
   /// Returns the queries of these steps, as columns. Intervals are texts, because rounded bounds may exclude
@@ -206,7 +202,8 @@ class SceneWriter {
         if (r.distance) distance.push_back(run::interval_text(r.distance->lower, r.distance->upper));
         if (r.clash) {
           kind.push_back(run::kind_text(r.clash->kind, r.clash->reason));
-          depth.push_back(r.clash->depth ? run::interval_text((*r.clash->depth)[0], (*r.clash->depth)[1]) : "");
+          depth.push_back(r.clash->depth ? run::interval_text((*r.clash->depth)[0], (*r.clash->depth)[1])
+                                         : "");
         }
         if (r.near) near.push_back(r.near->pairs);
       }
@@ -245,7 +242,9 @@ class SceneWriter {
 
 std::string crowd_scene_json(const spec::Crowd& crowd, const CrowdRun& run, const std::string& pair_command,
                              const CrowdSceneLimits& limits) {
-  return SceneWriter(crowd, run, limits).write(pair_command).dump(-1, ' ', false, json::error_handler_t::replace);
+  return SceneWriter(crowd, run, limits)
+      .write(pair_command)
+      .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace lrb::crowd

@@ -17,9 +17,9 @@ struct CrowdSceneLimits {
   std::size_t queries = 100'000;         ///< over all steps
 };
 
-/// Returns the run as JSON: each kind's real faces once; for each step the poses of the bodies that moved, and
-/// the queries. Beyond the limits, steps are left out, evenly spaced, and the JSON says so. `pair_command`:
-/// the command that records two bodies as a run of their own, without their names.
+/// Returns the run as JSON: each kind's real faces once; for each step the poses of the bodies that moved,
+/// and the queries. Beyond the limits, steps are left out, evenly spaced, and the JSON says so.
+/// `pair_command`: the command that records two bodies as a run of their own, without their names.
 std::string crowd_scene_json(const spec::Crowd& crowd, const CrowdRun& run, const std::string& pair_command,
                              const CrowdSceneLimits& limits = {});
 

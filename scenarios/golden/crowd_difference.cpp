@@ -102,7 +102,8 @@ class Queries {
 
   void add(const BodyPair& bodies, const std::string& what, const std::string& expected,
            const std::string& found, Effect::Kind kind) {
-    out_->push_back({step_, names_[bodies.i] + " and " + names_[bodies.j] + ": " + what, expected, found, kind});
+    out_->push_back(
+        {step_, names_[bodies.i] + " and " + names_[bodies.j] + ": " + what, expected, found, kind});
   }
 
   const crowd::CrowdTrace &expected_, &found_;
@@ -149,7 +150,8 @@ std::optional<trace::Divergence> first_divergence(const crowd::CrowdTrace& x, co
                          std::optional<std::size_t> step = {}) {
     return trace::Divergence{{}, step, what, expected, found};
   };
-  if (const std::string p = kinds_text(x.crowd), q = kinds_text(y.crowd); p != q) return differ("bodies", p, q);
+  if (const std::string p = kinds_text(x.crowd), q = kinds_text(y.crowd); p != q)
+    return differ("bodies", p, q);
   for (std::size_t k = 0; k < y.bodies.size(); ++k)
     if (x.bodies[k].hash != y.bodies[k].hash)
       return differ(y.crowd.kinds[k].name + ": hash", trace::to_hex(x.bodies[k].hash),

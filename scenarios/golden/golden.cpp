@@ -327,7 +327,8 @@ void remove_golden(const std::string& goldens, const std::string& name) {
   std::size_t bodies = 2;
   try {
     const std::string about = spec_file(goldens, name);
-    bodies = std::max(bodies, read_facts(io::JsonNode(io::JsonText(io::read_small_text(about), about))).meshes.size());
+    bodies = std::max(
+        bodies, read_facts(io::JsonNode(io::JsonText(io::read_small_text(about), about))).meshes.size());
   } catch (const InputError&) {  // damaged
   }
   for (const int dim : {2, 3})

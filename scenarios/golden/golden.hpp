@@ -80,9 +80,9 @@ struct Golden {
   std::string name;  ///< name of the scenario and of its folder
   GoldenSpec spec;
   GoldenFacts facts;
-  trace::Trace trace;                      ///< empty if `crowd` is set
-  std::optional<crowd::CrowdTrace> crowd;  ///< of a crowd's run
-  std::vector<std::optional<Mesh>> meshes;  ///< of the bodies (crowd: of the kinds); nullopt if not kept
+  trace::Trace trace;                            ///< empty if `crowd` is set
+  std::optional<crowd::CrowdTrace> crowd;        ///< of a crowd's run
+  std::vector<std::optional<Mesh>> meshes;       ///< of the bodies (crowd: of the kinds); nullopt if not kept
   std::vector<std::vector<GoldenImage>> frames;  ///< the variants of each frame; the unnamed one first
 };
 

@@ -310,8 +310,7 @@ void clear_golden_report(const std::string& folder, const std::vector<std::strin
 void write_failures(const GoldenResult& result, const GoldenRun& run, const std::string& folder) {
   if (result.verdict.passed()) return;
   make_folder(folder + "/" + result.name);
-  if (result.verdict.divergence)
-    save_run_trace(run, folder + "/" + result.name + "/" + kActualTrace);
+  if (result.verdict.divergence) save_run_trace(run, folder + "/" + result.name + "/" + kActualTrace);
   for (const report::Comparison& c : result.comparisons)
     for (std::size_t kind = 0; kind < std::size(kKinds); ++kind)
       if (const report::PngBytes& png = c.pngs[kind]; !c.passed && !png.empty())
@@ -357,11 +356,10 @@ std::string result_text(const GoldenResult& r) {
   if (!v.rejection.empty())
     return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it after fixing that: " + r.approve +
            "\n";
-  std::string head = v.answers_differ ? "answers " + answers_text(r)
-                     : v.divergence   ? "events or counters differ"
-                     : r.spec.compares(Level::events)
-                         ? event_count(r) + " equal"
-                         : "answers of " + answers_text(r);
+  std::string head = v.answers_differ                 ? "answers " + answers_text(r)
+                     : v.divergence                   ? "events or counters differ"
+                     : r.spec.compares(Level::events) ? event_count(r) + " equal"
+                                                      : "answers of " + answers_text(r);
   std::string out =
       (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_text(r) + "\n";
   if (v.passed()) return out;

@@ -28,7 +28,9 @@ struct GoldenRun {
   std::vector<run::PaintedFrame> frames;
 
   /// Returns the bodies, of a crowd one for each kind.
-  const std::vector<bodies::LoadedBody>& bodies() const { return crowd ? crowd->run.kinds : recording.bodies; }
+  const std::vector<bodies::LoadedBody>& bodies() const {
+    return crowd ? crowd->run.kinds : recording.bodies;
+  }
 };
 
 /// Runs a scenario or a crowd, always on the event clock, regardless of its setting, and draws nothing.

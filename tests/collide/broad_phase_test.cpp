@@ -195,7 +195,7 @@ TEST_CASE("incremental updates find the pairs of boxes of brute force, and compa
         if (random() % share != 0) continue;
         moved.push_back(i);
         boxes[i] = random_box();
-        if (random() % 8 == 0) boxes[i] = Box();                                       // empty
+        if (random() % 8 == 0) boxes[i] = Box();  // empty
         if (random() % 16 == 0) boxes[i] = Box(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1e300, 1, 1));
         if (random() % 16 == 0) boxes[i].min().setConstant(-HUGE_VAL);
       }

@@ -327,7 +327,8 @@ TEST_CASE("a scene keeps the answers of bodies that have not moved, for the same
   RandomEngine random(31);
   Scene scene(2);
   std::vector<BodyKey> keys;
-  for (int i = 0; i < 60; ++i) keys.push_back(scene.add(bodies[random() % bodies.size()], random_place(random, 4)));
+  for (int i = 0; i < 60; ++i)
+    keys.push_back(scene.add(bodies[random() % bodies.size()], random_place(random, 4)));
   // Compares with a scene that asks all queries.
   const auto check = [&](const CollideRequest& request) {
     Scene anew(1);
@@ -359,11 +360,11 @@ TEST_CASE("a scene keeps the answers of bodies that have not moved, for the same
     CAPTURE(step);
     const BodyKey moved = keys[random() % keys.size()];
     scene.move(moved, random_place(random, 4));
-    const std::size_t asked = near_of(moved);  // queries of other kinds do not disturb
+    const std::size_t queried = near_of(moved);  // queries of other kinds do not disturb
     scene.collide(bodies[0], Pose{});
     scene.move(keys[7], scene.pose(keys[7]));  // to where it is
     check(request);
-    CHECK(scene.work().kept == scene.work().near - asked);
+    CHECK(scene.work().kept == scene.work().near - queried);
   }
   request.contacts = true;
   check(request);

@@ -31,8 +31,8 @@ class SweepAndPrune {
   /// Returns the pairs of boxes that intersect (closed sets: touching is enough), ascending. Empty boxes
   /// intersect nothing. Coordinates must not be NaN. Valid until the next update.
   const std::vector<BodyPair>& update(std::span<const Eigen::AlignedBox3d> boxes);
-  /// The same for boxes of which only those of the bodies `moved` (ascending) differ from the last update: the
-  /// pairs of the others are kept and not compared again.
+  /// The same for boxes of which only those of the bodies `moved` (ascending) differ from the last update:
+  /// the pairs of the others are kept and not compared again.
   const std::vector<BodyPair>& update(std::span<const Eigen::AlignedBox3d> boxes,
                                       std::span<const std::uint32_t> moved);
   const Work& work() const { return work_; }

@@ -486,7 +486,7 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
   };
   crowd.frames.at = render::FrameSpec::At::none;
   const crowd::CrowdRun run = play(crowd);
-  std::size_t kept = 0, asked = 0;
+  std::size_t kept = 0, queried = 0;
   for (std::uint32_t step = 0; step < crowd.steps; ++step) {
     CAPTURE(step);
     spec::Crowd alone = crowd;
@@ -508,11 +508,11 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
       CHECK(result == y.result);
       CHECK(x.contact_regions == y.contact_regions);
       CHECK(x.contact_faces == y.contact_faces);
-      (x.is_kept ? kept : asked) += 1;
+      (x.is_kept ? kept : queried) += 1;
     }
   }
   CHECK(kept > 20);
-  CHECK(asked > 20);
+  CHECK(queried > 20);
   CHECK(std::all_of(run.steps[5].queries.begin(), run.steps[5].queries.end(),
                     [](const crowd::CrowdQuery& q) { return q.is_kept; }));
   // Pictures do not change which answers are kept.

@@ -579,7 +579,8 @@ TEST_CASE("goldens: jobs change only the time; one that cannot run fails alone; 
 
 namespace {
 
-/// Balls and a tetrahedron from a file. The first two bodies intersect in both steps, the third in the second.
+/// Balls and a tetrahedron from a file. The first two bodies intersect in both steps, the third in the
+/// second.
 struct ApprovedCrowd : Folder {
   ApprovedCrowd() {
     write_tip(1);
@@ -611,17 +612,19 @@ struct ApprovedCrowd : Folder {
 
 TEST_CASE("goldens: a crowd is approved, tested and listed like a scenario") {
   const ApprovedCrowd folder;
-  const std::vector<std::string> files = {
-      "goldens/three/b.ply",       "goldens/three/frame_1.png",     "goldens/three/frame_2.png",
-      "goldens/three/golden.json", "goldens/three/trace.json.gz"};
+  const std::vector<std::string> files = {"goldens/three/b.ply", "goldens/three/frame_1.png",
+                                          "goldens/three/frame_2.png", "goldens/three/golden.json",
+                                          "goldens/three/trace.json.gz"};
   std::vector<std::string> tree = folder.tree();
   for (const std::string& file : files) CHECK(std::find(tree.begin(), tree.end(), file) != tree.end());
-  CHECK(nlohmann::json::parse(slurp(folder / "goldens/three/golden.json"))["crowd"] == "../../three.crowd.json");
+  CHECK(nlohmann::json::parse(slurp(folder / "goldens/three/golden.json"))["crowd"] ==
+        "../../three.crowd.json");
   const Outcome o = folder.test();
   CAPTURE(o.out);
   CHECK(o.out == "ok    three: 4 queries equal; images: 2 equal\n");
   CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged three\n");
-  CHECK(has(test::run(folder, {"golden", "list"}).out, "three: ../../three.crowd.json; compares answers, events"));
+  CHECK(has(test::run(folder, {"golden", "list"}).out,
+            "three: ../../three.crowd.json; compares answers, events"));
   CHECK(test::run(folder, {"golden", "report", "three.crowd.json"}).code == 0);
   CHECK(test::run(folder, {"golden", "remove", "three"}).code == 0);
   CHECK_FALSE(fs::exists(folder / "goldens/three"));
@@ -659,7 +662,8 @@ TEST_CASE("goldens: a failure of a crowd names the changed mesh, the moved body 
 TEST_CASE("goldens: a golden of a scenario does not fit a crowd of the same name") {
   const ApprovedCrowd folder;
   const std::string spec = slurp(folder / "goldens/three/golden.json");
-  folder.write("goldens/three/golden.json", std::regex_replace(spec, std::regex("\"crowd\""), "\"scenario\""));
+  folder.write("goldens/three/golden.json",
+               std::regex_replace(spec, std::regex("\"crowd\""), "\"scenario\""));
   const Outcome o = folder.test();
   CAPTURE(o.out);
   CHECK(o.code == 1);
