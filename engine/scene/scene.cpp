@@ -194,10 +194,11 @@ class Scene::Impl {
   std::vector<PosedPair> questions_;
   CollideAnswers answers_;
   DistanceAnswers distances_;
-  std::vector<SceneAnswer> reported_, next_reported_;
-  std::uint64_t clock_ = 0;       ///< counts moves
-  std::vector<Queried> queried_;  ///< ascending by keys
-  std::uint64_t queried_at_ = 0;  ///< by clock_
+  std::vector<SceneAnswer> reported_, next_reported_;  ///< of pairs within the scene
+  std::vector<SceneAnswer> reported_outside_;          ///< of pairs with others
+  std::uint64_t clock_ = 0;                            ///< counts moves
+  std::vector<Queried> queried_;                       ///< ascending by keys
+  std::uint64_t queried_at_ = 0;                       ///< by clock_
   CollideRequest queried_with_;
 };
 
@@ -379,6 +380,7 @@ std::span<const SceneAnswer> Scene::Impl::collide(const Participants& participan
   // The narrow phase runs all exact queries as one batch.
   batch_.collide(questions_, request, answers_);
   std::vector<Queried> queried;
+  std::vector<SceneAnswer>& reported = participants.is_one ? next_reported_ : reported_outside_;
   std::size_t count = 0, answered = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
     queried.push_back({near[i].key_a, near[i].key_b, kNotReported});
@@ -388,20 +390,18 @@ std::span<const SceneAnswer> Scene::Impl::collide(const Participants& participan
     else if (kept[i]->reported != kNotReported)
       answer = &reported_[kept[i]->reported].result;
     if (answer == nullptr || !is_reported(*answer)) continue;
-    if (next_reported_.size() == count) next_reported_.emplace_back();
-    next_reported_[count].a = near[i].key_a;
-    next_reported_[count].b = near[i].key_b;
+    if (reported.size() == count) reported.emplace_back();
+    reported[count].a = near[i].key_a;
+    reported[count].b = near[i].key_b;
     // Swap instead of move: the buffers of earlier results are reused for the next ones.
-    std::swap(next_reported_[count].result, *answer);
+    std::swap(reported[count].result, *answer);
     queried.back().reported = count++;
   }
+  if (!participants.is_one) return std::span<const SceneAnswer>(reported).first(count);
   std::swap(reported_, next_reported_);
-  queried_.clear();
-  if (participants.is_one) {
-    queried_ = std::move(queried);
-    queried_at_ = clock_;
-    queried_with_ = request;
-  }
+  queried_ = std::move(queried);
+  queried_at_ = clock_;
+  queried_with_ = request;
   return std::span<const SceneAnswer>(reported_).first(count);
 }
 

@@ -147,6 +147,7 @@
   }
 
   try {
+    await new Promise((done) => setTimeout(done, 500)); // the strip is drawn once its size is known
     agreesWithTheRun();
     followsTheStep();
     selects();
