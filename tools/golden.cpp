@@ -45,18 +45,19 @@ std::string approve_command(const GoldenOptions& o, const std::string& name) {
 
 struct NamedGolden {
   std::string name;
-  std::optional<spec::Scenario> scenario;  ///< nullopt until it has been opened
+  std::optional<golden::Source> source;  ///< nullopt until it has been opened
 };
 
 /// Finds a golden by its own name, or by its scenario: the name of a shipped one, or a file.
 NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
   if (golden::has_golden(o.goldens, word)) return {word, std::nullopt};
-  spec::Scenario scenario = spec::open_scenario(word);
-  if (!golden::has_golden(o.goldens, scenario.name))
+  golden::Source source = golden::open_source(word);
+  const std::string name = golden::name_of(source);
+  if (!golden::has_golden(o.goldens, name))
     throw InputError(word + ": no golden in " + o.goldens +
                      "; create it with: lrbscope golden approve --goldens " + shell_word(o.goldens) + " " +
                      shell_word(word));
-  return {scenario.name, std::move(scenario)};
+  return {name, std::move(source)};
 }
 
 std::vector<NamedGolden> goldens_to_test(const GoldenOptions& o) {
@@ -109,9 +110,13 @@ Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressR
   try {
     out.golden = golden::load_golden(o.goldens, g.name);
     apply(o, out.golden->spec);
-    spec::Scenario scenario =
-        g.scenario ? *g.scenario : golden::golden_scenario(o.goldens, g.name, out.golden->spec);
-    out.run = golden::record_golden(std::move(scenario), out.golden->spec, progress);
+    golden::Source source = g.source ? *g.source : golden::golden_source(o.goldens, g.name, out.golden->spec);
+    if (std::holds_alternative<spec::Crowd>(source) != out.golden->spec.is_crowd)
+      throw InputError(g.name + ": its golden is not of a " +
+                       (out.golden->spec.is_crowd ? "scenario" : "crowd") +
+                       "; approve it again, or rename one of them");
+    const std::uint32_t threads = o.jobs > 1 ? 1 : all_cores();
+    out.run = golden::record_golden(std::move(source), out.golden->spec, progress, threads);
   } catch (const InputError& e) {
     out.rejection = e.what();
   }
@@ -220,7 +225,7 @@ int run_list(const GoldenOptions& o) {
     all += bytes;
     std::string missing;  // why its scenario cannot be opened
     try {
-      golden::golden_scenario(o.goldens, name, spec);
+      golden::golden_source(o.goldens, name, spec);
     } catch (const InputError& e) {
       missing = e.what();
     }
@@ -246,36 +251,36 @@ int run_list(const GoldenOptions& o) {
 
 /// Throws InputError if the golden belongs to another scenario that still exists: two scenarios of one name
 /// would overwrite each other's folder.
-void reject_another(const GoldenOptions& o, const std::string& name, const std::string& kept,
+void reject_another(const GoldenOptions& o, const std::string& name, const golden::GoldenSpec& kept,
                     const std::string& reference, const std::string& word) {
-  if (kept == reference) return;
-  golden::GoldenSpec other;
-  other.scenario = kept;
+  if (kept.scenario == reference) return;
   try {
-    golden::golden_scenario(o.goldens, name, other);
+    golden::golden_source(o.goldens, name, kept);
   } catch (const InputError&) {
     return;  // it was removed or renamed
   }
   const std::filesystem::path folder = std::filesystem::path(o.goldens) / name;
   throw InputError(printable_name(word) + ": has the same name as another scenario, whose golden is in " +
-                   printable_name(folder.string()) + " (its \"scenario\" is " + kept +
+                   printable_name(folder.string()) + " (its \"" + (kept.is_crowd ? "crowd" : "scenario") +
+                   "\" is " + kept.scenario +
                    "); rename one of them, or approve into another folder with --goldens");
 }
 
 golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& name,
-                                   const spec::Scenario& scenario, const std::string& word) {
+                                   const golden::Source& source, const std::string& word) {
   golden::GoldenSpec spec;
   if (golden::has_golden(o.goldens, name)) {
     spec = golden::read_golden_spec(o.goldens, name);
     if (name != word) {
-      const std::string reference = golden::scenario_reference(o.goldens, scenario, word);
-      reject_another(o, name, spec.scenario, reference, word);
+      const std::string reference = golden::scenario_reference(o.goldens, name, word);
+      reject_another(o, name, spec, reference, word);
       spec.scenario = reference;
     }
   } else {
-    golden::set_default_size(spec, scenario.frames);
-    spec.scenario = golden::scenario_reference(o.goldens, scenario, word);
+    golden::set_default_size(spec, golden::frames_of(source));
+    spec.scenario = golden::scenario_reference(o.goldens, name, word);
   }
+  spec.is_crowd = std::holds_alternative<spec::Crowd>(source);
   if (!o.size.empty()) {
     PictureOptions picture;
     picture.size = o.size;
@@ -292,14 +297,14 @@ golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& na
 int run_approve(const GoldenOptions& o, const Globals& globals) {
   const std::vector<std::string> words = o.scenarios.empty() ? golden::golden_names(o.goldens) : o.scenarios;
   for (const std::string& word : words) {
-    spec::Scenario scenario =
+    golden::Source source =
         golden::has_golden(o.goldens, word)
-            ? golden::golden_scenario(o.goldens, word, golden::read_golden_spec(o.goldens, word))
-            : spec::open_scenario(word);
-    const std::string name = scenario.name;
-    const golden::GoldenSpec spec = spec_to_approve(o, name, scenario, word);
+            ? golden::golden_source(o.goldens, word, golden::read_golden_spec(o.goldens, word))
+            : golden::open_source(word);
+    const std::string name = golden::name_of(source);
+    const golden::GoldenSpec spec = spec_to_approve(o, name, source, word);
     const golden::GoldenRun run =
-        golden::play_golden(std::move(scenario), spec, progress_report(globals.quiet));
+        golden::play_golden(std::move(source), spec, progress_report(globals.quiet), all_cores());
     const std::vector<std::string> done = golden::approve_golden(o.goldens, spec, run, o.variant, o.dry);
     for (const std::string& line : done) print(line + "\n");
     if (done.empty()) print("unchanged " + name + "\n");
@@ -326,7 +331,7 @@ void add_folder(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
 CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string& what,
                    const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
   CLI::App* app = golden.add_subcommand(name, what);
-  app->add_option("SCENARIO", o->scenarios, "Shipped scenarios or JSON files [" + none + "]");
+  app->add_option("SCENARIO", o->scenarios, "Shipped scenarios and crowds, or JSON files [" + none + "]");
   add_folder(*app, o);
   return app;
 }

@@ -115,14 +115,18 @@ std::string read_all(const std::string& path, std::uint64_t max_bytes) {
 }  // namespace
 
 void save_trace(const Trace& trace, const std::string& path) {
+  save_trace([&](ByteSink& sink) { write_trace(trace, sink); }, path);
+}
+
+void save_trace(const std::function<void(ByteSink&)>& write, const std::string& path) {
   AtomicFile file(path);
   FileSink sink(file);
   if (path.ends_with(".gz")) {
     GzipSink gzip(sink);
-    write_trace(trace, gzip);
+    write(gzip);
     gzip.finish();
   } else {
-    write_trace(trace, sink);
+    write(sink);
   }
   file.commit();
 }

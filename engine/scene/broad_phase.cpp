@@ -3,6 +3,12 @@
 /// 1. Choose the axis with the lowest density of boxes: crowding().
 /// 2. Sort the boxes by their lower ends: by insertion, because bodies move little from step to step.
 /// 3. Sweep: compare each box on the other axes with those that begin before it ends.
+///
+/// If few boxes have moved:
+/// 1. Merge them into the order of the others.
+/// 2. Keep the pairs of the others. Compare each moved box with those that begin before it ends, and with
+/// those
+///    before it in the order that are at most as far away as the longest box is long.
 
 #include <algorithm>
 #include <array>
@@ -53,12 +59,14 @@ void SweepAndPrune::choose_axis(std::span<const Box> boxes) {
   if (work_.sorted_afresh) axis_ = best;
 }
 
+/// The order of the boxes. Ties are broken by index: it is strict and deterministic.
+bool SweepAndPrune::before(Boxes boxes, std::uint32_t i, std::uint32_t j) const {
+  const double x = boxes[i].min()[axis_], y = boxes[j].min()[axis_];
+  return x != y ? x < y : i < j;
+}
+
 void SweepAndPrune::sort(std::span<const Box> boxes) {
-  // Ties are broken by index: the order is strict and deterministic.
-  const auto before = [&](std::uint32_t i, std::uint32_t j) {
-    const double x = boxes[i].min()[axis_], y = boxes[j].min()[axis_];
-    return x != y ? x < y : i < j;
-  };
+  const auto before = [&](std::uint32_t i, std::uint32_t j) { return this->before(boxes, i, j); };
   if (work_.sorted_afresh) {
     order_.resize(boxes.size());
     std::iota(order_.begin(), order_.end(), 0u);
@@ -78,8 +86,20 @@ void SweepAndPrune::sort(std::span<const Box> boxes) {
   }
 }
 
+namespace {
+
+/// Returns true if two boxes overlap on two axes; equal ends count as overlap.
+bool overlap(const Box& a, const Box& b, int u, int v) {
+  return a.min()[u] <= b.max()[u] && b.min()[u] <= a.max()[u] && a.min()[v] <= b.max()[v] &&
+         b.min()[v] <= a.max()[v];
+}
+
+}  // namespace
+
 const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
   work_ = {};
+  moved_ = 0;
+  longest_ = 0;
   choose_axis(boxes);
   sort(boxes);
   pairs_.clear();
@@ -88,6 +108,7 @@ const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
     const std::uint32_t i = order_[k];
     const Box& a = boxes[i];
     if (a.isEmpty()) continue;
+    longest_ = std::max(longest_, a.max()[axis_] - a.min()[axis_]);
     // All boxes that begin before `a` ends overlap it on this axis.
     for (std::size_t l = k + 1; l < order_.size(); ++l) {
       const std::uint32_t j = order_[l];
@@ -96,14 +117,75 @@ const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
       if (b.min()[axis_] > a.max()[axis_]) break;
       if (b.isEmpty()) continue;
       ++work_.box_tests;
-      // Compare the other two axes; equal ends count as overlap.
-      if (a.min()[u] <= b.max()[u] && b.min()[u] <= a.max()[u] && a.min()[v] <= b.max()[v] &&
-          b.min()[v] <= a.max()[v])
-        pairs_.push_back({std::min(i, j), std::max(i, j)});
+      if (overlap(a, b, u, v)) pairs_.push_back({std::min(i, j), std::max(i, j)});
     }
   }
   std::sort(pairs_.begin(), pairs_.end());
   return pairs_;
+}
+
+const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes,
+                                                   std::span<const std::uint32_t> moved) {
+  // A moved box is compared with boxes on both sides, in a complete update with those on one: beyond a
+  // quarter of the boxes, the complete update is faster. It also chooses the axis again, after as many moves as
+  // bodies.
+  constexpr std::size_t kIncrementalShare = 4;
+  if (order_.size() != boxes.size() || kIncrementalShare * moved.size() > boxes.size() ||
+      moved_ > boxes.size())
+    return update(boxes);
+  work_ = {};
+  moved_ += moved.size();
+  if (moved.empty()) return pairs_;
+  has_moved_.assign(boxes.size(), false);
+  for (const std::uint32_t i : moved) {
+    has_moved_[i] = true;
+    if (!boxes[i].isEmpty()) longest_ = std::max(longest_, boxes[i].max()[axis_] - boxes[i].min()[axis_]);
+  }
+  sort_moved(boxes, moved);
+  // Keep the pairs of the others, and merge those of the moved boxes into them.
+  std::erase_if(pairs_, [&](const BodyPair& p) { return has_moved_[p.i] || has_moved_[p.j]; });
+  found_.clear();
+  for (const std::uint32_t i : moved) sweep_moved(boxes, i);
+  std::sort(found_.begin(), found_.end());
+  const auto kept = static_cast<std::ptrdiff_t>(pairs_.size());
+  pairs_.insert(pairs_.end(), found_.begin(), found_.end());
+  std::inplace_merge(pairs_.begin(), pairs_.begin() + kept, pairs_.end());
+  return pairs_;
+}
+
+/// Restores the order after some bodies have moved: sorts these, and merges them into the others.
+void SweepAndPrune::sort_moved(Boxes boxes, std::span<const std::uint32_t> moved) {
+  const auto earlier = [&](std::uint32_t i, std::uint32_t j) { return before(boxes, i, j); };
+  rest_.clear();
+  for (const std::uint32_t i : order_)
+    if (!has_moved_[i]) rest_.push_back(i);
+  std::vector<std::uint32_t> sorted(moved.begin(), moved.end());
+  std::sort(sorted.begin(), sorted.end(), earlier);
+  std::merge(rest_.begin(), rest_.end(), sorted.begin(), sorted.end(), order_.begin(), earlier);
+}
+
+/// Appends the pairs of a moved body. A pair of two moved bodies is found by the one with the lower number.
+void SweepAndPrune::sweep_moved(Boxes boxes, std::uint32_t i) {
+  const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
+  const Box& a = boxes[i];
+  if (a.isEmpty()) return;
+  const auto compare = [&](std::uint32_t j) {
+    const Box& b = boxes[j];
+    if (b.isEmpty() || (has_moved_[j] && j < i)) return;
+    ++work_.box_tests;
+    if (a.min()[axis_] <= b.max()[axis_] && b.min()[axis_] <= a.max()[axis_] && overlap(a, b, u, v))
+      found_.push_back({std::min(i, j), std::max(i, j)});
+  };
+  const auto here = static_cast<std::size_t>(
+      std::lower_bound(order_.begin(), order_.end(), i,
+                       [&](std::uint32_t x, std::uint32_t y) { return before(boxes, x, y); }) -
+      order_.begin());
+  for (std::size_t k = here + 1; k < order_.size() && !(boxes[order_[k]].min()[axis_] > a.max()[axis_]); ++k)
+    compare(order_[k]);
+  // Rounding is monotonic: the rounded distance of the lower ends of overlapping boxes is at most the rounded
+  // length of the first one.
+  for (std::size_t k = here; k-- > 0 && !(a.min()[axis_] - boxes[order_[k]].min()[axis_] > longest_);)
+    compare(order_[k]);
 }
 
 }  // namespace lrb

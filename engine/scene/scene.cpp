@@ -2,7 +2,9 @@
 // collide():
 // 1. Recompute the world AABBs of moved bodies.
 // 2. Broad phase: within a scene, sort and sweep, coherent from call to call; otherwise a one-axis sweep.
-// 3. Narrow phase: an exact query for each pair, as one batch.
+// 3. Narrow phase: an exact query for each pair, as one batch. Within a scene, pairs of which neither body
+// has
+//    moved keep their answers.
 // nearest(): branch and bound over pairs in ascending order of the gaps of their AABBs.
 // Candidate pairs are sorted by gap and keys, so no result depends on the number of threads.
 
@@ -149,15 +151,28 @@ class Scene::Impl {
     std::optional<Body> body;
     std::shared_ptr<const BodyExtent> extent;  ///< shared by all copies of a body
     ExtremeVertices last;
-    bool has_moved = false;
+    bool has_moved = false, has_changed = false;  ///< is in moved_, in changed_
+    std::uint64_t moved_at = 0;                   ///< by clock_
   };
 
+  /// A pair of the last collide() within the scene.
+  struct Queried {
+    BodyKey a{}, b{};
+    std::size_t reported = kNotReported;  ///< index in reported_
+  };
+  static constexpr std::size_t kNotReported = std::numeric_limits<std::size_t>::max();
+
   std::uint32_t free_place();
+  void note_change(std::uint32_t place) {
+    if (!std::exchange(slots_[place].has_changed, true)) changed_.push_back(place);
+  }
   void add_places(std::size_t more);
   std::shared_ptr<const BodyExtent> extent_of(const LrbRep& rep);
   Participant participant();
   std::vector<NearbyPair> find_near(const Participants& participants, double within);
   std::vector<NearbyPair> sweep(const Participant& all);
+  std::vector<const Queried*> find_kept(std::span<const NearbyPair> near,
+                                        const CollideRequest& request) const;
   void measure(const Participants& participants, std::span<const NearbyPair> near, DistanceRequest request);
 
   Workers workers_;
@@ -170,7 +185,8 @@ class Scene::Impl {
   std::vector<PlacedBody> placed_;  ///< (|slots|)
   std::vector<Box> boxes_;          ///< (|slots|) empty for free slots
   std::vector<std::uint32_t> free_;
-  std::vector<std::uint32_t> moved_;  ///< slots whose boxes must be recomputed
+  std::vector<std::uint32_t> moved_;    ///< slots whose boxes must be recomputed
+  std::vector<std::uint32_t> changed_;  ///< slots whose boxes have changed since the last sweep
   std::unordered_map<BodyKey, std::uint32_t> place_of_;
   std::unordered_map<std::uint64_t, std::weak_ptr<const BodyExtent>> extents_;  ///< by LrbRep::serial()
 
@@ -178,7 +194,12 @@ class Scene::Impl {
   std::vector<PosedPair> questions_;
   CollideAnswers answers_;
   DistanceAnswers distances_;
-  std::vector<SceneAnswer> reported_;
+  std::vector<SceneAnswer> reported_, next_reported_;  ///< of pairs within the scene
+  std::vector<SceneAnswer> reported_outside_;          ///< of pairs with others
+  std::uint64_t clock_ = 0;                            ///< counts moves
+  std::vector<Queried> queried_;                       ///< ascending by keys
+  std::uint64_t queried_at_ = 0;                       ///< by clock_
+  CollideRequest queried_with_;
 };
 
 std::vector<BodyKey> Scene::Impl::keys() const {
@@ -228,6 +249,7 @@ BodyKey Scene::Impl::add(Body body, const Pose& pose) {
   placed_[place] = {key, &body.rep(), pose};
   slot.body = std::move(body);
   slot.last = {};
+  slot.moved_at = ++clock_;
   // The flag keeps each slot in moved_ at most once.
   if (!std::exchange(slot.has_moved, true)) moved_.push_back(place);
   place_of_[key] = place;
@@ -246,6 +268,7 @@ bool Scene::Impl::remove(BodyKey key) {
   slots_[place].body.reset();
   placed_[place] = {};
   boxes_[place].setEmpty();
+  note_change(place);
   free_.push_back(place);
   place_of_.erase(found);
   ++came_and_gone_;
@@ -256,7 +279,9 @@ bool Scene::Impl::move(BodyKey key, const Pose& pose) {
   const auto found = place_of_.find(key);
   if (found == place_of_.end()) return false;
   const std::uint32_t place = found->second;
+  if (placed_[place].pose.r == pose.r && placed_[place].pose.t == pose.t) return true;
   placed_[place].pose = pose;
+  slots_[place].moved_at = ++clock_;
   if (!std::exchange(slots_[place].has_moved, true)) moved_.push_back(place);
   return true;
 }
@@ -270,6 +295,7 @@ Participant Scene::Impl::participant() {
     if (slot.body && slot.has_moved) boxes_[place] = slot.extent->in_world(placed_[place].pose, &slot.last);
   });
   for (const std::uint32_t place : moved_) slots_[place].has_moved = false;
+  for (const std::uint32_t place : moved_) note_change(place);
   moved_.clear();
   return {boxes_, placed_};
 }
@@ -290,8 +316,11 @@ std::vector<NearbyPair> Scene::Impl::sweep(const Participant& all) {
   // removed, restart with a full sort.
   constexpr std::size_t kShareThatStays = 8;
   if (std::exchange(came_and_gone_, 0) > slots_.size() / kShareThatStays) sweep_ = {};
+  std::sort(changed_.begin(), changed_.end());
   std::vector<NearbyPair> near;
-  for (const BodyPair& p : sweep_.update(all.boxes)) near.push_back(near_of_one(all, p.i, p.j, 0));
+  for (const BodyPair& p : sweep_.update(all.boxes, changed_)) near.push_back(near_of_one(all, p.i, p.j, 0));
+  for (const std::uint32_t place : changed_) slots_[place].has_changed = false;
+  changed_.clear();
   work.broad_phase = sweep_.work();
   return near;
 }
@@ -303,8 +332,8 @@ std::vector<NearbyPair> Scene::Impl::find_near(const Participants& participants,
     near = sweep(participants.a);
   else
     participants.each_near(within, [&](const NearbyPair& n) { near.push_back(n); });
-  // A unique order, whichever method found the pairs.
-  std::sort(near.begin(), near.end());
+  // A unique order, whichever method found the pairs. Without removed bodies, the sweep has it already.
+  if (!std::is_sorted(near.begin(), near.end())) std::sort(near.begin(), near.end());
   work.near = near.size();
   return near;
 }
@@ -321,23 +350,58 @@ std::optional<ScenePair> Scene::Impl::nearest_boxes(const Participants& particip
   return ScenePair{found->key_a, found->key_b, found->gap};
 }
 
+/// Returns for each pair within the scene the last answer, if it is still valid, or null.
+std::vector<const Scene::Impl::Queried*> Scene::Impl::find_kept(std::span<const NearbyPair> near,
+                                                                const CollideRequest& request) const {
+  std::vector<const Queried*> kept(near.size());
+  // An answer that depends on the time taken is not repeatable.
+  if (queried_.empty() || !(queried_with_ == request) || request.max_time > 0) return kept;
+  const auto has_stayed = [&](std::uint32_t place) { return slots_[place].moved_at <= queried_at_; };
+  // Both lists are ascending by keys.
+  auto last = queried_.begin();
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const NearbyPair& n = near[i];
+    while (last != queried_.end() && std::tie(last->a, last->b) < std::tie(n.key_a, n.key_b)) ++last;
+    if (last == queried_.end()) break;
+    if (last->a == n.key_a && last->b == n.key_b && has_stayed(n.a) && has_stayed(n.b)) kept[i] = &*last;
+  }
+  return kept;
+}
+
 std::span<const SceneAnswer> Scene::Impl::collide(const Participants& participants,
                                                   const CollideRequest& request) {
   const std::vector<NearbyPair> near = find_near(participants, 0);
+  std::vector<const Queried*> kept(near.size());
+  if (participants.is_one) kept = find_kept(near, request);
   questions_.clear();
-  for (const NearbyPair& n : near) questions_.push_back(participants.posed(n));
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (kept[i] == nullptr) questions_.push_back(participants.posed(near[i]));
+  work.kept = near.size() - questions_.size();
   // The narrow phase runs all exact queries as one batch.
   batch_.collide(questions_, request, answers_);
-  std::size_t count = 0;
+  std::vector<Queried> queried;
+  std::vector<SceneAnswer>& reported = participants.is_one ? next_reported_ : reported_outside_;
+  std::size_t count = 0, answered = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
-    if (!is_reported(answers_[i])) continue;
-    if (reported_.size() == count) reported_.emplace_back();
-    reported_[count].a = near[i].key_a;
-    reported_[count].b = near[i].key_b;
+    queried.push_back({near[i].key_a, near[i].key_b, kNotReported});
+    Expected<CollideResult>* answer = nullptr;
+    if (kept[i] == nullptr)
+      answer = &answers_[answered++];
+    else if (kept[i]->reported != kNotReported)
+      answer = &reported_[kept[i]->reported].result;
+    if (answer == nullptr || !is_reported(*answer)) continue;
+    if (reported.size() == count) reported.emplace_back();
+    reported[count].a = near[i].key_a;
+    reported[count].b = near[i].key_b;
     // Swap instead of move: the buffers of earlier results are reused for the next ones.
-    std::swap(reported_[count].result, answers_[i]);
-    ++count;
+    std::swap(reported[count].result, *answer);
+    queried.back().reported = count++;
   }
+  if (!participants.is_one) return std::span<const SceneAnswer>(reported).first(count);
+  std::swap(reported_, next_reported_);
+  queried_ = std::move(queried);
+  queried_at_ = clock_;
+  queried_with_ = request;
   return std::span<const SceneAnswer>(reported_).first(count);
 }
 

@@ -23,7 +23,9 @@ using Mark = render::LegendItem::Mark;
 /// With more kinds than this, some share a colour.
 constexpr std::uint32_t kColours = 24;
 
-render::Rgba colour_of(std::uint32_t kind) {
+}  // namespace
+
+render::Rgba kind_colour(std::uint32_t kind) {
   // The first ones are distinguishable from the contacts' red and from each other, also with colour vision
   // deficiency.
   constexpr render::Rgba kFirst[] = {{86, 150, 205}, {222, 172, 76},  {92, 172, 140},
@@ -31,6 +33,8 @@ render::Rgba colour_of(std::uint32_t kind) {
   kind %= kColours;
   return kind < std::size(kFirst) ? kFirst[kind] : render::palette::category(kind);
 }
+
+namespace {
 
 class FrameState {
  public:
@@ -45,7 +49,7 @@ class FrameState {
       render::SceneBody body;
       body.rep = &run_.rep(i);
       body.pose = run_.motion.pose(i, m.step);
-      body.colour = colour_of(run_.motion.kind(i));
+      body.colour = kind_colour(run_.motion.kind(i));
       body.in_contact = m.in_contact[i];
       if (wrappers) {
         states.push_back(std::make_unique<Wrapper>(*body.rep, crowd_.request.wrapper));
@@ -84,8 +88,8 @@ class FrameState {
                   {"face tests", render::group_digits(c.face_tests)},
                   {"refined", render::group_digits(c.refinements)}};
     for (std::uint32_t k = 0; k < crowd_.kinds.size(); ++k)
-      o.key.push_back(
-          {Mark::solid, colour_of(k), std::to_string(crowd_.kinds[k].count) + " x " + crowd_.kinds[k].name});
+      o.key.push_back({Mark::solid, kind_colour(k),
+                       std::to_string(crowd_.kinds[k].count) + " x " + crowd_.kinds[k].name});
     o.key.push_back({Mark::solid, style().contact, "faces in contact"});
     if (shows_wrappers()) o.key.push_back({Mark::translucent, style().faint, "pseudo faces"});
     return o;
@@ -173,11 +177,42 @@ std::string crowd_caption(const CrowdRun& run, std::uint32_t step) {
   return out + ".";
 }
 
+namespace {
+
+/// Calls `take(i, image, cameras)` with the picture of each moment of a run.
+template <class Take>
+void each_picture(const spec::Crowd& crowd, const CrowdRun& run, const run::ProgressReport& progress,
+                  Take take) {
+  render::FrameSpec spec = crowd.frames;
+  run::to_pixels(spec);
+  const FrameState state(crowd, run, spec);
+  std::vector<render::Overlay> overlays;
+  for (const CrowdMoment& m : run.moments) overlays.push_back(state.overlay(m));
+  run::FrameSequence sequence(spec, std::move(overlays), state.framing());
+  for (std::size_t i = 0; i < run.moments.size(); ++i) {
+    progress("draw", i, run.moments.size());
+    const auto list_of = [&](const render::Look::View& v) { return state.list(run.moments[i], v.wrapper); };
+    take(i, sequence.frame(i, list_of), sequence.cameras(i));
+  }
+}
+
+}  // namespace
+
+std::vector<run::PaintedFrame> paint_crowd(const spec::Crowd& crowd, const CrowdRun& run,
+                                           const run::ProgressReport& progress) {
+  std::vector<run::PaintedFrame> out;
+  if (run.moments.empty()) return out;
+  each_picture(crowd, run, progress,
+               [&](std::size_t i, render::Image image, std::vector<render::Camera> cameras) {
+                 const std::uint32_t step = run.moments[i].step;
+                 out.push_back({std::move(image), crowd_caption(run, step), step, std::move(cameras)});
+               });
+  return out;
+}
+
 run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::string& folder,
                             const std::vector<std::pair<std::string, std::string>>& text,
                             const run::ProgressReport& progress) {
-  render::FrameSpec spec = crowd.frames;
-  run::to_pixels(spec);
   make_folder(folder + "/frames");
   run::remove_old_frames(folder);
   run::DrawnFrames out;
@@ -186,20 +221,14 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
     std::filesystem::remove(folder + "/frames", not_empty);
     return out;
   }
-  const FrameState state(crowd, run, spec);
-  std::vector<render::Overlay> overlays;
-  for (const CrowdMoment& m : run.moments) overlays.push_back(state.overlay(m));
-  run::FrameSequence sequence(spec, std::move(overlays), state.framing());
   render::FrameWriter writer;
-  for (std::size_t i = 0; i < run.moments.size(); ++i) {
-    progress("draw", i, run.moments.size());
-    const CrowdMoment& m = run.moments[i];
-    render::PngOptions png{text, spec.dpi};
-    png.text.emplace_back("lrbscope:step", std::to_string(m.step));
-    const auto list_of = [&](const render::Look::View& v) { return state.list(m, v.wrapper); };
-    writer.push(folder + "/" + run::frame_file(i), sequence.frame(i, list_of), png);
-    out.frames.push_back({run::frame_file(i), crowd_caption(run, m.step), 0, m.step});
-  }
+  each_picture(crowd, run, progress, [&](std::size_t i, render::Image image, const auto&) {
+    const std::uint32_t step = run.moments[i].step;
+    render::PngOptions png{text, crowd.frames.dpi};
+    png.text.emplace_back("lrbscope:step", std::to_string(step));
+    writer.push(folder + "/" + run::frame_file(i), std::move(image), png);
+    out.frames.push_back({run::frame_file(i), crowd_caption(run, step), step, step});
+  });
   writer.finish();
   return out;
 }

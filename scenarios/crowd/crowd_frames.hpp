@@ -16,7 +16,14 @@ run::DrawnFrames draw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const
                             const std::vector<std::pair<std::string, std::string>>& text,
                             const run::ProgressReport& progress);
 
+/// Returns the colour of a kind of bodies.
+render::Rgba kind_colour(std::uint32_t kind);
+
 /// Describes a step in one sentence.
 std::string crowd_caption(const CrowdRun& run, std::uint32_t step);
+
+/// Draws the same frames in memory. PaintedFrame::event is the number of the step.
+std::vector<run::PaintedFrame> paint_crowd(const spec::Crowd& crowd, const CrowdRun& run,
+                                           const run::ProgressReport& progress);
 
 }  // namespace lrb::crowd

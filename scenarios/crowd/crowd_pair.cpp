@@ -73,7 +73,10 @@ void check_answers(const CrowdTrace& trace, const BodyPair& pair, const run::Rec
                                        [&](const CrowdTrace::Answer& a) { return a.bodies == pair; });
     const CollideResult& found = recording.results[step];
     // A pair that was not queried has disjoint boxes.
-    const CrowdTrace::Answer answer{pair, found.relation, found.pairs.size(), fingerprint(found.pairs)};
+    const CrowdTrace::Answer answer{.bodies = pair,
+                                    .relation = found.relation,
+                                    .pairs = found.pairs.size(),
+                                    .fingerprint = fingerprint(found.pairs)};
     if (recorded == answers.end() ? !found.pairs.empty() : *recorded != answer)
       throw InputError(trace.file + ": step " + std::to_string(step) +
                        ": the two bodies have another answer than the recorded one; the trace is damaged; "

@@ -11,6 +11,7 @@
 
 #include "render/pictures/marks.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
+#include "scenarios/crowd/crowd_scene.hpp"
 #include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/document.hpp"
@@ -187,6 +188,8 @@ report::Table pair_table(const spec::Crowd& crowd, const CrowdRun& run) {
   for (std::size_t i = 0; i < std::min(pairs.size(), kMaxRows); ++i) {
     const PairHistory& p = pairs[i];
     const bool meets = p.steps > 0;
+    t.targets.push_back("bodies " + std::to_string(meets ? p.at : 0) + " " + std::to_string(p.bodies.i) +
+                        " " + std::to_string(p.bodies.j));
     std::vector<std::string>& row = t.rows.emplace_back();
     row = {run.names[p.bodies.i], run.names[p.bodies.j], meets ? std::to_string(p.first) : "",
            render::group_digits(p.steps), io::in_words(name_of(p.relation))};
@@ -218,9 +221,28 @@ report::Link trace_link(const spec::Crowd& crowd, const std::string& file) {
                     "; opens in ui.perfetto.dev"};
 }
 
+/// Returns the run in a few sentences: the bodies, the queries of a step, and the costliest pair.
+std::string sentence_of(const CrowdRun& run) {
+  std::size_t queries = 0, meet = 0;
+  for (const CrowdStep& s : run.steps) {
+    queries += s.queries.size();
+    for (const CrowdQuery& q : s.queries) meet += static_cast<std::size_t>(q.meets());
+  }
+  const auto share = [&](std::size_t n) {
+    return render::short_number(static_cast<double>(n) / static_cast<double>(run.steps.size()));
+  };
+  std::string out = render::counted(run.motion.body_count(), "body", "bodies") + " in " +
+                    render::counted(run.steps.size(), "step", "steps") + ": on average the boxes of " +
+                    share(queries) + " pairs overlap in a step, and " + share(meet) + " pairs intersect.";
+  if (const CostliestPair pair = costliest_pair(run); !pair.names.empty())
+    out += " The pair with the " + pair.text + ".";
+  return out;
+}
+
+/// `recorded`: the folder or trace of the run, for the command that records two of its bodies.
 void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, const report::Folder& folder,
                              const std::string& command, const std::vector<report::Link>& links,
-                             const run::ProgressReport& progress) {
+                             const std::string& recorded, const run::ProgressReport& progress) {
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", std::string("lrbscope ") + trace::lrbscope_version()},
       {"lrbscope:crowd", crowd.name},
@@ -229,12 +251,18 @@ void write_pictures_and_page(const spec::Crowd& crowd, const CrowdRun& run, cons
   const run::DrawnFrames drawn = draw_crowd(crowd, run, folder, text, progress);
   progress("page", 0, 1);
   report::Document doc(crowd.name, crowd.purpose);
-  doc.verdict(std::to_string(run.motion.body_count()) + " bodies").command(command);
+  doc.summary(sentence_of(run)).command(command);
   doc.each(links, &report::Document::link);
   add_numbers(doc, crowd, run);
-  run::add_frames(doc, drawn, folder);
+  doc.crowd_view(crowd_scene_json(crowd, run, "lrbscope crowd " + io::shell_word(recorded) + " --pair"));
+  doc.tab("Pairs").table(pair_table(crowd, run));
+  doc.tab("Charts");
   add_charts(doc, run);
-  doc.table(pair_table(crowd, run)).write(folder);
+  doc.tab("Frames");
+  // Frames may be smaller beside the 3D view, which not every browser shows.
+  constexpr std::size_t kBesideView = 2'500'000;
+  run::add_frames(doc, drawn, folder, kBesideView);
+  doc.tab("").write(folder);
 }
 
 }  // namespace
@@ -255,7 +283,7 @@ std::string write_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std
                           {trace_link(crowd, "trace.json"),
                            {"summary.json", "steps and answers, as JSON"},
                            {"timing.json", "times of the steps"}},
-                          progress);
+                          folder, progress);
   return summary;
 }
 
@@ -263,7 +291,7 @@ void redraw_crowd(const spec::Crowd& crowd, const CrowdRun& run, const std::stri
                   const std::string& command, const std::string& trace_file,
                   const run::ProgressReport& progress) {
   const std::string file = std::filesystem::relative(trace_file, folder).generic_string();
-  write_pictures_and_page(crowd, run, folder, command, {trace_link(crowd, file)}, progress);
+  write_pictures_and_page(crowd, run, folder, command, {trace_link(crowd, file)}, trace_file, progress);
 }
 
 namespace {
@@ -348,6 +376,9 @@ void write_step(JsonWriter& w, const CrowdStep& step, std::size_t index, std::si
   w.member("box_tests", step.broad_phase.box_tests).member("swaps", step.broad_phase.swaps);
   w.member("sorted_afresh", step.broad_phase.sorted_afresh);
   w.member("pairs", std::uint64_t{step.queries.size()}).end_object();
+  const auto kept =
+      std::count_if(step.queries.begin(), step.queries.end(), [](const CrowdQuery& q) { return q.is_kept; });
+  if (kept > 0) w.member("kept_answers", static_cast<std::uint64_t>(kept));
   write_relations(w, step);
   w.member("bodies_in_contact", std::uint64_t{bodies_in_contact(step, bodies)});
   w.member("pairs_of_faces", pairs_of_faces(step)).member("fingerprint", trace::to_hex(fingerprint_of(step)));

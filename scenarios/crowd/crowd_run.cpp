@@ -14,6 +14,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/scene.hpp>
+#include <lrbscope/trace/trace.hpp>
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::crowd {
@@ -61,8 +62,7 @@ class Player {
   CrowdStep play(std::uint32_t number, CrowdMoment* moment) {
     CrowdStep step;
     const std::uint64_t begin = now();
-    for (std::uint32_t body = 0; body < keys_.size(); ++body)
-      scene_.move(keys_[body], run_.motion.pose(body, number));
+    move_bodies(number);
     const std::vector<BodyPair> pairs = near();
     step.broad_phase = scene_.work().broad_phase;
     const std::uint64_t swept = now();
@@ -71,13 +71,18 @@ class Player {
       questions.push_back({&run_.rep(p.i), pose(p.i), &run_.rep(p.j), pose(p.j)});
     std::vector<CollideResult> results(moment != nullptr ? pairs.size() : 0);
     step.queries.resize(pairs.size());
+    keep_answers(pairs, step);
     const std::vector<std::size_t> order = order_by_bodies(questions);
     workers_.for_each(pairs.size(), [&](std::size_t k, unsigned thread) {
       const std::size_t at = order[k];
-      CollideResult& result = ask(pairs[at], questions[at], thread, step.queries[at]);
+      CrowdQuery& query = step.queries[at];
+      if (query.is_kept && moment == nullptr) return;
+      CrowdQuery repeated;  // for the picture
+      CollideResult& result = ask(pairs[at], questions[at], thread, query.is_kept ? repeated : query);
       // Otherwise its memory is reused.
       if (moment != nullptr) results[at] = std::move(result);
     });
+    limit_contact_faces(number, step);
     step.begin_ns = begin;
     step.broad_phase_ns = swept - begin;
     step.queries_ns = now() - swept;
@@ -89,6 +94,32 @@ class Player {
   std::uint64_t now() const {
     return static_cast<std::uint64_t>(
         std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - began_).count());
+  }
+
+  void move_bodies(std::uint32_t number) {
+    moved_.assign(keys_.size(), number == 0);
+    for (std::uint32_t body = 0; body < keys_.size(); ++body) {
+      const Pose pose = run_.motion.pose(body, number);
+      if (!trace::equal(pose, this->pose(body))) moved_[body] = true;
+      if (moved_[body]) scene_.move(keys_[body], pose);
+    }
+  }
+
+  /// Copies the answers of pairs of which neither body has moved from the step before. Both lists are
+  /// ascending.
+  void keep_answers(const std::vector<BodyPair>& pairs, CrowdStep& step) const {
+    if (run_.steps.empty()) return;
+    const std::vector<CrowdQuery>& before = run_.steps.back().queries;
+    auto last = before.begin();
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      while (last != before.end() && last->bodies < pairs[i]) ++last;
+      if (last == before.end()) return;
+      if (last->bodies != pairs[i] || moved_[pairs[i].i] || moved_[pairs[i].j]) continue;
+      step.queries[i] = *last;
+      step.queries[i].result.counters = {};
+      step.queries[i].is_kept = true;
+      step.queries[i].begin_ns = step.queries[i].end_ns = now();
+    }
   }
 
   /// Returns the pairs of bodies with overlapping boxes, or with boxes at most as far apart as near pairs,
@@ -104,6 +135,7 @@ class Player {
     return pairs;
   }
 
+  /// Returns the current pose.
   const Pose& pose(std::uint32_t body) const { return scene_.pose(keys_[body]); }
 
   /// Returns the result in the thread's workspace.
@@ -120,11 +152,32 @@ class Player {
       query.contact_regions = r.regions.size();
       measure(question, workspaces_[thread], query.result);
       query.end_ns = now();
+      if (keeps_contact_faces_)
+        for (const SimplexPair& p : r.pairs) {
+          query.contact_faces[0].push_back(question.a->face_of_simplex(p.a).value());
+          query.contact_faces[1].push_back(question.b->face_of_simplex(p.b).value());
+        }
+      for (std::vector<std::uint32_t>& faces : query.contact_faces) {
+        std::sort(faces.begin(), faces.end());
+        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+      }
       return r;
     } catch (const InputError& e) {
       throw InputError("crowd " + crowd_.name + ", " + run_.names[pair.i] + " (A) and " + run_.names[pair.j] +
                        " (B): " + e.what());
     }
+  }
+
+  /// Counts the faces in contact. Discards those of a step that exceeds the limit, and of all later ones.
+  void limit_contact_faces(std::uint32_t number, CrowdStep& step) {
+    if (!keeps_contact_faces_) return;
+    for (const CrowdQuery& q : step.queries)
+      contact_faces_ += q.contact_faces[0].size() + q.contact_faces[1].size();
+    keeps_contact_faces_ = contact_faces_ <= kMaxContactFaces;
+    if (keeps_contact_faces_)
+      run_.contact_steps = number + 1;
+    else
+      for (CrowdQuery& q : step.queries) q.contact_faces = {};
   }
 
   /// Adds the distance, the clash and the near pairs, if requested.
@@ -173,6 +226,9 @@ class Player {
   std::vector<Workspace> workspaces_;  ///< one for each thread
   Scene scene_;
   std::vector<BodyKey> keys_;  ///< by body, ascending
+  std::vector<bool> moved_;    ///< by body, in the current step
+  std::size_t contact_faces_ = 0;
+  bool keeps_contact_faces_ = true;
   Clock::time_point began_;
 };
 
@@ -203,7 +259,7 @@ CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::P
 
 CrowdRun play_crowd(const spec::Crowd& crowd, std::vector<bodies::LoadedBody> kinds, CrowdMotion motion,
                     std::uint32_t threads, const run::ProgressReport& progress) {
-  CrowdRun run{std::move(kinds), {}, std::move(motion), {}, {}, {}, threads};
+  CrowdRun run{std::move(kinds), {}, std::move(motion), {}, {}, {}, threads, 0};
   for (std::size_t k = 0; k < run.kinds.size(); ++k)
     for (const std::string& note : run.kinds[k].notes) run.notes.push_back(crowd.kinds[k].name + ": " + note);
   run.names = body_names(crowd);

@@ -2,6 +2,7 @@
 /// Runs a crowd: at every step the broad phase, then a query for each pair of bodies with overlapping boxes,
 /// on all threads. Draws and writes nothing.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -48,7 +49,11 @@ class CrowdMotion {
 struct CrowdQuery {
   BodyPair bodies{0, 0};
   trace::StepResult result;
-  std::uint64_t contact_regions = 0;       ///< 0 if contacts were not requested
+  std::uint64_t contact_regions = 0;  ///< 0 if contacts were not requested
+  /// Faces of A and of B that intersect the other body, ascending; empty beyond CrowdRun::contact_steps.
+  std::array<std::vector<std::uint32_t>, 2> contact_faces;
+  /// Neither body has moved since the step before, whose answer this is. The work of this step is none.
+  bool is_kept = false;
   std::uint32_t thread = 0;                ///< the thread that ran it; has no effect on any other field
   std::uint64_t begin_ns = 0, end_ns = 0;  ///< steady clock, since the run began
 
@@ -69,6 +74,9 @@ struct CrowdStep {
   std::uint64_t broad_phase_ns = 0, queries_ns = 0;
 };
 
+/// Maximum number of faces in contact that a run keeps, summed over steps, queries and bodies.
+inline constexpr std::size_t kMaxContactFaces = 1'000'000;
+
 /// The data of one step for its picture.
 struct CrowdMoment {
   std::uint32_t step = 0;
@@ -86,6 +94,8 @@ struct CrowdRun {
   std::vector<CrowdMoment> moments;  ///< of the steps to be drawn
   std::vector<std::string> notes;    ///< to be printed
   std::uint32_t threads = 1;
+  /// The number of first steps whose faces in contact are known: all, up to kMaxContactFaces in total.
+  std::uint32_t contact_steps = 0;
 
   const LrbRep& rep(std::uint32_t body) const { return kinds[motion.kind(body)].rep; }
 };

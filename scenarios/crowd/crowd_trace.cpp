@@ -158,9 +158,7 @@ class Writer {
     w_.member("relation", trace::name_of(r.relation)).member("pairs", r.pair_count);
     w_.member("fingerprint", trace::to_hex(r.fingerprint));
     if (crowd_.request.contacts) w_.member("contact regions", q.contact_regions);
-    w_.member("face tests", c.face_tests).member("refinements", c.refinements);
-    w_.member("regions opened", c.regions_opened).member("node pairs", c.node_pairs);
-    w_.member("box tests", c.box_tests).member("exact fallbacks", c.exact_fallbacks);
+    for (const QueryCounter& counter : kQueryCounters) w_.member(counter.name, c.*counter.member);
     measures(r);
     end();
   }

@@ -1,9 +1,12 @@
 #pragma once
 /// Reads a crowd's trace: all data needed to draw its steps again.
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "scenarios/crowd/crowd_run.hpp"
@@ -40,15 +43,36 @@ std::size_t bodies_in_contact(const CrowdStep& step, std::size_t bodies);
 /// Sums the counters of a step's queries (except the list by level).
 Counters sum(const CrowdStep& step);
 
+/// The counters that the trace has of each query.
+struct QueryCounter {
+  const char* name;
+  std::uint64_t Counters::*member;
+};
+inline constexpr std::array kQueryCounters = {QueryCounter{"face tests", &Counters::face_tests},
+                                              QueryCounter{"refinements", &Counters::refinements},
+                                              QueryCounter{"regions opened", &Counters::regions_opened},
+                                              QueryCounter{"node pairs", &Counters::node_pairs},
+                                              QueryCounter{"box tests", &Counters::box_tests},
+                                              QueryCounter{"exact fallbacks", &Counters::exact_fallbacks}};
+
 struct CrowdTrace {
-  /// The answer to one query.
+  /// The answer to one query, its measures and its work. Only the answer is compared.
   struct Answer {
     BodyPair bodies{0, 0};
     Relation relation = Relation::separate;
     std::uint64_t pairs = 0, fingerprint = 0;
-    friend auto operator<=>(const Answer&, const Answer&) = default;
+    std::optional<std::array<double, 2>> distance = {}, depth = {};  ///< bounds
+    std::optional<ClashKind> kind = {};
+    std::optional<std::uint64_t> near_pairs = {};
+    std::uint64_t contact_regions = 0;
+    std::array<std::uint64_t, kQueryCounters.size()> work{};
+
+    auto answer() const { return std::tie(bodies, relation, pairs, fingerprint); }
+    friend auto operator<=>(const Answer& x, const Answer& y) { return x.answer() <=> y.answer(); }
+    friend bool operator==(const Answer& x, const Answer& y) { return x.answer() == y.answer(); }
   };
   std::string file;         ///< for error messages
+  std::string lrbscope;     ///< the version that recorded it
   spec::Crowd crowd;        ///< the parts needed for pictures; its steps are the complete steps of the trace
   std::uint32_t steps = 0;  ///< number of steps that were run
   std::vector<trace::BodyInfo> bodies;       ///< one for each kind

@@ -22,7 +22,10 @@ std::string to_text(const CrowdTrace::Answer* a) {
 void compare(const CrowdTrace& trace, const CrowdRun& run, std::size_t step) {
   std::vector<CrowdTrace::Answer> found;
   for (const CrowdQuery& q : run.steps[step].queries)
-    found.push_back({q.bodies, q.result.relation, q.result.pair_count, q.result.fingerprint});
+    found.push_back({.bodies = q.bodies,
+                     .relation = q.result.relation,
+                     .pairs = q.result.pair_count,
+                     .fingerprint = q.result.fingerprint});
   const std::vector<CrowdTrace::Answer>& recorded = trace.answers[step];
   for (std::size_t i = 0; i < std::max(found.size(), recorded.size()); ++i) {
     const CrowdTrace::Answer *x = i < recorded.size() ? &recorded[i] : nullptr,
@@ -85,8 +88,7 @@ class Reader {
   struct Slice {
     std::uint32_t step;
     std::string a, b;
-    Relation relation;
-    std::uint64_t pairs, fingerprint;
+    CrowdTrace::Answer answer;
   };
 
   void take(const TraceNode& event) {
@@ -100,13 +102,36 @@ class Reader {
     if (!args.has("relation")) return;
     // Version 1, which is rejected once it is known, did not name the step.
     const auto step = args.has("time step") ? args.at("time step").integer<std::uint32_t>() : 0U;
-    slices_.push_back({step, args.at("A").string(), args.at("B").string(),
-                       args.at("relation").named<Relation>(), args.at("pairs").integer<std::uint64_t>(),
-                       args.at("fingerprint").hash()});
+    slices_.push_back({step, args.at("A").string(), args.at("B").string(), read_answer(args)});
+  }
+
+  /// Reads the arguments of a slice, all but the bodies. Traces of 1.x lack some.
+  static CrowdTrace::Answer read_answer(const TraceNode& args) {
+    CrowdTrace::Answer a;
+    a.relation = args.at("relation").named<Relation>();
+    a.pairs = args.at("pairs").integer<std::uint64_t>();
+    a.fingerprint = args.at("fingerprint").hash();
+    const auto interval = [&](const char* key) -> std::optional<std::array<double, 2>> {
+      if (!args.has(key)) return std::nullopt;
+      const TraceNode bounds = args.at(key);
+      if (bounds.array_size() != 2) bounds.fail("two bounds");
+      return std::array{bounds.at(std::size_t{0}).number(), bounds.at(std::size_t{1}).number()};
+    };
+    const auto count = [&](const char* key) {
+      return args.has(key) ? args.at(key).integer<std::uint64_t>() : std::uint64_t{0};
+    };
+    a.distance = interval("distance");
+    a.depth = interval("depth");
+    if (args.has("contact kind")) a.kind = args.at("contact kind").named<ClashKind>();
+    if (args.has("near pairs")) a.near_pairs = count("near pairs");
+    a.contact_regions = count("contact regions");
+    for (std::size_t i = 0; i < kQueryCounters.size(); ++i) a.work[i] = count(kQueryCounters[i].name);
+    return a;
   }
 
   void read_header(const TraceNode& metadata) {
     spec::Crowd& c = t_.crowd;
+    t_.lrbscope = metadata.at("lrbscope").string();
     c.name = metadata.at("crowd").at("name").string();
     c.hash = metadata.at("crowd").at("hash").hash();
     c.clock = metadata.at("clock").named<trace::Clock>();
@@ -163,8 +188,8 @@ class Reader {
       if (s.step >= queries_.size())
         throw InputError(t_.file + ": a query refers to step " + std::to_string(s.step) +
                          ", which does not exist; the trace is damaged; record it again");
-      const BodyPair bodies{body_called(s.a), body_called(s.b)};
-      t_.answers[s.step].push_back({bodies, s.relation, s.pairs, s.fingerprint});
+      CrowdTrace::Answer& answer = t_.answers[s.step].emplace_back(s.answer);
+      answer.bodies = {body_called(s.a), body_called(s.b)};
     }
     for (std::vector<CrowdTrace::Answer>& step : t_.answers) {
       std::sort(step.begin(), step.end());

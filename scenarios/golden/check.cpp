@@ -8,6 +8,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "scenarios/golden/crowd_difference.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/io/files.hpp"
 #include <lrbscope/core/file.hpp>
@@ -27,16 +28,32 @@ std::string rep_text(const trace::BodyInfo& body) {
          render::group_digits(body.outer_faces) + " outermost faces";
 }
 
+/// The inputs of a run of two bodies, or of a crowd.
+struct Inputs {
+  std::uint64_t hash = 0;  ///< of the scenario's file
+  const std::vector<trace::BodyInfo>& bodies;
+  const CollideRequest& request;
+  const std::string& lrbscope;
+};
+
+Inputs inputs_of(const trace::TraceHeader& header) {
+  return {header.scenario_hash, header.bodies, header.request, header.lrbscope};
+}
+Inputs inputs_of(const crowd::CrowdTrace& trace) {
+  return {trace.crowd.hash, trace.bodies, trace.crowd.request, trace.lrbscope};
+}
+
 /// Reports whether a body's mesh has changed or only its LRB-rep.
-std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i) {
-  const trace::BodyInfo &expected = golden.trace.header.bodies[i],
-                        &found = run.recording.trace.header.bodies[i];
-  const std::string who = "body " + std::string(name_of(static_cast<Side>(i))) + " (" + found.name + "): ";
+std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i,
+                       const trace::BodyInfo& expected, const trace::BodyInfo& found) {
+  const std::string who =
+      (run.crowd ? run.crowd->crowd.kinds[i].name : "body " + std::string(name_of(static_cast<Side>(i)))) +
+      " (" + found.name + "): ";
   const std::string built = rep_text(expected) + " -> " + rep_text(found);
   if (i >= golden.facts.meshes.size())
     return who + "its mesh or its LRB-rep changed: " + built +
            " (this golden does not record which; approve it again to record it)";
-  const Mesh mesh = run.recording.bodies[i].rep.real_mesh();
+  const Mesh mesh = run.bodies()[i].rep.real_mesh();
   if (mesh_hash(mesh) == golden.facts.meshes[i])
     return who + "the mesh is unchanged, but its LRB-rep was built differently: " + built;
   if (i < golden.meshes.size() && golden.meshes[i])
@@ -69,14 +86,20 @@ std::string pose_cause(const trace::Trace& x, const trace::Trace& y) {
 }  // namespace
 
 std::vector<std::string> find_causes(const Golden& golden, const GoldenRun& run) {
-  const trace::TraceHeader &x = golden.trace.header, &y = run.recording.trace.header;
+  const Inputs x = golden.crowd ? inputs_of(*golden.crowd) : inputs_of(golden.trace.header),
+               y = run.crowd ? inputs_of(run.crowd->trace) : inputs_of(run.recording.trace.header);
   std::vector<std::string> out;
-  if (x.scenario_hash != run.scenario.hash)
-    out.emplace_back("the scenario file changed since it was approved");
+  if (x.hash != run.scenario.hash) out.emplace_back("the scenario file changed since it was approved");
+  if (run.crowd)
+    if (const std::string words = kinds_cause(*golden.crowd, run.crowd->trace); !words.empty())
+      out.push_back(words);
   for (std::size_t i = 0; i < std::min(x.bodies.size(), y.bodies.size()); ++i)
-    if (x.bodies[i].hash != y.bodies[i].hash) out.push_back(body_cause(golden, run, i));
+    if (x.bodies[i].hash != y.bodies[i].hash)
+      out.push_back(body_cause(golden, run, i, x.bodies[i], y.bodies[i]));
   if (const std::string words = request_cause(x.request, y.request); !words.empty()) out.push_back(words);
-  if (const std::string words = pose_cause(golden.trace, run.recording.trace); !words.empty())
+  if (const std::string words = run.crowd ? crowd_pose_cause(*golden.crowd, run.crowd->trace)
+                                          : pose_cause(golden.trace, run.recording.trace);
+      !words.empty())
     out.push_back(words);
   if (x.lrbscope != y.lrbscope)
     out.push_back("approved with lrbscope " + x.lrbscope + ", run with " + y.lrbscope);
@@ -296,7 +319,9 @@ GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run) {
   if (golden.spec.compares(Level::answers))
     out.answers_differ = std::any_of(out.effects.begin(), out.effects.end(),
                                      [](const Effect& e) { return e.kind == Effect::Kind::answer; });
-  if (golden.spec.compares(Level::events)) {
+  if (golden.spec.compares(Level::events) && run.crowd) {
+    out.divergence = first_divergence(*golden.crowd, run.crowd->trace);
+  } else if (golden.spec.compares(Level::events)) {
     out.divergence = trace::first_divergence(golden.trace, run.recording.trace);
     if (out.divergence) out.diagnosis = diagnose(golden.trace, run.recording.trace, *out.divergence);
   }
@@ -328,7 +353,7 @@ class Approval {
     say("approved", kGoldenSpec);
   }
   void trace() {
-    if (!dry_) trace::save_trace(run_.recording.trace, folder_ + "/" + kGoldenTrace);
+    if (!dry_) save_run_trace(run_, folder_ + "/" + kGoldenTrace);
     say("approved", kGoldenTrace);
   }
   void frame(std::size_t i, const std::string& variant) {
@@ -340,9 +365,9 @@ class Approval {
   }
   /// Keeps the meshes of bodies from files. Generated bodies are defined by their scenario.
   void meshes() {
-    for (std::size_t i = 0; i < run_.recording.bodies.size(); ++i) {
+    for (std::size_t i = 0; i < run_.bodies().size(); ++i) {
       if (run_.scenario.bodies[i].file.empty()) continue;
-      const LrbRep& rep = run_.recording.bodies[i].rep;
+      const LrbRep& rep = run_.bodies()[i].rep;
       const std::string file = kept_file(i, rep.dim());
       if (!dry_) write_mesh(rep.real_mesh(), folder_ + "/" + file);
       say("approved", file);

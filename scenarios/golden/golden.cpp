@@ -55,7 +55,11 @@ std::uint64_t mesh_hash(const Mesh& mesh) {
 }
 
 std::string kept_file(std::size_t body, int dim) {
-  return std::string(body == 0 ? "a" : "b") + (dim == 2 ? ".obj" : ".ply");
+  constexpr std::size_t kLetters = 26;
+  std::string name;
+  for (std::size_t n = body + 1; n > 0; n = (n - 1) / kLetters)
+    name.insert(name.begin(), static_cast<char>('a' + (n - 1) % kLetters));
+  return name + (dim == 2 ? ".obj" : ".ply");
 }
 
 std::string mesh_difference(const Mesh& x, const Mesh& y) {
@@ -149,9 +153,12 @@ std::string spec_file(const std::string& goldens, const std::string& name) {
 }
 
 GoldenSpec read_spec(const io::JsonNode& root) {
-  root.object({"scenario", "size", "frames", "compare", "tolerance", "meshes", "contact_lengths"});
+  root.object({"scenario", "crowd", "size", "frames", "compare", "tolerance", "meshes", "contact_lengths"});
   GoldenSpec spec;
-  spec.scenario = root.at("scenario").string();
+  spec.is_crowd = root.has("crowd");
+  if (spec.is_crowd && root.has("scenario"))
+    root.fail_key("crowd", "expected either a scenario or a crowd; remove one");
+  spec.scenario = root.at(spec.is_crowd ? "crowd" : "scenario").string();
   const std::vector<io::JsonNode> size = root.at("size").items();
   if (size.size() != 2) root.at("size").fail("expected [width, height]");
   spec.width = static_cast<int>(size[0].integer(64, 8192));
@@ -181,10 +188,11 @@ GoldenFacts read_facts(const io::JsonNode& root) {
 
 /// Reads the kept meshes of the bodies. A missing or damaged one only makes the description of a difference
 /// less specific.
-std::vector<std::optional<Mesh>> read_meshes(const std::string& folder, const trace::Trace& trace) {
+std::vector<std::optional<Mesh>> read_meshes(const std::string& folder,
+                                             const std::vector<trace::BodyInfo>& bodies) {
   std::vector<std::optional<Mesh>> out;
-  for (std::size_t i = 0; i < trace.header.bodies.size(); ++i) {
-    const std::string file = folder + "/" + kept_file(i, static_cast<int>(trace.header.bodies[i].dim));
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::string file = folder + "/" + kept_file(i, static_cast<int>(bodies[i].dim));
     std::error_code error;
     out.emplace_back();
     if (!fs::exists(file, error)) continue;
@@ -239,8 +247,9 @@ GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name)
 
 void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec,
                        const GoldenFacts& facts) {
-  nlohmann::ordered_json json = {
-      {"scenario", spec.scenario}, {"size", {spec.width, spec.height}}, {"frames", spec.frames}};
+  nlohmann::ordered_json json = {{spec.is_crowd ? "crowd" : "scenario", spec.scenario},
+                                 {"size", {spec.width, spec.height}},
+                                 {"frames", spec.frames}};
   if (spec.levels != GoldenSpec{}.levels) {
     json["compare"] = nlohmann::ordered_json::array();
     for (const EnumName<Level>& w : kEnumNames<Level>)
@@ -255,23 +264,37 @@ void write_golden_spec(const std::string& goldens, const std::string& name, cons
   io::write_text(spec_file(goldens, name), json.dump() + "\n");
 }
 
-std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
+std::string scenario_reference(const std::string& goldens, const std::string& name,
                                const std::string& name_or_path) {
-  if (name_or_path == scenario.name) return name_or_path;  // files end in .json, names never do
+  if (name_or_path == name) return name_or_path;  // files end in .json, names never do
   std::error_code error;
-  const fs::path from = fs::absolute(fs::path(goldens) / scenario.name, error).lexically_normal();
+  const fs::path from = fs::absolute(fs::path(goldens) / name, error).lexically_normal();
   return fs::absolute(name_or_path, error).lexically_normal().lexically_relative(from).generic_string();
 }
 
-spec::Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
+Source open_source(const std::string& name_or_path) {
+  if (spec::is_crowd(name_or_path)) return spec::open_crowd(name_or_path);
+  return spec::open_scenario(name_or_path);
+}
+
+const std::string& name_of(const Source& source) {
+  return std::visit([](const auto& s) -> const std::string& { return s.name; }, source);
+}
+
+const render::FrameSpec& frames_of(const Source& source) {
+  return std::visit([](const auto& s) -> const render::FrameSpec& { return s.frames; }, source);
+}
+
+Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
   const bool shipped = spec.scenario.find_first_of("./\\") == std::string::npos;
-  spec::Scenario scenario = spec::open_scenario(
-      shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string());
-  if (scenario.name != name)
-    throw InputError(printable_name(folder_of(goldens, name)) + ": " + kGoldenSpec +
-                     " refers to a scenario with the name " + scenario.name +
+  const std::string file =
+      shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string();
+  Source source = spec.is_crowd ? Source(spec::open_crowd(file)) : Source(spec::open_scenario(file));
+  if (name_of(source) != name)
+    throw InputError(printable_name(folder_of(goldens, name)) + ": " + kGoldenSpec + " refers to a " +
+                     (spec.is_crowd ? "crowd" : "scenario") + " with the name " + name_of(source) +
                      "; rename the folder, or remove it and approve the scenario again");
-  return scenario;
+  return source;
 }
 
 Golden load_golden(const std::string& goldens, const std::string& name) {
@@ -281,13 +304,17 @@ Golden load_golden(const std::string& goldens, const std::string& name) {
   const io::JsonText json(io::read_small_text(about), about);
   golden.spec = read_spec(io::JsonNode(json));
   golden.facts = read_facts(io::JsonNode(json));
-  golden.trace = trace::load_trace(folder + "/" + kGoldenTrace);
-  golden.meshes = read_meshes(folder, golden.trace);
-  for (const std::string& file : image_files_from(folder, 0)) {
-    const std::size_t frame = *frame_of_file(file);
+  const std::string file = folder + "/" + kGoldenTrace, text = trace::load_trace_text(file);
+  if (golden.spec.is_crowd)
+    golden.crowd = crowd::read_crowd_trace(text, file);
+  else
+    golden.trace = trace::trace_from_json(text, printable_name(file));
+  golden.meshes = read_meshes(folder, golden.crowd ? golden.crowd->bodies : golden.trace.header.bodies);
+  for (const std::string& image : image_files_from(folder, 0)) {
+    const std::size_t frame = *frame_of_file(image);
     if (frame >= kMaxFrames) continue;
     if (golden.frames.size() <= frame) golden.frames.resize(frame + 1);
-    golden.frames[frame].push_back(read_image(folder, file, golden.spec));
+    golden.frames[frame].push_back(read_image(folder, image, golden.spec));
   }
   return golden;
 }
@@ -297,8 +324,15 @@ void remove_golden(const std::string& goldens, const std::string& name) {
     throw InputError(printable_name(name) + ": no golden of this name in " + printable_name(goldens));
   const std::string folder = (fs::path(goldens) / name).string();
   std::vector<std::string> files = image_files_from(folder, 0);
+  std::size_t bodies = 2;
+  try {
+    const std::string about = spec_file(goldens, name);
+    bodies = std::max(
+        bodies, read_facts(io::JsonNode(io::JsonText(io::read_small_text(about), about))).meshes.size());
+  } catch (const InputError&) {  // damaged
+  }
   for (const int dim : {2, 3})
-    for (const std::size_t body : {0U, 1U}) files.push_back(kept_file(body, dim));
+    for (std::size_t body = 0; body < bodies; ++body) files.push_back(kept_file(body, dim));
   files.push_back(kGoldenTrace);
   files.push_back(kGoldenSpec);  // last: until then it can be tried again
   for (const std::string& file : files) fs::remove(fs::path(folder) / file);

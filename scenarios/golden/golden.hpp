@@ -1,10 +1,10 @@
 #pragma once
-/// Reads and writes goldens: what has been approved of a scenario's run. A folder of goldens has a folder for
-/// each scenario, with
+/// Reads and writes goldens: what has been approved of a scenario's run, or of a crowd's. A folder of goldens
+/// has a folder for each scenario, with
 ///
 ///   golden.json            which scenario, drawn how, compared how
 ///   trace.json.gz          the run, on the event clock
-///   a.ply, b.ply           the bodies' meshes, if they came from files (2D: .obj)
+///   a.ply, b.ply, ...      the bodies' meshes, if they came from files (2D: .obj); of a crowd's kinds
 ///   frame_1.png ...        its pictures
 ///   frame_1.VARIANT.png    further pictures that are right as well, of other processors or drivers
 
@@ -12,8 +12,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "scenarios/crowd/crowd_trace.hpp"
+#include "scenarios/spec/crowd_spec.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
@@ -26,7 +29,7 @@ namespace lrb::golden {
 /// Parts of a run that are compared with the approved one.
 enum class Level : std::uint8_t {
   answers,   ///< for each step: relation, pairs, overlap of interiors, and proofs of an approximate query
-  events,    ///< bodies, request, poses, every event and every counter
+  events,    ///< bodies, request, poses, every event (crowd: every query) and every counter
   pictures,  ///< frames, within a tolerance
 };
 constexpr auto enum_names(Level) {
@@ -37,7 +40,8 @@ inline constexpr int kLevels = 3;
 
 /// The contents of golden.json.
 struct GoldenSpec {
-  std::string scenario;  ///< name of a shipped one, or a file relative to the golden's folder
+  std::string scenario;   ///< name of a shipped one, or a file relative to the golden's folder
+  bool is_crowd = false;  ///< `scenario` is a crowd
   int width = 0, height = 0;
   std::uint32_t frames = 3;  ///< maximum number of pictures, evenly chosen from the scenario's frames
   /// (kLevels) the levels that are compared
@@ -50,7 +54,7 @@ struct GoldenSpec {
 
 /// Facts of the run recorded in golden.json but not in the trace, to explain later differences.
 struct GoldenFacts {
-  std::vector<std::uint64_t> meshes;  ///< (bodies) mesh_hash(); empty: not recorded
+  std::vector<std::uint64_t> meshes;  ///< (bodies, or kinds of a crowd) mesh_hash(); empty: not recorded
   /// (steps) the length of contact, in the scenario's unit; empty: not requested, or not recorded
   std::vector<double> contact_lengths;
 
@@ -64,12 +68,21 @@ struct GoldenImage {
   std::string damage;  ///< why it cannot be read, in which case `png` is empty
 };
 
+/// The file that a golden belongs to.
+using Source = std::variant<spec::Scenario, spec::Crowd>;
+
+/// Opens a scenario or a crowd: a shipped one by name, or a file. Throws InputError.
+Source open_source(const std::string& name_or_path);
+const std::string& name_of(const Source& source);
+const render::FrameSpec& frames_of(const Source& source);
+
 struct Golden {
   std::string name;  ///< name of the scenario and of its folder
   GoldenSpec spec;
   GoldenFacts facts;
-  trace::Trace trace;
-  std::vector<std::optional<Mesh>> meshes;       ///< of the bodies; nullopt if not kept
+  trace::Trace trace;                            ///< empty if `crowd` is set
+  std::optional<crowd::CrowdTrace> crowd;        ///< of a crowd's run
+  std::vector<std::optional<Mesh>> meshes;       ///< of the bodies (crowd: of the kinds); nullopt if not kept
   std::vector<std::vector<GoldenImage>> frames;  ///< the variants of each frame; the unnamed one first
 };
 
@@ -85,11 +98,11 @@ Golden load_golden(const std::string& goldens, const std::string& name);
 /// Removes a golden: the files that approving wrote, and its folder unless other files are in it. Throws
 /// InputError for a golden that does not exist.
 void remove_golden(const std::string& goldens, const std::string& name);
-/// Returns the scenario of a golden.
-spec::Scenario golden_scenario(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
+/// Returns the scenario or the crowd of a golden.
+Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
-/// Returns the reference in golden.json to a scenario opened as `name_or_path`.
-std::string scenario_reference(const std::string& goldens, const spec::Scenario& scenario,
+/// Returns the reference in golden.json to the scenario `name`, opened as `name_or_path`.
+std::string scenario_reference(const std::string& goldens, const std::string& name,
                                const std::string& name_or_path);
 void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec,
                        const GoldenFacts& facts);
@@ -110,8 +123,8 @@ inline const char* const kGoldenTrace = "trace.json.gz";
 /// Returns a hash of all fields but the name.
 std::uint64_t mesh_hash(const Mesh& mesh);
 
-/// Returns the file name, in the golden's folder, of the kept mesh of body A (0) or B (1): a.ply, or a.obj
-/// for a 2D body.
+/// Returns the file name, in the golden's folder, of the kept mesh of a body, A (0) or B (1), or of a kind of
+/// a crowd: a.ply, b.ply, ..., z.ply, aa.ply, ...; a.obj for a 2D body.
 std::string kept_file(std::size_t body, int dim);
 
 /// Describes in one line how two meshes differ: moved vertices, starting with the largest displacement; or

@@ -8,6 +8,7 @@
 #include "render/canvas.hpp"
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/framing.hpp"
+#include "scenarios/golden/crowd_difference.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"
@@ -24,6 +25,7 @@ namespace lrb::golden {
 namespace {
 
 constexpr int kWidth = 1000, kHeight = 560;
+constexpr const char* kActualTrace = "actual.trace.json.gz";
 
 const CollideResult* find_result(const GoldenRun& run, std::size_t step) {
   return step < run.recording.results.size() ? &run.recording.results[step] : nullptr;
@@ -110,6 +112,11 @@ bool same_bodies(const trace::Trace& x, const trace::Trace& y) {
 DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
                                    const trace::Divergence& divergence) {
   DivergencePictures out;
+  if (run.crowd) {
+    out.note = "lrbscope crowd TRACE --pair \"A,B\" shows two bodies of the found run, whose trace is " +
+               std::string(kActualTrace) + ".";
+    return out;
+  }
   const trace::Trace &expected = golden.trace, &actual = run.recording.trace;
   if (!same_bodies(expected, actual)) {
     out.note = "A body itself has changed: the approved run cannot be replayed on it.";
@@ -150,7 +157,6 @@ namespace {
 
 constexpr const char* kKinds[] = {"expected", "actual", "difference"};
 constexpr const char* kTitle = "Golden images and traces";
-constexpr const char* kActualTrace = "actual.trace.json.gz";
 constexpr const char* kDivergence = "divergence";
 
 report::PngBytes png_of(const render::Image& image) {
@@ -213,11 +219,16 @@ std::string answers_text(const GoldenResult& r) {
   return "differ in " + std::to_string(steps.size()) + " of " + render::counted(r.steps, "step", "steps");
 }
 
+/// Returns "132 events", of a crowd "132 queries".
+std::string event_count(const GoldenResult& r) {
+  return r.spec.is_crowd ? render::counted(r.events, "query", "queries")
+                         : render::counted(r.events, "event", "events");
+}
+
 std::string events_text(const GoldenResult& r) {
   if (!r.verdict.rejection.empty()) return r.verdict.rejection;
   if (!r.spec.compares(Level::events)) return "not compared";
-  return r.verdict.divergence ? r.verdict.divergence->message()
-                              : render::counted(r.events, "event", "events") + ": equal";
+  return r.verdict.divergence ? r.verdict.divergence->message() : event_count(r) + ": equal";
 }
 
 /// The differences by step, and their possible causes.
@@ -273,8 +284,8 @@ GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::
   result.purpose = run.scenario.purpose;
   result.spec = golden.spec;
   result.verdict = check_golden(golden, run);
-  result.steps = run.recording.trace.steps.size();
-  result.events = run.recording.trace.events.size();
+  result.steps = run.crowd ? run.crowd->trace.answers.size() : run.recording.trace.steps.size();
+  result.events = run.crowd ? query_count(run.crowd->trace) : run.recording.trace.events.size();
   result.approve = approve;
   if (result.verdict.divergence) add_divergence(result, golden, run);
   for (const ImageVerdict& v : result.verdict.images)
@@ -299,8 +310,7 @@ void clear_golden_report(const std::string& folder, const std::vector<std::strin
 void write_failures(const GoldenResult& result, const GoldenRun& run, const std::string& folder) {
   if (result.verdict.passed()) return;
   make_folder(folder + "/" + result.name);
-  if (result.verdict.divergence)
-    trace::save_trace(run.recording.trace, folder + "/" + result.name + "/" + kActualTrace);
+  if (result.verdict.divergence) save_run_trace(run, folder + "/" + result.name + "/" + kActualTrace);
   for (const report::Comparison& c : result.comparisons)
     for (std::size_t kind = 0; kind < std::size(kKinds); ++kind)
       if (const report::PngBytes& png = c.pngs[kind]; !c.passed && !png.empty())
@@ -329,7 +339,7 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
   doc.verdict(failed == 0 ? "passed" : render::counted(failed, "failure", "failures"), failed == 0)
       .command(command)
       .number({"Scenarios", std::to_string(results.size()), std::to_string(failed) + " failed"})
-      .number({"Events compared", render::group_digits(events), "each field, exactly"})
+      .number({"Events compared", render::group_digits(events), "each field, exactly; of crowds, queries"})
       .number({"Images", std::to_string(images), std::to_string(images_failed) + " failed"})
       .table(scenarios);
   std::vector<report::Comparison> comparisons;
@@ -346,11 +356,10 @@ std::string result_text(const GoldenResult& r) {
   if (!v.rejection.empty())
     return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it after fixing that: " + r.approve +
            "\n";
-  std::string head = v.answers_differ ? "answers " + answers_text(r)
-                     : v.divergence   ? "events or counters differ"
-                     : r.spec.compares(Level::events)
-                         ? render::counted(r.events, "event", "events") + " equal"
-                         : "answers of " + answers_text(r);
+  std::string head = v.answers_differ                 ? "answers " + answers_text(r)
+                     : v.divergence                   ? "events or counters differ"
+                     : r.spec.compares(Level::events) ? event_count(r) + " equal"
+                                                      : "answers of " + answers_text(r);
   std::string out =
       (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_text(r) + "\n";
   if (v.passed()) return out;

@@ -7,12 +7,15 @@
 #include <sstream>
 #include <type_traits>
 
+#include "scenarios/crowd/crowd_frames.hpp"
+#include "scenarios/golden/crowd_difference.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::golden {
 namespace {
@@ -85,6 +88,7 @@ std::vector<double> contact_lengths(const run::Recording& recording) {
 }
 
 std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run) {
+  if (run.crowd) return crowd_effects(*golden.crowd, run.crowd->trace);
   const std::vector<trace::Step>&expected = golden.trace.steps, &found = run.recording.trace.steps;
   const std::vector<double>& lengths = golden.facts.contact_lengths;
   const std::vector<double> lengths_now = contact_lengths(run.recording);
@@ -142,38 +146,87 @@ void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames) {
                  kMinHeight, 4 * kDefaultWidth);
 }
 
-GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec,
-                        const run::ProgressReport& progress) {
-  GoldenRun run;
-  run.scenario = std::move(scenario);
-  run.scenario.clock = trace::Clock::event;
-  render::FrameSpec& frames = run.scenario.frames;
+namespace {
+
+/// Selects the pictures of a golden.
+void set_pictures(render::FrameSpec& frames, const GoldenSpec& spec) {
   frames.width = spec.width;
   frames.height = spec.height;
   frames.dpi = 0;
   frames.most = spec.frames;
+}
+
+std::string without_folder(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+GoldenRun record_scenario(spec::Scenario scenario, const GoldenSpec& spec,
+                          const run::ProgressReport& progress) {
+  GoldenRun run;
+  run.scenario = std::move(scenario);
+  run.scenario.clock = trace::Clock::event;
+  set_pictures(run.scenario.frames, spec);
   run.recording = run::record(run.scenario, progress);
-  for (trace::BodyInfo& body : run.recording.trace.header.bodies)  // removes the names of local folders
-    if (body.source.find('/') != std::string::npos)
-      body.source = std::filesystem::path(body.source).filename().string();
+  for (trace::BodyInfo& body : run.recording.trace.header.bodies)
+    if (body.source.find('/') != std::string::npos) body.source = without_folder(body.source);
   return run;
 }
 
-void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress) {
-  if (spec.compares(Level::pictures))
-    run.frames = run::paint_frames(recorded_run_of(run), run.scenario.frames, progress);
+GoldenRun record_crowd(spec::Crowd crowd, const GoldenSpec& spec, const run::ProgressReport& progress,
+                       std::uint32_t threads) {
+  constexpr std::uint32_t kAllSlices = 50'000'000;  // of any crowd that fits in memory
+  GoldenRun run;
+  crowd.clock = trace::Clock::event;
+  crowd.max_events = kAllSlices;
+  set_pictures(crowd.frames, spec);
+  if (!spec.compares(Level::pictures)) crowd.frames.at = render::FrameSpec::At::none;
+  run.scenario.name = crowd.name;
+  run.scenario.purpose = crowd.purpose;
+  run.scenario.hash = crowd.hash;
+  run.scenario.frames = crowd.frames;
+  crowd::CrowdRun played = crowd::run_crowd(crowd, threads, progress);
+  for (spec::CrowdKind& kind : crowd.kinds) {
+    kind.body.file = without_folder(kind.body.file);
+    run.scenario.bodies.push_back(kind.body);
+  }
+  trace::StringSink sink;
+  crowd::write_crowd_trace(crowd, played, sink);
+  crowd::CrowdTrace trace = crowd::read_crowd_trace(sink.text, crowd.name);
+  run.crowd = CrowdRecord{std::move(crowd), std::move(played), std::move(trace)};
+  return run;
 }
 
-GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress) {
-  GoldenRun run = record_golden(std::move(scenario), spec, progress);
+}  // namespace
+
+GoldenRun record_golden(Source source, const GoldenSpec& spec, const run::ProgressReport& progress,
+                        std::uint32_t threads) {
+  if (auto* crowd = std::get_if<spec::Crowd>(&source))
+    return record_crowd(std::move(*crowd), spec, progress, threads);
+  return record_scenario(std::get<spec::Scenario>(std::move(source)), spec, progress);
+}
+
+void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress) {
+  if (!spec.compares(Level::pictures)) return;
+  run.frames = run.crowd ? crowd::paint_crowd(run.crowd->crowd, run.crowd->run, progress)
+                         : run::paint_frames(recorded_run_of(run), run.scenario.frames, progress);
+}
+
+GoldenRun play_golden(Source source, const GoldenSpec& spec, const run::ProgressReport& progress,
+                      std::uint32_t threads) {
+  GoldenRun run = record_golden(std::move(source), spec, progress, threads);
   paint_golden(run, spec, progress);
   return run;
 }
 
+void save_run_trace(const GoldenRun& run, const std::string& path) {
+  if (!run.crowd) return trace::save_trace(run.recording.trace, path);
+  trace::save_trace(
+      [&](trace::ByteSink& sink) { crowd::write_crowd_trace(run.crowd->crowd, run.crowd->run, sink); }, path);
+}
+
 GoldenFacts facts_of(const GoldenRun& run) {
   GoldenFacts facts;
-  for (const bodies::LoadedBody& body : run.recording.bodies)
-    facts.meshes.push_back(mesh_hash(body.rep.real_mesh()));
+  for (const bodies::LoadedBody& body : run.bodies()) facts.meshes.push_back(mesh_hash(body.rep.real_mesh()));
   facts.contact_lengths = contact_lengths(run.recording);
   return facts;
 }
@@ -197,7 +250,7 @@ std::string camera_text(const std::vector<render::Camera>& cameras) {
 std::vector<render::PngText> golden_text(const GoldenRun& run, std::size_t frame) {
   return {{"lrbscope:scenario", run.scenario.name},
           {"lrbscope:scenario_hash", trace::to_hex(run.scenario.hash)},
-          {"lrbscope:event", std::to_string(run.frames[frame].event)},
+          {run.crowd ? "lrbscope:step" : "lrbscope:event", std::to_string(run.frames[frame].event)},
           {kCameraText, camera_text(run.frames[frame].cameras)}};
 }
 

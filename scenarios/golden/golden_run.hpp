@@ -1,34 +1,55 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "scenarios/crowd/crowd_run.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/record/recorded_run.hpp"
 
 namespace lrb::golden {
 
-/// A scenario, run and drawn with its golden's settings.
-struct GoldenRun {
-  spec::Scenario scenario;
-  run::Recording recording;
-  std::vector<run::PaintedFrame> frames;
+/// A crowd that has been run.
+struct CrowdRecord {
+  spec::Crowd crowd;
+  crowd::CrowdRun run;
+  crowd::CrowdTrace trace;  ///< of the run, as read from its file
 };
 
-/// Runs a scenario, always on the event clock, regardless of the scenario's setting, and draws nothing.
-/// Thread-safe.
-GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress);
+/// A scenario or a crowd, run and drawn with its golden's settings.
+struct GoldenRun {
+  spec::Scenario scenario;   ///< of a crowd: its name, purpose, hash and frames, and a body for each kind
+  run::Recording recording;  ///< empty if `crowd` is set
+  std::optional<CrowdRecord> crowd;
+  std::vector<run::PaintedFrame> frames;
+
+  /// Returns the bodies, of a crowd one for each kind.
+  const std::vector<bodies::LoadedBody>& bodies() const {
+    return crowd ? crowd->run.kinds : recording.bodies;
+  }
+};
+
+/// Runs a scenario or a crowd, always on the event clock, regardless of its setting, and draws nothing.
+/// `threads` affects only the time of a crowd. Thread-safe.
+GoldenRun record_golden(Source source, const GoldenSpec& spec, const run::ProgressReport& progress,
+                        std::uint32_t threads = 1);
 /// Draws its pictures, if these are compared.
 void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress);
 /// Runs and draws.
-GoldenRun play_golden(spec::Scenario scenario, const GoldenSpec& spec, const run::ProgressReport& progress);
+GoldenRun play_golden(Source source, const GoldenSpec& spec, const run::ProgressReport& progress,
+                      std::uint32_t threads = 1);
+
+/// Writes the trace of a run to a file, compressed if its name ends in ".gz".
+void save_run_trace(const GoldenRun& run, const std::string& path);
 
 /// Returns the facts of a run for golden.json.
 GoldenFacts facts_of(const GoldenRun& run);
 
+/// Returns a run of two bodies for its pictures.
 run::RecordedRun recorded_run_of(const GoldenRun& run);
 
 /// Returns the metadata of an approved picture: scenario, event and camera, which explain a later difference.
@@ -49,7 +70,7 @@ struct Effect {
   /// If only answers are compared, they alone decide whether a run passes.
   enum class Kind : std::uint8_t { answer, measure, work };
   std::uint32_t step = 0;  ///< number of the step in the scenario
-  std::string what;        ///< e.g. "relation", "pairs", "face tests"
+  std::string what;        ///< e.g. "relation", "pairs", "face tests", "gear 1 and rock 3: pairs"
   std::string expected, found;
   Kind kind = Kind::answer;
 };

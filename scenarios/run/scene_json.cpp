@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
@@ -78,6 +79,20 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
           {"words", std::move(words)}};
 }
 
+Eigen::Vector3d body_centre(const LrbRep& rep) {
+  return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0)
+                                : Eigen::Vector3d(render::bounds(render::body_points(rep, {})).center());
+}
+
+void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& centre,
+              const SceneFrame& frame) {
+  const Eigen::Vector3d at = (pose.apply(centre) - frame.origin) / frame.unit;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) out.push_back(static_cast<float>(pose.r(row, column)));
+    out.push_back(static_cast<float>(at[row]));
+  }
+}
+
 namespace {
 
 using nlohmann::json;
@@ -95,11 +110,6 @@ std::string packed_each(const Range& range, Get get) {
 
 // ---- where things are
 
-Eigen::Vector3d centre_of(const LrbRep& rep) {
-  return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0)
-                                : Eigen::Vector3d(render::bounds(render::body_points(rep, {})).center());
-}
-
 const Pose& pose_in(const trace::Step& step, std::size_t body) {
   return body == 0 ? step.pose_a : step.pose_b;
 }
@@ -114,7 +124,7 @@ SceneFrame scene_frame(const RecordedRun& p) {
     for (const Eigen::Vector3d& v : p.reps[i]->vertices()) placed.extend(pose_in(first, i).apply(v));
     if (!placed.isEmpty()) size = std::max(size, placed.diagonal().norm());
   }
-  frame.origin = first.pose_a.apply(centre_of(*p.reps[0]));
+  frame.origin = first.pose_a.apply(body_centre(*p.reps[0]));
   if (size > 0 && std::isfinite(size)) frame.unit = std::exp2(std::floor(std::log2(size)));
   return frame;
 }
@@ -123,43 +133,41 @@ SceneFrame scene_frame(const RecordedRun& p) {
 /// relative to the body's centre.
 std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Numbers& steps,
                             const SceneFrame& frame) {
-  const Eigen::Vector3d centre = centre_of(*p.reps[body]);
+  const Eigen::Vector3d centre = body_centre(*p.reps[body]);
   std::vector<float> out;
-  const auto add = [&](const Pose& pose) {
-    const Eigen::Vector3d at = (pose.apply(centre) - frame.origin) / frame.unit;
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) out.push_back(static_cast<float>(pose.r(row, column)));
-      out.push_back(static_cast<float>(at[row]));
-    }
-  };
   const auto pose = [&](std::uint32_t step) -> const Pose& { return pose_in(p.trace->steps[step], body); };
   const bool stays = std::all_of(steps.begin(), steps.end(),
                                  [&](std::uint32_t s) { return trace::equal(pose(s), pose(steps.front())); });
   for (const std::uint32_t s : steps)
-    if (!stays || out.empty()) add(pose(s));
+    if (!stays || out.empty()) add_pose(out, pose(s), centre, frame);
   return out;
 }
 
 // ---- bodies
 
-json geometry(const LrbRep& rep, const SceneFrame& frame) {
-  const Eigen::Vector3d centre = centre_of(rep);
+/// `faces`: number of faces: all, or the real ones, which come first; then without regions.
+json geometry(const LrbRep& rep, const SceneFrame& frame, std::uint32_t faces) {
+  const Eigen::Vector3d centre = body_centre(rep);
   std::vector<float> vertices;
   for (const Eigen::Vector3d& v : rep.vertices()) frame.add_vector(vertices, v - centre);
+  const bool with_regions = faces == rep.face_count();
   Numbers sizes, inner, outer, parents, layers;
   const auto region_or_null = [](CellId c) { return is_region(c) ? c.value() : std::uint32_t{kNull}; };
-  for (FaceId f = 0; f < rep.face_count(); ++f) {
+  std::size_t corners = 0;
+  for (FaceId f = 0; f < faces; ++f) {
+    corners += rep.face(f).size();
     sizes.push_back(static_cast<std::uint32_t>(rep.face(f).size()));
-    inner.push_back(region_or_null(rep.inner_cell(f)));
-    outer.push_back(region_or_null(rep.outer_cell(f)));
+    inner.push_back(with_regions ? region_or_null(rep.inner_cell(f)) : std::uint32_t{kNull});
+    outer.push_back(with_regions ? region_or_null(rep.outer_cell(f)) : std::uint32_t{kNull});
   }
-  for (RegionId r = 0; r < rep.region_count(); ++r) {
+  for (RegionId r = 0; with_regions && r < rep.region_count(); ++r) {
     parents.push_back(region_or_null(rep.parent(r)));
     layers.push_back(rep.layer(r));
   }
   return {{"vertices", packed(vertices)},
           {"sizes", packed(sizes)},
-          {"corners", packed_each(rep.data().face_vertices, [](VertexId v) { return v.value(); })},
+          {"corners", packed_each(std::span(rep.data().face_vertices).first(corners),
+                                  [](VertexId v) { return v.value(); })},
           {"inner", packed(inner)},
           {"outer", packed(outer)},
           {"parent", packed(parents)},
@@ -230,7 +238,7 @@ ShownBoxes shown_boxes(const trace::TreeShape& tree, std::size_t most,
 
 json boxes_json(const LrbRep& rep, const SceneFrame& frame, const ShownBoxes& shown) {
   const std::vector<TreeBox>& boxes = shown.boxes;
-  const Eigen::Vector3d centre = centre_of(rep);
+  const Eigen::Vector3d centre = body_centre(rep);
   std::vector<float> places;  // centre and three half axes each
   for (const TreeBox& box : boxes) {
     frame.add_vector(places, box.centre - centre);
@@ -253,7 +261,7 @@ json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, con
               {"regions", rep.region_count()}};
   if (!with_geometry) return out;
   const trace::FaceCounts counts = trace::count_faces(rep, static_cast<Side>(i), p.trace->events);
-  out["geometry"] = geometry(rep, frame);
+  out["geometry"] = geometry(rep, frame, rep.face_count());
   // Another engine traverses trees of its own, which may be unknown.
   const std::vector<SimplexId> compared = compared_simplices(p, static_cast<Side>(i));
   const bool ours = p.trace->header.engine.empty(), is_known = p.trees != nullptr && i < p.trees->size();
@@ -261,7 +269,7 @@ json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, con
                             ours       ? shown_boxes(rep.tree(), limits.boxes, compared)
                             : is_known ? shown_boxes((*p.trees)[i], limits.boxes, compared)
                                        : ShownBoxes());
-  const Eigen::Vector3d centre = centre_of(rep);
+  const Eigen::Vector3d centre = body_centre(rep);
   out["centre"] = {centre.x(), centre.y(), centre.z()};
   out["counts"] = {{"tests", packed(counts.tests)},
                    {"hits", packed(counts.hits)},
@@ -544,6 +552,17 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+json real_body_json(const LrbRep& rep, const SceneFrame& frame) {
+  const std::string none = packed(Numbers());
+  return {{"name", rep.name()},
+          {"faces", rep.real_face_count()},
+          {"realFaces", rep.real_face_count()},
+          {"regions", 0},
+          {"geometry", geometry(rep, frame, rep.real_face_count())},
+          {"boxes", boxes_json(rep, frame, {})},
+          {"counts", {{"tests", none}, {"hits", none}}}};
+}
+
 json scene_colours() {
   namespace palette = render::palette;
   using render::css;
@@ -575,8 +594,8 @@ json posed_bodies_json(const RecordedRun& p) {
   json bodies = json::array(), steps = json::array();
   for (std::size_t i = 0; i < p.reps.size(); ++i) {
     json body = body_json(p, i, frame, {}, false);
-    const Eigen::Vector3d centre = centre_of(*p.reps[i]);
-    body["geometry"] = geometry(*p.reps[i], frame);
+    const Eigen::Vector3d centre = body_centre(*p.reps[i]);
+    body["geometry"] = geometry(*p.reps[i], frame, p.reps[i]->face_count());
     body["boxes"] = boxes_json(*p.reps[i], frame, {});
     body["centre"] = {centre.x(), centre.y(), centre.z()};
     body["simplices"] = p.reps[i]->real_simplex_count();

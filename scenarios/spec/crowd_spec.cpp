@@ -206,4 +206,15 @@ Crowd open_crowd(const std::string& name_or_path) {
   return parse_crowd(crowd.text, crowd.file);
 }
 
+bool is_crowd(const std::string& name_or_path) {
+  try {
+    const NamedText named = open_named(name_or_path, kCrowdEnding, "crowd");
+    const io::JsonText json(named.text, named.file);
+    const auto bodies = io::JsonNode(json).get("bodies");
+    return bodies && bodies->is_array();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 }  // namespace lrb::spec

@@ -63,4 +63,8 @@ Crowd parse_crowd(const std::string& text, const std::string& file);
 Crowd open_crowd(const std::string& name_or_path);
 std::vector<std::string> shipped_crowds();
 
+/// Returns true for the name of a shipped crowd, and for a JSON file whose bodies are a list, as those of a
+/// crowd. Returns false if there is no such file, or it is not JSON.
+bool is_crowd(const std::string& name_or_path);
+
 }  // namespace lrb::spec

@@ -170,3 +170,38 @@ TEST_CASE("slow boxes cost few swaps; the axis changes when boxes line up") {
   CHECK(sweep.update(boxes).size() == 199);
   CHECK(sweep.work().sorted_afresh);
 }
+
+TEST_CASE("incremental updates find the pairs of boxes of brute force, and compare only moved boxes") {
+  RandomEngine random(5);
+  for (int round = 0; round < 20; ++round) {
+    SweepAndPrune sweep;
+    const double room = round % 2 == 0 ? 12 : 40;
+    const auto random_box = [&] {
+      Eigen::Vector3d low, size;
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::floor(shapes::uniform(random, 0, room));
+        size[k] = std::floor(shapes::uniform(random, 0, 4));
+      }
+      return Box(low, low + size);
+    };
+    std::vector<Box> boxes(100);
+    for (Box& box : boxes) box = random_box();
+    sweep.update(boxes, {});
+    for (int step = 0; step < 60; ++step) {
+      // Most steps move few boxes, some move many, some none.
+      const std::uint64_t share = step % 10 == 9 ? 2 : step % 10 == 8 ? 1000 : 15;
+      std::vector<std::uint32_t> moved;
+      for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        if (random() % share != 0) continue;
+        moved.push_back(i);
+        boxes[i] = random_box();
+        if (random() % 8 == 0) boxes[i] = Box();  // empty
+        if (random() % 16 == 0) boxes[i] = Box(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1e300, 1, 1));
+        if (random() % 16 == 0) boxes[i].min().setConstant(-HUGE_VAL);
+      }
+      CAPTURE(step);
+      CHECK(sweep.update(boxes, moved) == all_pairs(boxes));
+      if (moved.empty()) CHECK(sweep.work().box_tests == 0);
+    }
+  }
+}

@@ -321,3 +321,66 @@ TEST_CASE("a scene with reserved space keeps its order while bodies are added") 
   CHECK(scene.near().size() == 1);
   CHECK(scene.work().broad_phase.sorted_afresh);
 }
+
+TEST_CASE("a scene keeps the answers of bodies that have not moved, for the same request") {
+  const std::vector<Body> bodies = some_bodies();
+  RandomEngine random(31);
+  Scene scene(2);
+  std::vector<BodyKey> keys;
+  for (int i = 0; i < 60; ++i)
+    keys.push_back(scene.add(bodies[random() % bodies.size()], random_place(random, 4)));
+  // Compares with a scene that asks all queries.
+  const auto check = [&](const CollideRequest& request) {
+    Scene anew(1);
+    for (const BodyKey key : scene.keys()) anew.add(scene.body(key), scene.pose(key));
+    const auto expected = anew.collide(request), found = scene.collide(request);
+    CHECK(anew.work().kept == 0);
+    CHECK(scene.work().near == anew.work().near);
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      REQUIRE(found[i].result.has_value() == expected[i].result.has_value());
+      if (!found[i].result) continue;
+      CHECK(found[i].result->relation == expected[i].result->relation);
+      CHECK(found[i].result->pairs == expected[i].result->pairs);
+      CHECK(found[i].result->regions.size() == expected[i].result->regions.size());
+    }
+  };
+  const auto near_of = [&](BodyKey key) {
+    std::size_t n = 0;
+    for (const ScenePair& p : scene.near()) n += static_cast<std::size_t>(p.a == key || p.b == key);
+    return n;
+  };
+  CollideRequest request;
+  check(request);
+  CHECK(scene.work().near > 50);
+  CHECK(scene.work().kept == 0);
+  check(request);
+  CHECK(scene.work().kept == scene.work().near);
+  for (int step = 0; step < 20; ++step) {
+    CAPTURE(step);
+    const BodyKey moved = keys[random() % keys.size()];
+    scene.move(moved, random_place(random, 4));
+    const std::size_t queried = near_of(moved);  // queries of other kinds do not disturb
+    scene.collide(bodies[0], Pose{});
+    scene.move(keys[7], scene.pose(keys[7]));  // to where it is
+    check(request);
+    CHECK(scene.work().kept == scene.work().near - queried);
+  }
+  request.contacts = true;
+  check(request);
+  CHECK(scene.work().kept == 0);
+  check(request);
+  CHECK(scene.work().kept == scene.work().near);
+  scene.remove(keys[3]);
+  keys[3] = scene.add(bodies[1], random_place(random, 4));
+  Pose bad;
+  bad.t.x() = std::numeric_limits<double>::quiet_NaN();
+  scene.move(keys[4], bad);
+  check(request);
+  check(request);
+  request.max_time = 10;
+  request.contacts = false;
+  check(request);
+  check(request);
+  CHECK(scene.work().kept == 0);
+}

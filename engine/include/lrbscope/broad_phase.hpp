@@ -21,7 +21,7 @@ struct BodyPair {
 /// the lowest density of boxes; it changes only if another has less than half its density.
 class SweepAndPrune {
  public:
-  /// The cost of the last update.
+  /// The cost of the last update. Swaps are 0 if it was incremental.
   struct Work {
     std::uint64_t swaps = 0;      ///< swaps of neighbours in the order
     std::uint64_t box_tests = 0;  ///< pairs that overlap on the axis and were compared on the others
@@ -31,16 +31,31 @@ class SweepAndPrune {
   /// Returns the pairs of boxes that intersect (closed sets: touching is enough), ascending. Empty boxes
   /// intersect nothing. Coordinates must not be NaN. Valid until the next update.
   const std::vector<BodyPair>& update(std::span<const Eigen::AlignedBox3d> boxes);
+  /// The same for boxes of which only those of the bodies `moved` (ascending) differ from the last update:
+  /// the pairs of the others are kept and not compared again.
+  const std::vector<BodyPair>& update(std::span<const Eigen::AlignedBox3d> boxes,
+                                      std::span<const std::uint32_t> moved);
   const Work& work() const { return work_; }
 
  private:
-  void choose_axis(std::span<const Eigen::AlignedBox3d> boxes);
-  void sort(std::span<const Eigen::AlignedBox3d> boxes);
+  using Boxes = std::span<const Eigen::AlignedBox3d>;
+
+  void choose_axis(Boxes boxes);
+  void sort(Boxes boxes);
+  bool before(Boxes boxes, std::uint32_t i, std::uint32_t j) const;
+  void sort_moved(Boxes boxes, std::span<const std::uint32_t> moved);
+  void sweep_moved(Boxes boxes, std::uint32_t body);
 
   int axis_ = 0;
   std::vector<std::uint32_t> order_;  ///< bodies sorted by the lower end of their boxes on the axis
   std::vector<BodyPair> pairs_;
   Work work_;
+  // For incremental updates.
+  double longest_ = 0;               ///< upper bound of the boxes' lengths on the axis
+  std::uint64_t moved_ = 0;          ///< bodies moved by incremental updates since the last complete one
+  std::vector<bool> has_moved_;      ///< (bodies)
+  std::vector<std::uint32_t> rest_;  ///< order_ without moved bodies
+  std::vector<BodyPair> found_;      ///< pairs of moved bodies
 };
 
 }  // namespace lrb

@@ -63,7 +63,8 @@ class Scene {
   BodyKey add(Body body, const Pose& pose = {});
   /// Removes a body. Returns false if the key does not exist.
   bool remove(BodyKey key);
-  /// Moves a body to a pose. Returns false if the key does not exist.
+  /// Moves a body to a pose. A body that already has this pose has not moved. Returns false if the key does
+  /// not exist.
   bool move(BodyKey key, const Pose& pose);
 
   std::size_t size() const;
@@ -90,7 +91,8 @@ class Scene {
 
   /// Returns all intersecting pairs of bodies, in ascending order of keys. Includes pairs with an error (a
   /// pose that is not finite). Omits pairs that are `separate`, or `undefined` for bodies without a solid.
-  /// Valid until the next call of collide().
+  /// Valid until the next call of collide(). Does not repeat the queries of pairs of which neither body has
+  /// moved since the last call of this overload with the same request, unless the request limits the time.
   std::span<const SceneAnswer> collide(const CollideRequest& request = {});
   /// Returns the bodies that intersect a body from outside the scene. That body is A; SceneAnswer::a is
   /// unused.
@@ -113,7 +115,8 @@ class Scene {
   /// The work of the last call. `broad_phase`: of the last call that updated the scene's broad phase.
   struct Work {
     std::size_t moved = 0;  ///< bodies whose AABBs were recomputed
-    std::size_t near = 0;   ///< pairs with intersecting AABBs: the number of queries of collide()
+    std::size_t near = 0;   ///< pairs with intersecting AABBs
+    std::size_t kept = 0;   ///< of these, the pairs whose answers collide() kept from the last call
     SweepAndPrune::Work broad_phase;
   };
   const Work& work() const;

@@ -211,7 +211,7 @@ function startScene() {
     if (what === "event") byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
   });
   new RowLinks(events, selection, controls);
-  const strip = new CostStrip(scene, events, selection, work.ofStep || new Map());
+  const strip = stripOfRun(scene, events, selection, work.ofStep || new Map());
   const tabs = new Tabs();
   explainCells();
   if (view) printView(view);

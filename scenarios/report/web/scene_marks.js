@@ -14,10 +14,11 @@ class Marks {
     const before = this.shown.get(name);
     if (before && before.key === key) return;
     this.clear(name);
-    const parts = [];
-    this.views.forEach((view, side) => {
-      const own = faces.filter((f) => f.side === side).map((f) => f.face);
-      if (!own.length) return;
+    const parts = [],
+      facesOf = new Map();
+    for (const { side, face } of faces) facesOf.set(side, [...(facesOf.get(side) || []), face]);
+    facesOf.forEach((own, side) => {
+      const view = this.views[side];
       const material = new THREE.MeshLambertMaterial({
         color: new THREE.Color(...colour),
         side: THREE.DoubleSide,

@@ -1,5 +1,5 @@
 // ---- the parts of the page of a run around its view: tabs, signs of scrolling, the picture of the cost, the address
-const TAB_ORDER = ["Not as expected", "Answer", "Events", "Work", "Steps", "Queries", "Charts"], // then all others
+const TAB_ORDER = ["Not as expected", "This step", "Answer", "Events", "Work", "Steps", "Queries", "Charts"], // then all others
   LAST_TABS = ["Frames", "Words", "Run"];
 
 /** Fades the edges of a box beyond which it can be scrolled. */
@@ -156,52 +156,15 @@ const workSort = ({ phase, outcome }) => WORK_SORTS.find((s) => s.of.test(outcom
 
 // ---- at the top: what each step cost, and when the bodies meet; of a single body, how many faces it shows
 class CostStrip {
-  constructor(scene, events, selection, ofStep) {
-    Object.assign(this, { events, selection });
-    this.bars = scene.work && !events.passes ? this.barsOfSteps(ofStep) : this.barsOfFaces();
-    if (!this.bars.length) return;
+  /** `bars`: [{values, words, go}] with a value for each of `sorts`, [{name, colour}]; `contactStep`: index of
+      the bar of the first contact; -1: none. */
+  constructor({ title, sorts, bars, contactStep = -1 }) {
+    Object.assign(this, { title, sorts, bars, contactStep, at: 0 });
+    if (!bars.length) return;
     this.box = document.createElement("div");
     this.box.className = "strip";
     document.querySelector("header").append(this.box);
-    this.contactStep = scene.firstContact >= 0 ? this.bars.findIndex((b) => b.step === events.stepNumber(events.at(scene.firstContact))) : -1;
     new ResizeObserver(oncePerFrame(() => this.draw())).observe(this.box);
-    selection.listeners.push((what) => {
-      if (what === "event") this.mark();
-    });
-  }
-
-  /** A bar for each step, divided by sorts of work. */
-  barsOfSteps(ofStep) {
-    this.title = "operations in each step";
-    const [all] = ofStep.values();
-    this.sorts = WORK_SORTS.map((sort) => {
-      const names = [...new Set(all.filter((o) => workSort(o) === sort).map((o) => o.outcome || o.phase))];
-      return names.length === 1 ? { ...sort, name: names[0] } : sort;
-    });
-    return [...ofStep].map(([step, outcomes]) => {
-      const values = WORK_SORTS.map((sort) =>
-        outcomes.reduce((n, o) => n + (workSort(o) === sort ? o.operations : 0), 0),
-      );
-      return { step, values, words: `step ${digits(step)}`, go: () => seek("step", step) };
-    });
-  }
-
-  /** A bar for each pass of a construction, or each refinement. */
-  barsOfFaces() {
-    const { events } = this,
-      ends = [...events.kind.keys()].filter((i) =>
-        events.passes ? events.kind[i] === events.PASS_END : events.changesWrapper(i),
-      );
-    this.title = events.passes ? "faces of the front after each pass" : "faces of the wrapper after each refinement";
-    this.sorts = [{ name: "faces", colour: "var(--work-boxes)" }];
-    return events.bodies.length > 1
-      ? []
-      : ends.map((i) => ({
-          event: i,
-          values: [events.boundary[i]],
-          words: eventText(events, i),
-          go: () => this.selection.goTo(i),
-        }));
   }
 
   draw() {
@@ -258,18 +221,64 @@ class CostStrip {
     });
     if (this.contactStep > 0) addKey("first contact").className = "contact";
     box.replaceChildren(svg, words);
-    this.mark();
+    this.mark(this.at);
   }
 
-  mark() {
+  /** Marks a bar; -1: none. */
+  mark(at) {
+    this.at = at;
     if (!this.cursor) return;
-    const { events, selection, bars } = this,
-      at = bars[0].step === undefined
-          ? lastAtMost(bars.map((b) => b.event), selection.event)
-          : bars.findIndex((b) => b.step === events.stepNumber(selection.event));
     this.cursor.style.visibility = at < 0 ? "hidden" : "";
-    this.cursor.setAttribute("x", at < 0 ? 0 : (at * this.width) / bars.length);
+    this.cursor.setAttribute("x", at < 0 ? 0 : (at * this.width) / this.bars.length);
   }
+}
+
+/** Returns the picture of the cost of a run of two bodies, or of one. */
+function stripOfRun(scene, events, selection, ofStep) {
+  const parts = scene.work && !events.passes ? barsOfSteps(ofStep) : barsOfFaces(events, selection),
+    { bars } = parts,
+    at = () =>
+      bars[0].step === undefined
+        ? lastAtMost(bars.map((b) => b.event), selection.event)
+        : bars.findIndex((b) => b.step === events.stepNumber(selection.event));
+  const strip = new CostStrip({
+    ...parts,
+    contactStep: scene.firstContact >= 0 ? bars.findIndex((b) => b.step === events.stepNumber(events.at(scene.firstContact))) : -1,
+  });
+  selection.listeners.push((what) => {
+    if (what === "event" && bars.length) strip.mark(at());
+  });
+  return strip;
+}
+
+/** A bar for each step, divided by sorts of work. */
+function barsOfSteps(ofStep) {
+  const [all] = ofStep.values();
+  const sorts = WORK_SORTS.map((sort) => {
+    const names = [...new Set(all.filter((o) => workSort(o) === sort).map((o) => o.outcome || o.phase))];
+    return names.length === 1 ? { ...sort, name: names[0] } : sort;
+  });
+  const bars = [...ofStep].map(([step, outcomes]) => {
+    const values = WORK_SORTS.map((sort) => outcomes.reduce((n, o) => n + (workSort(o) === sort ? o.operations : 0), 0));
+    return { step, values, words: `step ${digits(step)}`, go: () => seek("step", step) };
+  });
+  return { title: "operations in each step", sorts, bars };
+}
+
+/** A bar for each pass of a construction, or each refinement. */
+function barsOfFaces(events, selection) {
+  const ends = [...events.kind.keys()].filter((i) => (events.passes ? events.kind[i] === events.PASS_END : events.changesWrapper(i)));
+  const bars = ends.map((i) => ({
+    event: i,
+    values: [events.boundary[i]],
+    words: eventText(events, i),
+    go: () => selection.goTo(i),
+  }));
+  return {
+    title: events.passes ? "faces of the front after each pass" : "faces of the wrapper after each refinement",
+    sorts: [{ name: "faces", colour: "var(--work-boxes)" }],
+    bars: events.bodies.length > 1 ? [] : bars,
+  };
 }
 
 // ---- the state of the page in its address, so that a view can be linked:

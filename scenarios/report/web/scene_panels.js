@@ -787,7 +787,7 @@ class WhyPanel {
 
 // ---- the distribution of the work, as an icicle: the query on top, its phases, and beneath each the
 // deciding tests
-const SVG = document.querySelector(".about svg").namespaceURI;
+const SVG = document.querySelector("svg").namespaceURI;
 
 class WorkIcicle {
   /** `work`: {outcomes: [{phase, outcome, events, operations, micros}], timed}; null: not recorded. */

@@ -268,10 +268,14 @@ class BodiesCanvas {
     this.stage = new THREE.Scene();
     this.camera = new SceneCamera(this.canvas, scene, () => this.redraw());
     this.stage.add(new THREE.AmbientLight(0xffffff, 0.54), this.camera.perspective, this.camera.flat);
-    this.views = bodies.map((b) => new BodyView(b, this.colours));
+    this.views = this.makeViews(bodies);
     this.views.forEach((v) => this.stage.add(v.group));
     this.marks = new Marks(this.views, this.colours, this.size);
     this.legend = new Legend(this);
+  }
+
+  makeViews(bodies) {
+    return bodies.map((b) => new BodyView(b, this.colours));
   }
 
   /** Called by a subclass once it can draw. */

@@ -466,6 +466,60 @@ TEST_CASE("bodies of a crowd follow poses from files, one for all steps or one f
   CHECK(error(given["motion"]).find("room") != std::string::npos);
 }
 
+TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal those of new queries") {
+  json start = good();
+  start["motion"] = {{"steps", 9}, {"speed", 0.3}, {"spin", 20}};
+  start["query"] = {{"contacts", true}, {"distance", true}};
+  spec::Crowd crowd = crowd_of(start);
+  const crowd::CrowdRun all = crowd::run_crowd(crowd, 1, run::kSilent);
+  // At step s only bodies with a number divisible by s + 1 have moved; at step 5 none.
+  for (std::uint32_t step = 0; step < crowd.steps; ++step) {
+    std::vector<Pose>& poses = crowd.poses.emplace_back();
+    for (std::uint32_t body = 0; body < crowd.body_count(); ++body) {
+      const bool moves = step == 0 || (step != 5 && body % (step + 1) == 0);
+      poses.push_back(moves ? all.motion.pose(body, step) : crowd.poses[step - 1][body]);
+    }
+  }
+  const auto play = [&](const spec::Crowd& c) {
+    std::vector<bodies::LoadedBody> kinds = all.kinds;
+    return crowd::play_crowd(c, std::move(kinds), crowd::CrowdMotion(c, c.poses), 2, run::kSilent);
+  };
+  crowd.frames.at = render::FrameSpec::At::none;
+  const crowd::CrowdRun run = play(crowd);
+  std::size_t kept = 0, queried = 0;
+  for (std::uint32_t step = 0; step < crowd.steps; ++step) {
+    CAPTURE(step);
+    spec::Crowd alone = crowd;
+    alone.steps = 1;
+    alone.poses = {crowd.poses[step]};
+    const crowd::CrowdRun anew = play(alone);
+    const auto &found = run.steps[step].queries, &expected = anew.steps[0].queries;
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const crowd::CrowdQuery &x = found[i], &y = expected[i];
+      const auto stays = [&](std::uint32_t body) {
+        return step > 0 && trace::equal(crowd.poses[step][body], crowd.poses[step - 1][body]);
+      };
+      CHECK(x.bodies == y.bodies);
+      CHECK(x.is_kept == (stays(x.bodies.i) && stays(x.bodies.j)));
+      trace::StepResult result = x.result;
+      CHECK(result.counters == (x.is_kept ? Counters() : y.result.counters));
+      result.counters = y.result.counters;
+      CHECK(result == y.result);
+      CHECK(x.contact_regions == y.contact_regions);
+      CHECK(x.contact_faces == y.contact_faces);
+      (x.is_kept ? kept : queried) += 1;
+    }
+  }
+  CHECK(kept > 20);
+  CHECK(queried > 20);
+  CHECK(std::all_of(run.steps[5].queries.begin(), run.steps[5].queries.end(),
+                    [](const crowd::CrowdQuery& q) { return q.is_kept; }));
+  // Pictures do not change which answers are kept.
+  crowd.frames.at = render::FrameSpec::At::step;
+  CHECK(crowd::crowd_summary(crowd, play(crowd)) == crowd::crowd_summary(crowd, run));
+}
+
 TEST_CASE("two bodies of a recorded crowd are a run of their own, with the same answers") {
   for (const json& j : {good(), good_2d()}) {
     const test::Folder folder;

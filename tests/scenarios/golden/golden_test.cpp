@@ -576,3 +576,96 @@ TEST_CASE("goldens: jobs change only the time; one that cannot run fails alone; 
   CHECK(line["golden"] == "balls");
   CHECK(line["bytes"].get<int>() > 1000);
 }
+
+namespace {
+
+/// Balls and a tetrahedron from a file. The first two bodies intersect in both steps, the third in the
+/// second.
+struct ApprovedCrowd : Folder {
+  ApprovedCrowd() {
+    write_tip(1);
+    write_poses(0.9);
+    write_crowd("");
+    const Outcome o = test::run(*this, {"golden", "approve", "--frames", "2", "three.crowd.json"});
+    REQUIRE_MESSAGE(o.code == 0, o.err);
+  }
+  void write_tip(double height) const {
+    write("tip.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 0 " + std::to_string(height) +
+                         "\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  }
+  /// `x`: position of the tetrahedron at step 1.
+  void write_poses(double x) const {
+    const auto pose = [](double at) { return "1 0 0 " + std::to_string(at) + " 0 1 0 0 0 0 1 0\n"; };
+    write("poses.txt", pose(0) + pose(1.5) + pose(9) + pose(0) + pose(1.5) + pose(x));
+  }
+  void write_crowd(const std::string& query) const {
+    write("three.crowd.json", R"({"name": "three", "purpose": "Two balls and a tetrahedron.",
+ "bodies": [{"name": "ball", "body": {"generator": "ball", "parameters": {"frequency": 3}}, "count": 2},
+            {"name": "tip", "body": {"file": "tip.obj"}}],
+ "motion": {"poses": "poses.txt"}, "query": {)" +
+                                  query + R"(}, "frames": {"at": "step", "size": [480, 320]}})");
+  }
+  Outcome test() const { return test::run(*this, {"golden", "test"}); }
+};
+
+}  // namespace
+
+TEST_CASE("goldens: a crowd is approved, tested and listed like a scenario") {
+  const ApprovedCrowd folder;
+  const std::vector<std::string> files = {"goldens/three/b.ply", "goldens/three/frame_1.png",
+                                          "goldens/three/frame_2.png", "goldens/three/golden.json",
+                                          "goldens/three/trace.json.gz"};
+  std::vector<std::string> tree = folder.tree();
+  for (const std::string& file : files) CHECK(std::find(tree.begin(), tree.end(), file) != tree.end());
+  CHECK(nlohmann::json::parse(slurp(folder / "goldens/three/golden.json"))["crowd"] ==
+        "../../three.crowd.json");
+  const Outcome o = folder.test();
+  CAPTURE(o.out);
+  CHECK(o.out == "ok    three: 4 queries equal; images: 2 equal\n");
+  CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged three\n");
+  CHECK(has(test::run(folder, {"golden", "list"}).out,
+            "three: ../../three.crowd.json; compares answers, events"));
+  CHECK(test::run(folder, {"golden", "report", "three.crowd.json"}).code == 0);
+  CHECK(test::run(folder, {"golden", "remove", "three"}).code == 0);
+  CHECK_FALSE(fs::exists(folder / "goldens/three"));
+}
+
+TEST_CASE("goldens: a failure of a crowd names the changed mesh, the moved body and the pair of bodies") {
+  const ApprovedCrowd folder;
+  folder.write_tip(1.5);
+  Outcome o = folder.test();
+  CAPTURE(o.out);
+  CHECK(o.code == 1);
+  CHECK(has(o.out, "cause: tip (tip.obj): its mesh changed: vertex 3 moved by 0.5 ("));
+  CHECK(has(o.out, "first difference: run: tip: hash: expected "));
+  CHECK(has(o.out, "step 1: ball 2 and tip 1: "));
+  CHECK_FALSE(has(o.out, "ball 1 and ball 2"));
+  CHECK(fs::exists(folder / "out/golden/three/actual.trace.json.gz"));
+  CHECK(has(slurp(folder / "out/golden/index.html"), "three: differences"));
+
+  folder.write_tip(1);
+  folder.write_poses(4.5);  // the tetrahedron no longer reaches the balls, and its box is far from them
+  o = folder.test();
+  CHECK(o.code == 1);
+  CHECK(has(o.out, "cause: the scenario file changed"));
+  CHECK(has(o.out, "cause: step 1: tip 1 moved: its origin is displaced by 3.6\n"));
+  CHECK(has(o.out, "step 1: ball 2 and tip 1: query: expected crossing, found none: the boxes are disjoint"));
+  CHECK(has(o.out, "first difference: step 1: tip 1: pose: expected as approved"));
+
+  folder.write_poses(0.9);
+  folder.write_crowd("\"distance\": true");
+  o = folder.test();
+  CHECK(has(o.out, "cause: the requested measures changed: none -> distance"));
+  CHECK(has(o.out, "step 0: ball 1 and ball 2: distance: expected none, found "));
+}
+
+TEST_CASE("goldens: a golden of a scenario does not fit a crowd of the same name") {
+  const ApprovedCrowd folder;
+  const std::string spec = slurp(folder / "goldens/three/golden.json");
+  folder.write("goldens/three/golden.json",
+               std::regex_replace(spec, std::regex("\"crowd\""), "\"scenario\""));
+  const Outcome o = folder.test();
+  CAPTURE(o.out);
+  CHECK(o.code == 1);
+  CHECK(has(o.out, "FAIL  three: "));
+}

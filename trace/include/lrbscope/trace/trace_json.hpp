@@ -52,6 +52,8 @@ std::string trace_to_json(const Trace& trace);
 /// Writes a trace to `path`, gzip-compressed if the name ends in ".gz". The file is written completely or not
 /// at all. Throws EnvironmentError (disk full, ...) or InputError (no such folder, ...).
 void save_trace(const Trace& trace, const std::string& path);
+/// Saves what `write` writes in the same way.
+void save_trace(const std::function<void(ByteSink&)>& write, const std::string& path);
 
 struct ReadLimits {
   std::uint64_t max_bytes = std::uint64_t{1} << 30;  ///< maximum length of the text, decompressed
