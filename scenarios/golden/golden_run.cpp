@@ -7,6 +7,7 @@
 #include <sstream>
 #include <type_traits>
 
+#include "render/gl.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include <lrbscope/core/strings.hpp>
@@ -111,9 +112,36 @@ std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run) {
   return out;
 }
 
+std::vector<Effect> find_more_work(const Golden& golden, const GoldenRun& run) {
+  const auto sum_of = [](const trace::Trace& trace) {
+    Counters sum;
+    for (const trace::Step& step : trace.steps)
+      for_each_field<Counters>([&](const auto& field) {
+        if constexpr (std::is_same_v<decltype(sum.*field.member), std::uint64_t&>)
+          sum.*field.member += step.result.counters.*field.member;
+      });
+    return sum;
+  };
+  const Counters expected = sum_of(golden.trace), found = sum_of(run.recording.trace);
+  std::vector<Effect> out;
+  for_each_field<Counters>([&](const auto& field) {
+    if constexpr (std::is_same_v<decltype(expected.*field.member), const std::uint64_t&>) {
+      const std::uint64_t x = expected.*field.member, y = found.*field.member;
+      if (static_cast<double>(y) <= static_cast<double>(x) * (1 + golden.spec.work)) return;
+      Effect more;
+      more.what = io::in_words(field.name);
+      more.expected = std::to_string(x);
+      more.found = std::to_string(y);
+      more.kind = Effect::Kind::work;
+      out.push_back(more);
+    }
+  });
+  return out;
+}
+
 namespace {
 
-constexpr int kDefaultWidth = 480, kMinHeight = 320;
+constexpr int kDefaultWidth = 480, kMinHeight = 240, kMaxHeight = 4 * kDefaultWidth;
 
 std::string to_text(const Eigen::Vector3d& v) {
   std::ostringstream out;
@@ -136,10 +164,10 @@ std::string to_text(const render::Camera& c) {
 }  // namespace
 
 void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames) {
-  spec.width = kDefaultWidth;
-  spec.height =
-      std::clamp(static_cast<int>(std::lround(double{kDefaultWidth} * frames.height / frames.width)),
-                 kMinHeight, 4 * kDefaultWidth);
+  const double shape = double{1} * frames.height / frames.width;
+  const double height = std::clamp(kDefaultWidth * shape, double{kMinHeight}, double{kMaxHeight});
+  spec.height = static_cast<int>(std::lround(height));
+  spec.width = static_cast<int>(std::lround(height / shape));
 }
 
 GoldenRun record_golden(spec::Scenario scenario, const GoldenSpec& spec,
@@ -175,6 +203,8 @@ GoldenFacts facts_of(const GoldenRun& run) {
   for (const bodies::LoadedBody& body : run.recording.bodies)
     facts.meshes.push_back(mesh_hash(body.rep.real_mesh()));
   facts.contact_lengths = contact_lengths(run.recording);
+  if (!run.text.empty()) facts.scenario = compact_json(run.text);
+  if (!run.frames.empty()) facts.renderer = render::gl_version();
   return facts;
 }
 
