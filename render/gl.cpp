@@ -133,6 +133,16 @@ std::string Offscreen::version() const {
   return text(GL_VERSION) + ", " + text(GL_RENDERER);
 }
 
+const std::string& gl_version() {
+  static const std::string version = [] {
+    const Offscreen context;
+    std::string text = context.version();
+    context.release();
+    return text;
+  }();
+  return version;
+}
+
 std::vector<Finding> check_gl_environment() {
   using Level = Finding::Level;
   std::vector<Finding> out;

@@ -181,6 +181,10 @@ class CurrentContext {
   const Offscreen& context_;
 };
 
+/// Returns the version and renderer of OpenGL, such as "4.5 (Compatibility Profile) Mesa 22.3.6, llvmpipe
+/// (LLVM 15.0.6, 256 bits)". Throws EnvironmentError if nothing can be drawn.
+const std::string& gl_version();
+
 /// One result of checking the environment.
 struct Finding {
   enum class Level { ok, warning, error } level = Level::ok;

@@ -5,10 +5,14 @@
 #include <memory>
 #include <numbers>
 
+#include <nlohmann/json.hpp>
+
+#include "render/gl.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/zip.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -26,7 +30,7 @@ namespace lrb::cli {
 namespace {
 
 struct FigureOptions {
-  std::string source, file, width, line_width;
+  std::string source, file, width, line_width, artifact;
   std::vector<std::string> bodies;
   std::vector<std::uint32_t> faces, events, steps;
   bool layers = false, close_up = false, tex = false, try_views = false;
@@ -185,7 +189,94 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
   return frames;
 }
 
-int run_figure(const FigureOptions& o, const Globals& globals) {
+/// Returns a scenario's text with the mesh files that it names as files of the archive, which it appends.
+std::string with_own_bodies(const std::string& path, std::vector<io::ZipEntry>& entries) {
+  nlohmann::ordered_json scenario = nlohmann::ordered_json::parse(io::read_text(path), nullptr, true, true);
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  for (auto& [name, body] : scenario["bodies"].items()) {
+    if (!body.contains("file")) continue;
+    const std::filesystem::path mesh = folder / body["file"].get<std::string>();
+    const std::string own = name + "_" + mesh.filename().string();
+    entries.push_back({"inputs/" + own, io::read_text(mesh.string())});
+    body["file"] = own;
+  }
+  return scenario.dump(2) + "\n";
+}
+
+/// Returns the options of a call as words for a shell, without those that name files.
+std::string shell_options(const CLI::App& app) {
+  std::string out;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || option->get_positional() || name == "--output" || name == "--artifact" ||
+        name == "--bodies")
+      continue;
+    std::string values;
+    for (const std::string& value : option->results()) values += (values.empty() ? "" : ",") + value;
+    const bool flag = option->get_items_expected_max() == 0;
+    out += " " + name + (!flag ? " " + shell_word(values) : values == "true" ? "" : "=" + values);
+  }
+  return out;
+}
+
+/// Writes an archive from which one command makes the figure again: the input files, the figure, the command,
+/// the versions, and a container with the program.
+void write_artifact(const FigureOptions& o, const CLI::App& app, const std::string& file,
+                    const std::string& bytes) {
+  std::vector<io::ZipEntry> entries;
+  std::string source, bodies;
+  const auto add = [&](const std::string& path, const std::string& name) {
+    entries.push_back({"inputs/" + name, io::read_text(path)});
+    return "inputs/" + name;
+  };
+  std::error_code error;
+  const auto name_of_file = [](const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+  };
+  if (std::filesystem::is_directory(o.source, error) || is_trace_name(o.source)) {
+    const std::string trace = run::trace_of(o.source);
+    source = add(trace, name_of_file(trace));
+    for (std::size_t i = 0; i < o.bodies.size(); ++i)
+      bodies +=
+          " " + shell_word(add(o.bodies[i], std::string(i == 0 ? "a_" : "b_") + name_of_file(o.bodies[i])));
+    for (const char* name : {"a.lrb", "b.lrb", "trees.json", "trees.json.gz"}) {
+      const std::filesystem::path beside = std::filesystem::path(trace).replace_filename(name);
+      if (std::filesystem::exists(beside, error)) add(beside.string(), name);
+    }
+  } else if (is_mesh_name(o.source)) {
+    source = add(o.source, name_of_file(o.source));
+  } else if (std::filesystem::exists(o.source, error)) {
+    source = "inputs/" + name_of_file(o.source);
+    const std::string text = with_own_bodies(o.source, entries);
+    entries.push_back({source, text});
+  } else {
+    source = o.source;  // a shipped scenario
+  }
+  const std::string name = name_of_file(file), version = trace::lrbscope_version();
+  entries.push_back({name, bytes});
+  entries.push_back(
+      {"make.sh", "#!/bin/sh\n# Makes the figure again from inputs/, as made/" + name +
+                      ", and compares it with this one. LRBSCOPE names the program.\n# Made by lrbscope " +
+                      version + "; image parts by OpenGL " + render::gl_version() +
+                      ".\nset -e\ncd \"$(dirname \"$0\")\"\n\"${LRBSCOPE:-lrbscope}\" figure " +
+                      shell_word(source) + (bodies.empty() ? "" : " --bodies" + bodies) + shell_options(app) +
+                      " -o " + shell_word("made/" + name) + "\ncmp " + shell_word("made/" + name) + " " +
+                      shell_word(name) + "\necho \"made/" + name + ": the same, byte for byte\"\n"});
+  entries.push_back(
+      {"Dockerfile",
+       "# docker build -t figure . && docker run --rm figure\n# LRBSCOPE: the address of a folder with lrbscope's "
+       "packages for Debian 12.\nFROM debian:12\nARG LRBSCOPE=https://lrbscope.example.org/releases/" +
+           version +
+           "\nRUN apt-get update -q && apt-get install -y -q --no-install-recommends ca-certificates curl \\\n"
+           " && curl -fsSLO \"$LRBSCOPE/lrbscope_" +
+           version +
+           "-1_amd64.deb\" \\\n"
+           " && apt-get install -y -q --no-install-recommends ./lrbscope_*.deb\n"
+           "COPY . /figure\nCMD [\"sh\", \"/figure/make.sh\"]\n"});
+  write_file(o.artifact, io::zip(entries));
+}
+
+int run_figure(const FigureOptions& o, const CLI::App& app, const Globals& globals) {
   const run::ProgressReport progress = progress_report(globals.quiet);
   if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // check the file before an expensive run
   const Source source = open_source(o, progress);
@@ -205,6 +296,10 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   io::write_text(file, drawn.bytes);
   io::write_text(caption.string(), drawn.caption + "\n");
   print(file + "\n");
+  if (!o.artifact.empty()) {
+    write_artifact(o, app, file, drawn.bytes);
+    print(o.artifact + "\n");
+  }
   if (spec.tex.empty()) return kOk;
   std::filesystem::path tex(file);
   tex.replace_extension(".tex");
@@ -296,7 +391,12 @@ Command add_figure(CLI::App& root, const Globals& globals) {
   add_camera_options(*app, o->picture.camera, true);
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);
-  return {app, [o, &globals] { return run_figure(*o, globals); }};
+  app->add_option(
+         "--artifact", o->artifact,
+         "Also write an archive with the inputs, the command and a container recipe, which makes the same "
+         "figure again, byte for byte")
+      ->type_name("ZIP");
+  return {app, [o, app, &globals] { return run_figure(*o, *app, globals); }};
 }
 
 }  // namespace lrb::cli

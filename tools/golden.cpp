@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <future>
@@ -22,9 +23,11 @@ struct GoldenOptions {
   std::vector<std::string> scenarios;
   std::string goldens = "goldens", folder = "out/golden", variant, size;
   std::optional<std::uint32_t> frames;
-  std::vector<golden::Level> levels;  ///< nullopt: as in each golden
-  std::optional<double> large_share;  ///< of pixels; nullopt: as in each golden
-  std::string junit, markdown;
+  std::vector<golden::Level> levels;      ///< nullopt: as in each golden
+  std::optional<double> large_share;      ///< of pixels; nullopt: as in each golden
+  std::optional<double> flip, work;       ///< nullopt: as in each golden
+  std::vector<std::string> ignore, only;  ///< of pictures; empty: as in each golden
+  std::string junit, markdown, picture_url, from;
   unsigned jobs = 1;
   std::uint32_t repeat = 0;
   bool json = false, dry = false;
@@ -37,6 +40,21 @@ void apply(const GoldenOptions& o, golden::GoldenSpec& spec) {
     for (const golden::Level level : o.levels) spec.levels[static_cast<std::size_t>(level)] = true;
   }
   if (o.large_share) spec.tolerance.large_share = *o.large_share;
+  if (o.flip) spec.flip = *o.flip;
+  if (o.work) spec.work = *o.work;
+  const auto rectangles = [](const std::vector<std::string>& words, std::vector<render::PixelRect>& out) {
+    if (!words.empty()) out.clear();
+    for (const std::string& word : words) {
+      render::PixelRect r;
+      char end = 0;
+      if (std::sscanf(word.c_str(), "%d,%d,%d,%d%c", &r.x, &r.y, &r.width, &r.height, &end) != 4 || r.x < 0 ||
+          r.y < 0 || r.width < 1 || r.height < 1)
+        throw InputError(printable_name(word) + ": expected a rectangle X,Y,WIDTH,HEIGHT in pixels");
+      out.push_back(r);
+    }
+  };
+  rectangles(o.ignore, spec.ignore);
+  rectangles(o.only, spec.only);
 }
 
 std::string approve_command(const GoldenOptions& o, const std::string& name) {
@@ -117,6 +135,7 @@ Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressR
                        "; approve it again, or rename one of them");
     const std::uint32_t threads = o.jobs > 1 ? 1 : all_cores();
     out.run = golden::record_golden(std::move(source), out.golden->spec, progress, threads);
+    out.run->text = golden::scenario_text(o.goldens, g.name, out.golden->spec);
   } catch (const InputError& e) {
     out.rejection = e.what();
   }
@@ -197,7 +216,17 @@ int run_test(const GoldenOptions& o, const Globals& globals, bool report) {
     if (!o.json) print(o.folder + "/index.html\n");
   }
   if (!o.junit.empty()) io::write_text(o.junit, golden::junit_xml(results));
-  if (!o.markdown.empty()) io::write_text(o.markdown, golden::markdown(results));
+  for (const std::string& line : golden::equal_causes(results))
+    if (!o.json) print(line + "\n");
+  if (!o.markdown.empty()) {
+    std::error_code error;
+    const auto from = std::filesystem::absolute(o.markdown, error).parent_path();
+    const std::string pictures =
+        o.picture_url.empty()
+            ? std::filesystem::absolute(o.folder, error).lexically_relative(from).generic_string()
+            : o.picture_url;
+    io::write_text(o.markdown, golden::markdown(results, pictures));
+  }
   return passed ? kOk : kMismatch;
 }
 
@@ -294,22 +323,55 @@ golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& na
   return spec;
 }
 
+/// Returns why a golden should not be approved unless it is named: its scenario cannot be opened, or a file
+/// of it is damaged. Returns an empty text if nothing is wrong.
+std::string why_not_approved(const GoldenOptions& o, const std::string& name) {
+  try {
+    const golden::Golden golden = golden::load_golden(o.goldens, name);
+    for (const auto& variants : golden.frames)
+      for (const golden::GoldenImage& image : variants)
+        if (!image.damage.empty()) return image.damage + "; to replace it: " + approve_command(o, name);
+  } catch (const InputError& e) {
+    return std::string(e.what()) + "; to replace it: " + approve_command(o, name);
+  }
+  try {
+    golden::golden_source(o.goldens, name, golden::read_golden_spec(o.goldens, name));
+  } catch (const InputError& e) {
+    return std::string(e.what()) + "; to remove the golden: lrbscope golden remove --goldens " +
+           shell_word(o.goldens) + " " + name;
+  }
+  return {};
+}
+
 int run_approve(const GoldenOptions& o, const Globals& globals) {
+  if (!o.from.empty()) {
+    for (const std::string& line : golden::approve_from(o.goldens, o.from, o.scenarios, o.dry))
+      print(line + "\n");
+    return kOk;
+  }
   const std::vector<std::string> words = o.scenarios.empty() ? golden::golden_names(o.goldens) : o.scenarios;
+  int code = kOk;
   for (const std::string& word : words) {
+    if (o.scenarios.empty())
+      if (const std::string why = why_not_approved(o, word); !why.empty()) {
+        print("not approved: " + word + ": " + why + "\n");
+        code = kMismatch;
+        continue;
+      }
     golden::Source source =
         golden::has_golden(o.goldens, word)
             ? golden::golden_source(o.goldens, word, golden::read_golden_spec(o.goldens, word))
             : golden::open_source(word);
     const std::string name = golden::name_of(source);
     const golden::GoldenSpec spec = spec_to_approve(o, name, source, word);
-    const golden::GoldenRun run =
+    golden::GoldenRun run =
         golden::play_golden(std::move(source), spec, progress_report(globals.quiet), all_cores());
+    run.text = golden::scenario_text(o.goldens, name, spec);
     const std::vector<std::string> done = golden::approve_golden(o.goldens, spec, run, o.variant, o.dry);
     for (const std::string& line : done) print(line + "\n");
     if (done.empty()) print("unchanged " + name + "\n");
   }
-  return kOk;
+  return code;
 }
 
 int run_remove(const GoldenOptions& o) {
@@ -345,7 +407,7 @@ void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
          [o](const std::vector<std::string>& chosen) {
            for (const std::string& word : chosen) o->levels.push_back(from_name<golden::Level>(word).value());
          },
-         "Parts to compare, comma-separated: answers, events, pictures [all, or as stored in the golden]")
+         "Parts to compare, comma-separated: answers, events, pictures, work [all, or as stored in the golden]")
       ->delimiter(',')
       ->allow_extra_args(false)  // scenarios may follow
       ->check(CLI::IsMember(words).description(""))
@@ -353,6 +415,17 @@ void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   app.add_option("--picture-tolerance", o->large_share,
                  "Fraction of pixels allowed to differ strongly [0.0005, or as stored in the golden]")
       ->check(CLI::Range(0.0, 1.0))
+      ->type_name("SHARE");
+  app.add_option(
+         "--flip", o->flip,
+         "Also pass pictures whose mean FLIP, the difference that an eye perceives, is at most this [0, or as "
+         "stored in the golden]")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("ERROR");
+  app.add_option(
+         "--work-tolerance", o->work,
+         "Share by which tests and visited nodes of all steps may increase [0.05, or as stored in the golden]")
+      ->check(CLI::Range(0.0, 1e6))
       ->type_name("SHARE");
 }
 
@@ -362,6 +435,9 @@ void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
   app.add_option("--markdown", o->markdown,
                  "Also write the results as a Markdown table, for the summary of a CI job")
       ->type_name("FILE");
+  app.add_option("--picture-url", o->picture_url,
+                 "Address of the output folder, for the pictures of --markdown [its relative path]")
+      ->type_name("URL");
   app.add_option("--repeat", o->repeat,
                  "Repeat a failed test N times, to distinguish a changed scenario from a flaky one")
       ->check(CLI::Range(1, 1000))
@@ -401,8 +477,26 @@ Command add_golden(CLI::App& root, const Globals& globals) {
       ->add_option("--frames", o->frames, "Number of pictures, evenly spaced over the scenario's frames [3]")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
+  const auto rectangles = [&](const char* name, std::vector<std::string>& to, const char* what) {
+    approve->add_option(name, to, what)->allow_extra_args(false)->type_name("X,Y,W,H");
+  };
+  rectangles("--ignore", o->ignore, "A rectangle of pixels that is not compared; repeatable");
+  rectangles("--only", o->only,
+             "A rectangle of pixels that is compared, instead of whole pictures; repeatable");
+  approve
+      ->add_option(
+          "--from", o->from,
+          "Approve what a test found, on this machine or another one, instead of running the scenarios: its "
+          "output folder or a ZIP archive of it")
+      ->type_name("DIR|ZIP");
   approve->add_flag("--dry-run", o->dry, "Change nothing; print which files would be approved or removed");
   add_comparison(*approve, o);
+  // What a test found is approved as it was drawn and compared there.
+  for (CLI::Option* option : approve->get_options())
+    if (const std::string name = option->get_name(); name != "--from" && name != "--goldens" &&
+                                                     name != "--dry-run" && name != "--help" &&
+                                                     option->nonpositional())
+      approve->get_option("--from")->excludes(option);
   CLI::App* remove = app->add_subcommand("remove", "Remove goldens: the files that approving wrote");
   remove->add_option("NAME", o->scenarios, "Goldens, by name")->required();
   add_folder(*remove, o);

@@ -127,8 +127,8 @@ const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
 const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes,
                                                    std::span<const std::uint32_t> moved) {
   // A moved box is compared with boxes on both sides, in a complete update with those on one: beyond a
-  // quarter of the boxes, the complete update is faster. It also chooses the axis again, after as many moves as
-  // bodies.
+  // quarter of the boxes, the complete update is faster. It also chooses the axis again, after as many moves
+  // as bodies.
   constexpr std::size_t kIncrementalShare = 4;
   if (order_.size() != boxes.size() || kIncrementalShare * moved.size() > boxes.size() ||
       moved_ > boxes.size())

@@ -4,14 +4,19 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <unordered_map>
 
+#include "render/flip.hpp"
+#include "render/gl.hpp"
 #include "scenarios/golden/crowd_difference.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/zip.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/image.hpp>
@@ -89,7 +94,12 @@ std::vector<std::string> find_causes(const Golden& golden, const GoldenRun& run)
   const Inputs x = golden.crowd ? inputs_of(*golden.crowd) : inputs_of(golden.trace.header),
                y = run.crowd ? inputs_of(run.crowd->trace) : inputs_of(run.recording.trace.header);
   std::vector<std::string> out;
-  if (x.hash != run.scenario.hash) out.emplace_back("the scenario file changed since it was approved");
+  if (!golden.facts.scenario.empty() && !run.text.empty()) {
+    const std::string keys = scenario_difference(golden.facts.scenario, compact_json(run.text));
+    if (!keys.empty()) out.push_back("the scenario changed: " + keys);
+  } else if (x.hash != run.scenario.hash) {
+    out.emplace_back("the scenario file changed since it was approved");
+  }
   if (run.crowd)
     if (const std::string words = kinds_cause(*golden.crowd, run.crowd->trace); !words.empty())
       out.push_back(words);
@@ -242,8 +252,27 @@ std::string explain(const render::DecodedPng& expected, const run::PaintedFrame&
   return out + commonest_change(expected.image, actual.image);
 }
 
+/// Returns a picture in which all that is not compared is as approved; `ignored` counts these pixels.
+render::Image masked(const render::Image& expected, render::Image actual, const GoldenSpec& spec,
+                     std::uint64_t& ignored) {
+  if (spec.ignore.empty() && spec.only.empty()) return actual;
+  if (expected.width() != actual.width() || expected.height() != actual.height()) return actual;
+  std::vector<char> compared(actual.pixels().size(), spec.only.empty());
+  const auto mark = [&](const render::PixelRect& r, bool value) {
+    for (int y = r.y; y < std::min(r.bottom(), actual.height()); ++y)
+      for (int x = r.x; x < std::min(r.right(), actual.width()); ++x)
+        compared[static_cast<std::size_t>(y) * actual.width() + x] = value;
+  };
+  for (const render::PixelRect& r : spec.only) mark(r, true);
+  for (const render::PixelRect& r : spec.ignore) mark(r, false);
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    if (!compared[i]) actual.pixels()[i] = expected.pixels()[i], ++ignored;
+  return actual;
+}
+
 ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::PaintedFrame& actual,
-                         std::size_t frame, const render::ImageTolerance& tolerance) {
+                         std::size_t frame, const GoldenSpec& spec) {
+  const render::ImageTolerance& tolerance = spec.tolerance;
   ImageVerdict best;
   best.frame = frame;
   best.has_actual = true;
@@ -259,14 +288,29 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::Pa
     return best;
   }
   best.has_expected = true;
-  const std::uint64_t print = render::hash(actual.image);
   render::ImageDifference least;
   for (std::size_t i = 0; i < variants.size(); ++i) {
     const render::Image& expected = variants[i].png.image;
-    const bool equal = render::hash(expected) == print;
-    const render::ImageDifference d =
-        equal ? render::ImageDifference{} : render::compare(expected, actual.image, tolerance);
-    const bool passed = equal || d.within(tolerance);
+    std::uint64_t ignored = 0;
+    const render::Image found = masked(expected, actual.image, spec, ignored);
+    const bool equal = expected == found;
+    render::ImageDifference d;
+    std::string flip;  // the mean FLIP of a picture beyond the tolerance
+    bool passed = equal;
+    if (!equal) {
+      d = render::compare(expected, found, tolerance);
+      d.pixels -= std::min(ignored, d.pixels);
+      d.equal -= std::min(ignored, d.equal);
+      passed = d.within(tolerance);
+      if (!passed && d.same_size) {
+        const double pixels = static_cast<double>(found.pixels().size());
+        const double mean = render::mean_flip(expected, found) * pixels /
+                            std::max<double>(1, pixels - static_cast<double>(ignored));
+        passed = mean <= spec.flip;
+        flip = "; mean FLIP " + io::fixed_text(mean, 4) +
+               (spec.flip > 0 ? " (allowed " + render::short_number(spec.flip) + ")" : "");
+      }
+    }
     const bool nearer = passed != best.passed            ? passed
                         : d.same_size != least.same_size ? d.same_size
                                                          : d.large < least.large;
@@ -278,13 +322,13 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::Pa
     best.equal = equal;
     best.text = equal ? "the images are identical"
                 : d.same_size
-                    ? d.text(tolerance)
+                    ? d.text(tolerance) + flip
                     : "expected " + size_text(expected) + " pixels, found " + size_text(actual.image);
     if (equal) return best;
   }
   if (!best.passed && least.same_size) {
-    const std::string why = explain(variants[best.variant].png, actual);
-    if (!why.empty()) best.text += "; " + why;
+    best.change = explain(variants[best.variant].png, actual);
+    if (!best.change.empty()) best.text += "; " + best.change;
   }
   return best;
 }
@@ -293,8 +337,8 @@ std::vector<ImageVerdict> check_frames(const Golden& golden, const GoldenRun& ru
   static const std::vector<GoldenImage> none;
   std::vector<ImageVerdict> out;
   for (std::size_t i = 0; i < run.frames.size(); ++i)
-    out.push_back(check_frame(i < golden.frames.size() ? golden.frames[i] : none, run.frames[i], i,
-                              golden.spec.tolerance));
+    out.push_back(
+        check_frame(i < golden.frames.size() ? golden.frames[i] : none, run.frames[i], i, golden.spec));
   for (std::size_t i = run.frames.size(); i < golden.frames.size(); ++i) {
     if (golden.frames[i].empty()) continue;
     ImageVerdict missing;
@@ -313,6 +357,27 @@ bool GoldenVerdict::images_passed() const {
   return std::all_of(images.begin(), images.end(), [](const ImageVerdict& v) { return v.passed; });
 }
 
+namespace {
+
+/// Describes what the program does differently if none of its inputs changed.
+std::string program_cause(const GoldenVerdict& v, const Golden& golden) {
+  const std::string same = "the inputs and the version are as approved";
+  if (v.divergence)
+    return same + ", but the program runs differently: " +
+           (v.diagnosis.empty() ? v.divergence->message() : v.diagnosis);
+  for (const ImageVerdict& image : v.images) {
+    if (image.passed || !image.has_actual || !image.has_expected) continue;
+    const std::string &x = golden.facts.renderer, &y = render::gl_version();
+    if (!x.empty() && x != y) return "pictures were approved with " + x + ", and drawn with " + y;
+    return same + ", but pictures are drawn differently" + (image.change.empty() ? "" : ": " + image.change);
+  }
+  for (const ImageVerdict& image : v.images)
+    if (!image.passed) return image.file + ": " + image.text;
+  return same + ", but the program runs differently";
+}
+
+}  // namespace
+
 GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run) {
   GoldenVerdict out;
   out.effects = find_effects(golden, run);
@@ -325,8 +390,18 @@ GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run) {
     out.divergence = trace::first_divergence(golden.trace, run.recording.trace);
     if (out.divergence) out.diagnosis = diagnose(golden.trace, run.recording.trace, *out.divergence);
   }
+  if (golden.spec.compares(Level::work)) out.more_work = find_more_work(golden, run);
   if (golden.spec.compares(Level::pictures)) out.images = check_frames(golden, run);
-  if (!out.passed()) out.causes = find_causes(golden, run);
+  if (out.passed()) return out;
+  out.causes = find_causes(golden, run);
+  if (!out.causes.empty()) {
+    out.group = out.causes.front();
+    return out;
+  }
+  out.causes.push_back(program_cause(out, golden));
+  // Numbers of steps, events and pixels differ from golden to golden, even if their cause is one.
+  for (const char c : out.causes.front())
+    if (c < '0' || c > '9') out.group.push_back(c);
   return out;
 }
 
@@ -403,6 +478,58 @@ std::optional<Golden> load_if_sound(const std::string& goldens, const std::strin
   }
 }
 
+/// Returns true if a picture is approved: equal to a variant, or within the tolerance.
+bool is_approved(const std::vector<GoldenImage>& variants, const render::Image& image, std::size_t frame,
+                 const GoldenSpec& spec) {
+  run::PaintedFrame found;
+  found.image = image;
+  return check_frame(variants, found, frame, spec).passed;
+}
+
+/// The files of a golden, as bytes, that approving could need.
+struct ApprovableGolden {
+  std::string name;
+  std::vector<io::ZipEntry> files;  ///< without folder
+  Golden golden;
+};
+
+/// Reads the goldens of a folder or archive that a test wrote. Files are found by their place,
+/// .../approve/NAME/FILE, and must be files of a golden.
+std::vector<ApprovableGolden> read_approvable(const std::string& from,
+                                              const std::vector<std::string>& names) {
+  std::vector<io::ZipEntry> entries;
+  const auto place = [&](const std::string& path) {
+    const fs::path p(path), parent = p.parent_path();
+    return std::pair{
+        parent.parent_path().filename() == kApprovable ? parent.filename().string() : std::string(),
+        p.filename().string()};
+  };
+  const auto wanted = [&](const std::string& path) {
+    const auto [name, file] = place(path);
+    const bool named = names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+    return named && !name.empty() && name != "." && name != ".." && is_golden_file(file);
+  };
+  if (fs::is_directory(from)) {
+    for (const auto& file : fs::recursive_directory_iterator(from))
+      if (file.is_regular_file() && wanted(file.path().generic_string()))
+        entries.push_back({file.path().generic_string(), io::read_text(file.path().string())});
+  } else {
+    entries = io::unzip(io::read_text(from), from, wanted);
+  }
+  std::map<std::string, ApprovableGolden> found;
+  for (io::ZipEntry& e : entries) {
+    const auto [name, file] = place(e.name);
+    found[name].name = name;
+    found[name].files.push_back({file, std::move(e.bytes)});
+  }
+  for (const std::string& name : names)
+    if (!found.count(name))
+      throw InputError(printable_name(from) + ": has no failure of a golden " + printable_name(name));
+  std::vector<ApprovableGolden> out;
+  for (auto& [name, golden] : found) out.push_back(std::move(golden));
+  return out;
+}
+
 std::vector<std::string> approve_all(Approval approval, const GoldenRun& run, const std::string& folder) {
   approval.remove(image_files_from(folder, 0));
   approval.trace();
@@ -426,7 +553,121 @@ std::vector<std::string> approve_variant(Approval approval, const GoldenVerdict&
   return std::move(approval.done);
 }
 
+/// A new folder for files that are needed for a moment.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string pattern = (fs::temp_directory_path() / "lrbscope-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr)
+      throw EnvironmentError(pattern + ": cannot be created; set TMPDIR to a folder that can be written");
+    path_ = pattern;
+  }
+  ~ScratchFolder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// Copies the files of one golden that differ from the approved ones. Returns one line for each.
+std::vector<std::string> approve_files(const std::string& goldens, const ApprovableGolden& from, bool dry) {
+  const std::string folder = (fs::path(goldens) / from.name).string();
+  std::optional<io::FolderLock> lock;
+  if (!dry) {
+    make_folder(folder);
+    lock.emplace(folder);
+  }
+  std::vector<std::string> done;
+  const auto say = [&](const std::string& what, const std::string& file) {
+    done.push_back((dry ? "would be " : "") + what + " " + (fs::path(folder) / file).generic_string());
+  };
+  const auto copy = [&](const std::string& file) {
+    for (const io::ZipEntry& e : from.files)
+      if (e.name == file) {
+        if (!dry) write_file(folder + "/" + file, e.bytes);
+        say("approved", file);
+      }
+  };
+  const auto remove = [&](const std::vector<std::string>& files) {
+    for (const std::string& file : files) {
+      std::error_code error;
+      if (!dry) fs::remove(folder + "/" + file, error);
+      say("removed", file);
+    }
+  };
+  const std::optional<Golden> old =
+      has_golden(goldens, from.name) ? load_if_sound(goldens, from.name, true) : std::nullopt;
+  if (!old) {
+    remove(image_files_from(folder, 0));
+    for (const io::ZipEntry& e : from.files) copy(e.name);
+    return done;
+  }
+  if (old->facts.meshes != from.golden.facts.meshes)
+    for (const io::ZipEntry& e : from.files)
+      if (e.name.ends_with(".ply") || e.name.ends_with(".obj")) copy(e.name);
+  const bool same_kind = old->crowd.has_value() == from.golden.crowd.has_value();
+  if (!same_kind || (old->crowd ? first_divergence(*old->crowd, *from.golden.crowd)
+                                : trace::first_divergence(old->trace, from.golden.trace)))
+    copy(kGoldenTrace);
+  for (std::size_t i = 0; i < std::max(old->frames.size(), from.golden.frames.size()); ++i) {
+    const bool has_new = i < from.golden.frames.size() && !from.golden.frames[i].empty();
+    const std::vector<GoldenImage> variants =
+        i < old->frames.size() ? old->frames[i] : std::vector<GoldenImage>();
+    if (has_new && is_approved(variants, from.golden.frames[i][0].png.image, i, from.golden.spec)) continue;
+    remove(image_files_of(folder, i));
+    if (has_new) copy(golden_image_file(i));
+  }
+  if (old->spec != from.golden.spec || old->facts != from.golden.facts) copy(kGoldenSpec);
+  return done;
+}
+
 }  // namespace
+
+void write_golden(const std::string& goldens, const GoldenSpec& spec, const GoldenRun& run) {
+  const std::string folder = (fs::path(goldens) / run.scenario.name).string();
+  make_folder(folder);
+  Approval approval(folder, run, false);
+  approval.spec(spec, facts_of(run));
+  approve_all(std::move(approval), run, folder);
+}
+
+std::vector<std::string> approve_from(const std::string& goldens, const std::string& from,
+                                      const std::vector<std::string>& names, bool dry) {
+  std::vector<ApprovableGolden> all = read_approvable(from, names);
+  if (all.empty())
+    throw InputError(printable_name(from) +
+                     ": has no failures of goldens; expected the output folder of lrbscope "
+                     "golden test, or a ZIP archive of it");
+  // All of them must be sound before the first one is approved.
+  const ScratchFolder scratch;
+  for (ApprovableGolden& g : all) {
+    make_folder(scratch.path() + "/" + g.name);
+    for (const io::ZipEntry& e : g.files) write_file(scratch.path() + "/" + g.name + "/" + e.name, e.bytes);
+    try {
+      g.golden = load_golden(scratch.path(), g.name);
+      for (const auto& variants : g.golden.frames)
+        for (const GoldenImage& image : variants)
+          if (!image.damage.empty()) throw InputError(image.damage);
+    } catch (const InputError& e) {
+      std::string what = e.what();
+      if (const std::size_t at = what.find(scratch.path() + "/"); at != std::string::npos)
+        what.replace(at, scratch.path().size() + 1, printable_name(from) + ": ");
+      throw InputError(what + "; nothing was approved");
+    }
+  }
+  std::vector<std::string> done;
+  for (const ApprovableGolden& g : all) {
+    const std::vector<std::string> lines = approve_files(goldens, g, dry);
+    done.insert(done.end(), lines.begin(), lines.end());
+    if (lines.empty()) done.push_back("unchanged " + g.name);
+  }
+  return done;
+}
 
 std::vector<std::string> approve_golden(const std::string& goldens, const GoldenSpec& spec,
                                         const GoldenRun& run, const std::string& variant, bool dry) {
@@ -440,7 +681,7 @@ std::vector<std::string> approve_golden(const std::string& goldens, const Golden
     make_folder(folder);
     lock.emplace(folder);
   }
-  const GoldenFacts facts = facts_of(run);
+  GoldenFacts facts = facts_of(run);
   const std::optional<Golden> old = known ? load_if_sound(goldens, name, variant.empty()) : std::nullopt;
   Approval approval(folder, run, dry);
   if (!old) {
@@ -451,6 +692,7 @@ std::vector<std::string> approve_golden(const std::string& goldens, const Golden
   if (variant.empty()) golden.spec.levels = GoldenSpec{}.levels;  // approves all differences
   const GoldenVerdict verdict = check_golden(golden, run);
   if (!variant.empty()) return approve_variant(std::move(approval), verdict, name, variant);
+  if (verdict.images_passed() && !old->facts.renderer.empty()) facts.renderer = old->facts.renderer;
   if (old->spec != spec || old->facts != facts) approval.spec(spec, facts);
   if (verdict.divergence) approval.trace();
   if (old->facts.meshes != facts.meshes) approval.meshes();

@@ -88,12 +88,65 @@ std::string mesh_difference(const Mesh& x, const Mesh& y) {
   return out;
 }
 
+std::string compact_json(const std::string& text) {
+  return nlohmann::json::parse(text, nullptr, false, true).dump();
+}
+
+namespace {
+
+/// Appends the differing values of two JSON values. Arrays of numbers are values; other arrays of one length
+/// and objects are searched.
+void differing_keys(const nlohmann::json& x, const nlohmann::json& y, const std::string& at,
+                    std::vector<std::string>& out) {
+  if (x == y) return;
+  const auto nested = [](const nlohmann::json& j) {
+    return j.is_array() &&
+           std::any_of(j.begin(), j.end(), [](const auto& item) { return item.is_structured(); });
+  };
+  if (x.is_object() && y.is_object()) {
+    const std::string before = at.empty() ? "" : at + ".";
+    static const nlohmann::json absent(nlohmann::json::value_t::discarded);
+    for (const auto& [key, value] : x.items())
+      differing_keys(value, y.contains(key) ? y[key] : absent, before + key, out);
+    for (const auto& [key, value] : y.items())
+      if (!x.contains(key)) differing_keys(absent, value, before + key, out);
+    return;
+  }
+  if (nested(x) && nested(y) && x.size() == y.size()) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      differing_keys(x[i], y[i], at + "[" + std::to_string(i) + "]", out);
+    return;
+  }
+  const auto value = [](const nlohmann::json& j) {
+    constexpr std::size_t kLongest = 80;
+    if (j.is_discarded()) return std::string("absent");
+    const std::string text = j.dump();
+    return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+  };
+  out.push_back(at + ": " + value(x) + " -> " + value(y));
+}
+
+}  // namespace
+
+std::string scenario_difference(const std::string& expected, const std::string& found) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> keys;
+  differing_keys(nlohmann::json::parse(expected, nullptr, false),
+                 nlohmann::json::parse(found, nullptr, false), {}, keys);
+  std::string out;
+  for (std::size_t i = 0; i < std::min(keys.size(), kMost); ++i)
+    out.append(i == 0 ? "" : "; ").append(keys[i]);
+  if (keys.size() > kMost) out += "; and " + std::to_string(keys.size() - kMost) + " more";
+  return out;
+}
+
 namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kFrame = "frame_", kPng = ".png";
 constexpr std::uint64_t kMaxFrames = 1000;
 constexpr double kLongest = 1e308;  // maximum length of a contact
+constexpr double kMaxWorkTolerance = 1e6;
 
 std::string folder_of(const std::string& goldens, const std::string& name) {
   return (fs::path(goldens) / name).string();
@@ -139,13 +192,33 @@ GoldenImage read_image(const std::string& folder, const std::string& file, const
   return image;
 }
 
-render::ImageTolerance read_tolerance(const io::JsonNode& node) {
-  node.object({"large", "large_share", "small_share"});
-  render::ImageTolerance t;
+void read_tolerance(const io::JsonNode& node, GoldenSpec& spec) {
+  node.object({"large", "large_share", "small_share", "flip", "work"});
+  render::ImageTolerance& t = spec.tolerance;
   if (const auto n = node.get("large")) t.large = static_cast<int>(n->integer(1, 255));
   if (const auto n = node.get("large_share")) t.large_share = n->number(0, 1);
   if (const auto n = node.get("small_share")) t.small_share = n->number(0, 1);
-  return t;
+  if (const auto n = node.get("flip")) spec.flip = n->number(0, 1);
+  if (const auto n = node.get("work")) spec.work = n->number(0, kMaxWorkTolerance);
+}
+
+std::vector<render::PixelRect> read_rectangles(const io::JsonNode& node) {
+  std::vector<render::PixelRect> out;
+  for (const io::JsonNode& item : node.items()) {
+    const std::vector<io::JsonNode> n = item.items();
+    if (n.size() != 4) item.fail("expected [x, y, width, height] in pixels");
+    const auto pixels = [](const io::JsonNode& x, int least) {
+      return static_cast<int>(x.integer(least, render::Image::kMaxSide));
+    };
+    out.push_back({pixels(n[0], 0), pixels(n[1], 0), pixels(n[2], 1), pixels(n[3], 1)});
+  }
+  return out;
+}
+
+nlohmann::ordered_json rectangles_json(const std::vector<render::PixelRect>& rectangles) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const render::PixelRect& r : rectangles) out.push_back({r.x, r.y, r.width, r.height});
+  return out;
 }
 
 std::string spec_file(const std::string& goldens, const std::string& name) {
@@ -153,7 +226,8 @@ std::string spec_file(const std::string& goldens, const std::string& name) {
 }
 
 GoldenSpec read_spec(const io::JsonNode& root) {
-  root.object({"scenario", "crowd", "size", "frames", "compare", "tolerance", "meshes", "contact_lengths"});
+  root.object({"scenario", "crowd", "size", "frames", "compare", "tolerance", "ignore", "only", "meshes",
+               "contact_lengths", "renderer", "inputs"});
   GoldenSpec spec;
   spec.is_crowd = root.has("crowd");
   if (spec.is_crowd && root.has("scenario"))
@@ -169,12 +243,19 @@ GoldenSpec read_spec(const io::JsonNode& root) {
     for (const io::JsonNode& word : n->items(1))
       spec.levels[static_cast<std::size_t>(word.choice<Level>())] = true;
   }
-  if (const auto n = root.get("tolerance")) spec.tolerance = read_tolerance(*n);
+  if (const auto n = root.get("tolerance")) read_tolerance(*n, spec);
+  if (const auto n = root.get("ignore")) spec.ignore = read_rectangles(*n);
+  if (const auto n = root.get("only")) spec.only = read_rectangles(*n);
   return spec;
 }
 
 GoldenFacts read_facts(const io::JsonNode& root) {
   GoldenFacts facts;
+  if (const auto n = root.get("renderer")) facts.renderer = n->string();
+  if (const auto n = root.get("inputs")) {
+    if (!n->is_object()) n->fail("expected the JSON of a scenario");
+    facts.scenario = n->json().dump();
+  }
   if (const auto n = root.get("meshes"))
     for (const io::JsonNode& word : n->items()) {
       const auto hash = trace::from_hex(word.string());
@@ -209,6 +290,15 @@ std::vector<std::optional<Mesh>> read_meshes(const std::string& folder,
 std::string golden_image_file(std::size_t frame, const std::string& variant) {
   return std::string(kFrame) + std::to_string(frame + 1) + (variant.empty() ? "" : "." + variant) +
          std::string(kPng);
+}
+
+bool is_golden_file(const std::string& file) {
+  const fs::path path(file);
+  const std::string stem = path.stem().string();  // of a kept mesh: a, b, ..., aa, ...
+  if ((path.extension() == ".ply" || path.extension() == ".obj") && !stem.empty() &&
+      std::all_of(stem.begin(), stem.end(), [](char c) { return c >= 'a' && c <= 'z'; }))
+    return true;
+  return file == kGoldenSpec || file == kGoldenTrace || frame_of_file(file).has_value();
 }
 
 std::vector<std::string> image_files_of(const std::string& folder, std::size_t frame) {
@@ -255,12 +345,19 @@ void write_golden_spec(const std::string& goldens, const std::string& name, cons
     for (const EnumName<Level>& w : kEnumNames<Level>)
       if (spec.compares(w.value)) json["compare"].push_back(w.name);
   }
-  if (!(spec.tolerance == render::ImageTolerance{}))
+  const GoldenSpec usual;
+  if (!(spec.tolerance == usual.tolerance))
     json["tolerance"] = {{"large", spec.tolerance.large},
                          {"large_share", spec.tolerance.large_share},
                          {"small_share", spec.tolerance.small_share}};
+  if (spec.flip != usual.flip) json["tolerance"]["flip"] = spec.flip;
+  if (spec.work != usual.work) json["tolerance"]["work"] = spec.work;
+  if (!spec.ignore.empty()) json["ignore"] = rectangles_json(spec.ignore);
+  if (!spec.only.empty()) json["only"] = rectangles_json(spec.only);
   for (const std::uint64_t hash : facts.meshes) json["meshes"].push_back(trace::to_hex(hash));
   for (const double length : facts.contact_lengths) json["contact_lengths"].push_back(length);
+  if (!facts.renderer.empty()) json["renderer"] = facts.renderer;
+  if (!facts.scenario.empty()) json["inputs"] = nlohmann::json::parse(facts.scenario);
   io::write_text(spec_file(goldens, name), json.dump() + "\n");
 }
 
@@ -285,14 +382,31 @@ const render::FrameSpec& frames_of(const Source& source) {
   return std::visit([](const auto& s) -> const render::FrameSpec& { return s.frames; }, source);
 }
 
-Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
+namespace {
+
+/// Returns the name of a shipped scenario or crowd, or a path from the current folder.
+std::string scenario_of(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
   const bool shipped = spec.scenario.find_first_of("./\\") == std::string::npos;
-  const std::string file =
-      shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string();
+  return shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string();
+}
+
+const char* noun_of(const GoldenSpec& spec) {
+  return spec.is_crowd ? "crowd" : "scenario";
+}
+
+}  // namespace
+
+std::string scenario_text(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
+  const std::string_view ending = spec.is_crowd ? spec::kCrowdEnding : spec::kScenarioEnding;
+  return spec::open_named(scenario_of(goldens, name, spec), ending, noun_of(spec)).text;
+}
+
+Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
+  const std::string file = scenario_of(goldens, name, spec);
   Source source = spec.is_crowd ? Source(spec::open_crowd(file)) : Source(spec::open_scenario(file));
   if (name_of(source) != name)
     throw InputError(printable_name(folder_of(goldens, name)) + ": " + kGoldenSpec + " refers to a " +
-                     (spec.is_crowd ? "crowd" : "scenario") + " with the name " + name_of(source) +
+                     noun_of(spec) + " with the name " + name_of(source) +
                      "; rename the folder, or remove it and approve the scenario again");
   return source;
 }

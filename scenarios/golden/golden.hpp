@@ -31,12 +31,15 @@ enum class Level : std::uint8_t {
   answers,   ///< for each step: relation, pairs, overlap of interiors, and proofs of an approximate query
   events,    ///< bodies, request, poses, every event (crowd: every query) and every counter
   pictures,  ///< frames, within a tolerance
+  work,      ///< the sum of each counter over all steps: it may decrease, or increase within a tolerance
 };
 constexpr auto enum_names(Level) {
-  return std::to_array<EnumName<Level>>(
-      {{Level::answers, "answers"}, {Level::events, "events"}, {Level::pictures, "pictures"}});
+  return std::to_array<EnumName<Level>>({{Level::answers, "answers"},
+                                         {Level::events, "events"},
+                                         {Level::pictures, "pictures"},
+                                         {Level::work, "work"}});
 }
-inline constexpr int kLevels = 3;
+inline constexpr int kLevels = 4;
 
 /// The contents of golden.json.
 struct GoldenSpec {
@@ -45,8 +48,14 @@ struct GoldenSpec {
   int width = 0, height = 0;
   std::uint32_t frames = 3;  ///< maximum number of pictures, evenly chosen from the scenario's frames
   /// (kLevels) the levels that are compared
-  std::array<bool, kLevels> levels = {true, true, true};
+  std::array<bool, kLevels> levels = {true, true, true, true};
   render::ImageTolerance tolerance;  ///< of pictures
+  /// A picture beyond the tolerance passes if its mean FLIP (render/flip.hpp) is at most this.
+  double flip = 0;
+  double work = 0.05;  ///< the share by which a sum of counters may increase
+  /// Rectangles of pictures, in pixels: those whose contents are ignored, and those that alone are compared
+  /// (empty: the whole picture).
+  std::vector<render::PixelRect> ignore, only;
 
   bool compares(Level level) const { return levels[static_cast<std::size_t>(level)]; }
   friend bool operator==(const GoldenSpec&, const GoldenSpec&) = default;
@@ -57,6 +66,8 @@ struct GoldenFacts {
   std::vector<std::uint64_t> meshes;  ///< (bodies, or kinds of a crowd) mesh_hash(); empty: not recorded
   /// (steps) the length of contact, in the scenario's unit; empty: not requested, or not recorded
   std::vector<double> contact_lengths;
+  std::string scenario;  ///< its JSON, without white space; empty: not recorded
+  std::string renderer;  ///< versions of OpenGL, Mesa and LLVM that drew the pictures; empty: not recorded
 
   friend bool operator==(const GoldenFacts&, const GoldenFacts&) = default;
 };
@@ -101,6 +112,9 @@ void remove_golden(const std::string& goldens, const std::string& name);
 /// Returns the scenario or the crowd of a golden.
 Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
+/// Returns the JSON text of the scenario or the crowd of a golden.
+std::string scenario_text(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
+
 /// Returns the reference in golden.json to the scenario `name`, opened as `name_or_path`.
 std::string scenario_reference(const std::string& goldens, const std::string& name,
                                const std::string& name_or_path);
@@ -109,6 +123,8 @@ void write_golden_spec(const std::string& goldens, const std::string& name, cons
 
 /// Returns "frame_2.png", or "frame_2.avx512.png". `frame` counts from 0, names from 1.
 std::string golden_image_file(std::size_t frame, const std::string& variant = {});
+/// Returns true for the name of a file that a golden may have.
+bool is_golden_file(const std::string& file);
 /// Returns the picture files of one frame.
 std::vector<std::string> image_files_of(const std::string& folder, std::size_t frame);
 /// Returns the picture files of this frame and all later ones, which a shorter run no longer has.
@@ -126,6 +142,12 @@ std::uint64_t mesh_hash(const Mesh& mesh);
 /// Returns the file name, in the golden's folder, of the kept mesh of a body, A (0) or B (1), or of a kind of
 /// a crowd: a.ply, b.ply, ..., z.ply, aa.ply, ...; a.obj for a 2D body.
 std::string kept_file(std::size_t body, int dim);
+
+/// Names the keys in which two scenarios, as JSON, differ: "frames.views[0].from: [1,0,0] -> [0,1,0]"; at
+/// most three. Returns an empty text if they have equal values.
+std::string scenario_difference(const std::string& expected, const std::string& found);
+/// Returns a JSON text without white space and comments.
+std::string compact_json(const std::string& text);
 
 /// Describes in one line how two meshes differ: moved vertices, starting with the largest displacement; or
 /// other numbers of vertices and faces. Returns an empty text if they are equal.

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 
 #include "render/canvas.hpp"
+#include "render/gl.hpp"
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/golden/crowd_difference.hpp"
@@ -231,18 +233,29 @@ std::string events_text(const GoldenResult& r) {
   return r.verdict.divergence ? r.verdict.divergence->message() : event_count(r) + ": equal";
 }
 
-/// The differences by step, and their possible causes.
 /// Returns why a test failed, on one line; empty if it passed.
 std::string cause_text(const GoldenResult& r) {
   const GoldenVerdict& v = r.verdict;
   if (!v.rejection.empty()) return v.rejection;
-  if (!v.causes.empty()) return v.causes.front();
-  return v.divergence ? v.divergence->message() : std::string();
+  return v.causes.empty() ? std::string() : v.causes.front();
 }
+
+std::string work_text(const GoldenResult& r) {
+  if (!r.verdict.rejection.empty()) return "not tested";
+  if (!r.spec.compares(Level::work)) return "not compared";
+  std::string out;
+  for (const Effect& e : r.verdict.more_work)
+    out.append(out.empty() ? "" : "; ").append(e.what + " " + e.expected + " -> " + e.found);
+  return out.empty() ? "within budget" : out;
+}
+
+/// The differences by step, and their possible causes.
 
 report::Table effects_table(const GoldenResult& r) {
   constexpr std::size_t kMaxRows = 200;
-  report::Table t{r.name + ": differences", {"step", "quantity", "approved", "found"}};
+  report::Table t{r.name + ": answers and counters", {"step", "quantity", "approved", "found"}};
+  for (const Effect& e : r.verdict.more_work)
+    t.rows.push_back({"all", e.what + " (budget exceeded)", e.expected, e.found});
   for (std::size_t i = 0; i < std::min(r.verdict.effects.size(), kMaxRows); ++i) {
     const Effect& e = r.verdict.effects[i];
     t.rows.push_back({std::to_string(e.step), e.what, e.expected, e.found});
@@ -250,9 +263,7 @@ report::Table effects_table(const GoldenResult& r) {
   if (r.verdict.effects.size() > kMaxRows)
     t.note = "And " + render::group_digits(r.verdict.effects.size() - kMaxRows) + " more. ";
   if (r.verdict.effects.empty()) t.rows.push_back({"all", "answers and counters", "", "as approved"});
-  for (const std::string& cause : r.verdict.causes) t.note += "Cause: " + cause + ". ";
-  if (r.verdict.causes.empty())
-    t.note += "Scenario, bodies, poses, request and version are as approved: the program itself has changed.";
+  if (!r.renderer.empty()) t.note += "Pictures: " + r.renderer + ". ";
   return t;
 }
 
@@ -261,7 +272,6 @@ std::string file_of(const std::string& id, const std::string& name, const char* 
 }
 
 bool is_result(const std::string& file) {
-  if (file == kActualTrace) return true;
   for (const char* kind : kKinds)
     if (file.ends_with("." + std::string(kind) + ".png")) return true;
   return false;
@@ -290,6 +300,13 @@ GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::
   if (result.verdict.divergence) add_divergence(result, golden, run);
   for (const ImageVerdict& v : result.verdict.images)
     if (all || !v.passed) add_image(result, golden, run, v);
+  if (!result.verdict.images_passed()) {
+    const std::string& approved = golden.facts.renderer;
+    result.renderer = approved.empty() ? "drawn with " + render::gl_version()
+                      : approved == render::gl_version()
+                          ? "approved and drawn with " + approved
+                          : "approved with " + approved + "; drawn with " + render::gl_version();
+  }
   return result;
 }
 
@@ -304,13 +321,16 @@ void clear_golden_report(const std::string& folder, const std::vector<std::strin
     for (const auto& file : fs::directory_iterator(results, error))
       if (is_result(file.path().filename().string())) fs::remove(file.path(), error);
     if (fs::is_empty(results, error) && !error) fs::remove(results, error);
+    if (has_golden(folder + "/" + kApprovable, name)) remove_golden(folder + "/" + kApprovable, name);
   }
+  const std::string approvable = folder + "/" + kApprovable;
+  if (fs::is_empty(approvable, error) && !error) fs::remove(approvable, error);
 }
 
 void write_failures(const GoldenResult& result, const GoldenRun& run, const std::string& folder) {
   if (result.verdict.passed()) return;
   make_folder(folder + "/" + result.name);
-  if (result.verdict.divergence) save_run_trace(run, folder + "/" + result.name + "/" + kActualTrace);
+  write_golden(folder + "/" + kApprovable, result.spec, run);
   for (const report::Comparison& c : result.comparisons)
     for (std::size_t kind = 0; kind < std::size(kKinds); ++kind)
       if (const report::PngBytes& png = c.pngs[kind]; !c.passed && !png.empty())
@@ -320,9 +340,12 @@ void write_failures(const GoldenResult& result, const GoldenRun& run, const std:
 
 void write_golden_page(const std::vector<GoldenResult>& results, const report::Folder& folder,
                        const std::string& command) {
+  constexpr std::size_t kNamed = 5;
+  std::string causes;  // of the first failures
   std::size_t failed = 0, images = 0, images_failed = 0, events = 0;
   report::Table scenarios{
-      "Scenarios", {"scenario", "verdict", "cause", "answers", "events and counters", "images", "seconds"}};
+      "Scenarios",
+      {"scenario", "verdict", "cause", "answers", "events and counters", "work", "images", "seconds"}};
   for (const GoldenResult& r : results) {
     const GoldenVerdict& v = r.verdict;
     failed += v.passed() ? 0 : 1;
@@ -330,12 +353,20 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
     for (const ImageVerdict& image : v.images) images_failed += image.passed ? 0 : 1;
     events += r.events;
     scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", cause_text(r), answers_text(r),
-                              events_text(r), images_text(r), io::fixed_text(r.seconds, 1)});
+                              events_text(r), work_text(r), images_text(r), io::fixed_text(r.seconds, 1)});
+    scenarios.targets.push_back(!v.passed()             ? "#" + r.name
+                                : r.comparisons.empty() ? std::string()
+                                                        : "#" + r.comparisons.front().id);
+    if (!v.passed() && failed <= kNamed)
+      causes += (causes.empty() ? "" : " ") + r.name + ": " + cause_text(r) + ".";
   }
+  if (failed > kNamed) causes += " And " + std::to_string(failed - kNamed) + " more failures.";
+  for (const std::string& line : equal_causes(results)) causes += " " + line + ".";
   report::Document doc(
       kTitle,
       "Runs against their approved goldens: events and counters must be equal; pictures may differ by the "
       "rounding of other processors.");
+  if (!causes.empty()) doc.summary(causes);
   doc.verdict(failed == 0 ? "passed" : render::counted(failed, "failure", "failures"), failed == 0)
       .command(command)
       .number({"Scenarios", std::to_string(results.size()), std::to_string(failed) + " failed"})
@@ -343,42 +374,63 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
       .number({"Images", std::to_string(images), std::to_string(images_failed) + " failed"})
       .table(scenarios);
   std::vector<report::Comparison> comparisons;
-  for (const GoldenResult& r : results) {
-    if (!r.verdict.effects.empty() || !r.verdict.causes.empty()) doc.table(effects_table(r));
+  for (const GoldenResult& r : results)
     comparisons.insert(comparisons.end(), r.comparisons.begin(), r.comparisons.end());
+  for (const GoldenResult& r : results) {
+    if (r.verdict.passed()) continue;
+    // A section with the cause and the command that approves it, without pictures; they follow.
+    std::string causes_of;
+    for (const std::string& cause : r.verdict.causes) causes_of += (causes_of.empty() ? "" : "; ") + cause;
+    const std::string title = r.name + ": differences";
+    doc.comparisons({{r.name, title, r.verdict.rejection + causes_of, false, {}, {}, r.approve}});
+    if (r.verdict.rejection.empty()) doc.table(effects_table(r));
   }
   doc.comparisons(comparisons).write(folder);
 }
 
 std::string result_text(const GoldenResult& r) {
-  constexpr std::size_t kMaxLines = 12;
   const GoldenVerdict& v = r.verdict;
   if (!v.rejection.empty())
     return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it after fixing that: " + r.approve +
            "\n";
+  const bool more_work = !v.more_work.empty() && !v.divergence;
   std::string head = v.answers_differ                 ? "answers " + answers_text(r)
                      : v.divergence                   ? "events or counters differ"
+                     : more_work                      ? "more work than allowed"
                      : r.spec.compares(Level::events) ? event_count(r) + " equal"
                                                       : "answers of " + answers_text(r);
   std::string out =
       (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_text(r) + "\n";
   if (v.passed()) return out;
+  for (const std::string& cause : v.causes) out += "      cause: " + cause + "\n";
   if (r.repeats > 0)
     out += "      " + (r.passes > 0 ? "flaky: " + std::to_string(r.passes) + " of " +
                                           std::to_string(r.repeats) + " repeats passed\n"
                                     : "changed: none of " + std::to_string(r.repeats) + " repeats passed\n");
-  for (const std::string& cause : v.causes) out += "      cause: " + cause + "\n";
-  std::size_t lines = 0;
-  for (const Effect& e : v.effects)
-    if (lines++ < kMaxLines)
-      out += "      step " + std::to_string(e.step) + ": " + e.what + ": expected " + e.expected +
-             ", found " + e.found + "\n";
-  if (lines > kMaxLines)
-    out += "      and " + std::to_string(lines - kMaxLines) + " more differences like these\n";
-  if (v.divergence) out += "      first difference: " + v.divergence->message() + "\n";
-  if (!v.diagnosis.empty()) out += "      " + v.diagnosis + "\n";
+  for (const Effect& e : v.more_work)
+    out += "      work: " + e.what + " of all steps: approved " + e.expected + ", found " + e.found +
+           ", more than " + render::short_number(100 * r.spec.work) + " % more\n";
+  // Differences of one quantity are one line, with the first step that has one.
+  std::vector<std::pair<const Effect*, std::size_t>> kinds;
+  for (const Effect& e : v.effects) {
+    const auto same =
+        std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first->what == e.what; });
+    if (same == kinds.end())
+      kinds.emplace_back(&e, 1);
+    else
+      ++same->second;
+  }
+  for (const auto& [e, count] : kinds)
+    out += "      step " + std::to_string(e->step) + ": " + e->what + ": expected " + e->expected +
+           ", found " + e->found +
+           (count == 1 ? "" : "; and in " + render::counted(count - 1, "more step", "more steps")) + "\n";
+  const auto said = [&](const std::string& text) { return out.find(text) != std::string::npos; };
+  if (v.divergence && !said(v.divergence->message()))
+    out += "      first difference: " + v.divergence->message() + "\n";
+  if (!v.diagnosis.empty() && !said(v.diagnosis)) out += "      " + v.diagnosis + "\n";
   for (const ImageVerdict& image : v.images)
     if (!image.passed) out += "      " + image.file + ": " + image.text + "\n";
+  if (!r.renderer.empty()) out += "      pictures: " + r.renderer + "\n";
   if (!r.page.empty())
     for (const report::Comparison& c : r.comparisons)
       if (!c.passed) out += "      " + r.page + "#" + c.id + "\n";
@@ -406,7 +458,22 @@ std::string case_xml(const GoldenResult& r) {
 
 }  // namespace
 
-std::string markdown(const std::vector<GoldenResult>& results) {
+std::vector<std::string> equal_causes(const std::vector<GoldenResult>& results) {
+  std::map<std::string, std::vector<const GoldenResult*>> groups;
+  for (const GoldenResult& r : results)
+    if (!r.verdict.group.empty()) groups[r.verdict.group].push_back(&r);
+  std::vector<std::string> out;
+  for (const auto& [group, members] : groups) {
+    if (members.size() < 2) continue;
+    std::string names;
+    for (const GoldenResult* r : members) names.append(names.empty() ? "" : ", ").append(r->name);
+    out.push_back("one cause in " + std::to_string(members.size()) + " goldens (" + names +
+                  "): " + cause_text(*members.front()));
+  }
+  return out;
+}
+
+std::string markdown(const std::vector<GoldenResult>& results, const std::string& pictures) {
   // A cell is one line without bars.
   const auto cell = [](std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
@@ -432,6 +499,18 @@ std::string markdown(const std::vector<GoldenResult>& results) {
                     "| --- | --- | --- | --- | --- | --- |\n";
   for (const std::string& row : failed) out += row;
   for (const std::string& row : passed) out += row;
+  for (const std::string& line : equal_causes(results)) out += "\n" + line + "\n";
+  constexpr std::size_t kMostPictures = 20;
+  std::size_t shown = 0;
+  for (const GoldenResult& r : results)
+    for (const report::Comparison& c : r.comparisons) {
+      if (c.passed || (c.pngs[0].empty() && c.pngs[1].empty()) || ++shown > kMostPictures) continue;
+      out += "\n" + c.title + ": " + c.text + "\n\n";
+      for (std::size_t kind = 0; kind < std::size(kKinds); ++kind)
+        if (!c.pngs[kind].empty())
+          out += "<img width=\"240\" alt=\"" + std::string(kKinds[kind]) + "\" src=\"" +
+                 render::escape_markup(pictures + "/" + file_of(c.id, r.name, kKinds[kind])) + "\">\n";
+    }
   return out;
 }
 

@@ -21,6 +21,7 @@ struct GoldenResult {
   double seconds = 0;                     ///< duration of the test: the run, its pictures and the comparison
   std::uint32_t repeats = 0, passes = 0;  ///< of a failed test that was repeated
   std::string approve;                    ///< the command that approves the run
+  std::string renderer;                   ///< what drew the pictures, if some failed; may be empty
   std::string page;                       ///< path of the page that shows the result; may be empty
   std::vector<report::Comparison> comparisons;
 };
@@ -37,7 +38,8 @@ GoldenResult untested_golden(const std::string& name, const std::string& rejecti
 void clear_golden_report(const std::string& folder, const std::vector<std::string>& names);
 
 /// Writes the failures of a test: folder/NAME/{frame_1,divergence}.{expected,actual,difference}.png and,
-/// where events differ, NAME/actual.trace.json.gz, for `lrbscope render` and Perfetto.
+/// the run as a golden, approve/NAME, from which it can be approved. Its trace is one for `lrbscope render`
+/// and Perfetto.
 void write_failures(const GoldenResult& result, const GoldenRun& run, const std::string& folder);
 
 /// Writes folder/index.html.
@@ -53,8 +55,12 @@ std::string result_text(const GoldenResult& result);
 /// differs is a failure, with result_text().
 std::string junit_xml(const std::vector<GoldenResult>& results);
 
-/// Returns a table of the results in GitHub's Markdown, the failures first, for the summary of a CI job.
-std::string markdown(const std::vector<GoldenResult>& results);
+/// Returns a table of the results in GitHub's Markdown, the failures first, for the summary of a CI job, then
+/// the pictures of failures, approved and found. `pictures`: path or address of the test's output folder.
+std::string markdown(const std::vector<GoldenResult>& results, const std::string& pictures);
+
+/// Returns a line for each cause that several failures have, with their names.
+std::vector<std::string> equal_causes(const std::vector<GoldenResult>& results);
 
 /// The two runs where they begin to differ: at the first differing event, or at the end of its step; as a
 /// whole and in a close-up, through the same cameras.

@@ -6,7 +6,9 @@
 #include <numbers>
 #include <sstream>
 #include <type_traits>
+#include <utility>
 
+#include "render/gl.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
 #include "scenarios/golden/crowd_difference.hpp"
 #include "scenarios/golden/golden.hpp"
@@ -115,9 +117,52 @@ std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run) {
   return out;
 }
 
+std::vector<Effect> find_more_work(const Golden& golden, const GoldenRun& run) {
+  struct Sum {
+    std::string name;
+    std::uint64_t value = 0;
+  };
+  const auto of_steps = [](const trace::Trace& trace) {
+    std::vector<Sum> sums;
+    for_each_field<Counters>([&](const auto& field) {
+      if constexpr (std::is_same_v<decltype(std::declval<Counters&>().*field.member), std::uint64_t&>) {
+        Sum sum{io::in_words(field.name)};
+        for (const trace::Step& step : trace.steps) sum.value += step.result.counters.*field.member;
+        sums.push_back(std::move(sum));
+      }
+    });
+    return sums;
+  };
+  const auto of_queries = [](const crowd::CrowdTrace& trace) {
+    std::vector<Sum> sums;
+    for (std::size_t i = 0; i < crowd::kQueryCounters.size(); ++i) {
+      Sum sum{crowd::kQueryCounters[i].name};
+      for (const auto& step : trace.answers)
+        for (const crowd::CrowdTrace::Answer& answer : step) sum.value += answer.work[i];
+      sums.push_back(std::move(sum));
+    }
+    return sums;
+  };
+  const std::vector<Sum> expected = golden.crowd ? of_queries(*golden.crowd) : of_steps(golden.trace),
+                         found = run.crowd ? of_queries(run.crowd->trace) : of_steps(run.recording.trace);
+  std::vector<Effect> out;
+  for (std::size_t i = 0; i < std::min(expected.size(), found.size()); ++i) {
+    if (static_cast<double>(found[i].value) <=
+        static_cast<double>(expected[i].value) * (1 + golden.spec.work))
+      continue;
+    Effect more;
+    more.what = found[i].name;
+    more.expected = std::to_string(expected[i].value);
+    more.found = std::to_string(found[i].value);
+    more.kind = Effect::Kind::work;
+    out.push_back(more);
+  }
+  return out;
+}
+
 namespace {
 
-constexpr int kDefaultWidth = 480, kMinHeight = 320;
+constexpr int kDefaultWidth = 480, kMinHeight = 240, kMaxHeight = 4 * kDefaultWidth;
 
 std::string to_text(const Eigen::Vector3d& v) {
   std::ostringstream out;
@@ -140,10 +185,10 @@ std::string to_text(const render::Camera& c) {
 }  // namespace
 
 void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames) {
-  spec.width = kDefaultWidth;
-  spec.height =
-      std::clamp(static_cast<int>(std::lround(double{kDefaultWidth} * frames.height / frames.width)),
-                 kMinHeight, 4 * kDefaultWidth);
+  const double shape = double{1} * frames.height / frames.width;
+  const double height = std::clamp(kDefaultWidth * shape, double{kMinHeight}, double{kMaxHeight});
+  spec.height = static_cast<int>(std::lround(height));
+  spec.width = static_cast<int>(std::lround(height / shape));
 }
 
 namespace {
@@ -228,6 +273,8 @@ GoldenFacts facts_of(const GoldenRun& run) {
   GoldenFacts facts;
   for (const bodies::LoadedBody& body : run.bodies()) facts.meshes.push_back(mesh_hash(body.rep.real_mesh()));
   facts.contact_lengths = contact_lengths(run.recording);
+  if (!run.text.empty()) facts.scenario = compact_json(run.text);
+  if (!run.frames.empty()) facts.renderer = render::gl_version();
   return facts;
 }
 

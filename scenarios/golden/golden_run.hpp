@@ -23,6 +23,7 @@ struct CrowdRecord {
 /// A scenario or a crowd, run and drawn with its golden's settings.
 struct GoldenRun {
   spec::Scenario scenario;   ///< of a crowd: its name, purpose, hash and frames, and a body for each kind
+  std::string text;          ///< its JSON, see scenario_text(); empty: not recorded in the golden
   run::Recording recording;  ///< empty if `crowd` is set
   std::optional<CrowdRecord> crowd;
   std::vector<run::PaintedFrame> frames;
@@ -78,6 +79,10 @@ struct Effect {
 /// Returns all differences: answers, then their measures, then the work that led to them, each in the order
 /// of the steps.
 std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run);
+
+/// Returns the counters whose sums over all steps exceed the approved ones by more than the golden's
+/// tolerance of work. `step` is meaningless.
+std::vector<Effect> find_more_work(const Golden& golden, const GoldenRun& run);
 
 /// Returns the total length of the contact curves of each step, in the scenario's unit. Returns an empty list
 /// if the run did not request contacts.

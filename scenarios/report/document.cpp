@@ -287,8 +287,11 @@ Document& Document::table(const Table& t) {
   }
   for (std::size_t r = 0; r < t.rows.size(); ++r) {
     const bool leads = r < t.targets.size() && !t.targets[r].empty();
-    rows += leads ? fill("<tr data-to=\"{}\">", {t.targets[r]}) : "<tr>";
-    for (const std::string& cell : t.rows[r]) rows += cell_html(cell);
+    const bool links = leads && t.targets[r].front() == '#';
+    rows += leads && !links ? fill("<tr data-to=\"{}\">", {t.targets[r]}) : "<tr>";
+    for (std::size_t c = 0; c < t.rows[r].size(); ++c)
+      rows += links && c == 0 ? fill("<td><a href=\"{}\">{}</a></td>", {t.targets[r], t.rows[r][c]})
+                              : cell_html(t.rows[r][c]);
     rows += "</tr>\n";
   }
   return add(

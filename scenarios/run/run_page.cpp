@@ -90,7 +90,7 @@ std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace:
     out[0].note +=
         "; " + open + (open.size() > 1 ? " are" : " is") + " open: inside and outside are not defined";
   if (const std::string bare = sides_of(p, [](const LrbRep& rep) { return rep.region_count() == 0; });
-      !bare.empty())
+      !bare.empty() && p.trace->header.engine.empty())
     out.push_back({"Without wrapper", bare,
                    (open.empty() ? std::string() : open + (open.size() > 1 ? " are" : " is") + " open; ") +
                        "no regions; all faces are visible"});
@@ -310,7 +310,10 @@ report::Table steps_table(const trace::Trace& trace) {
   const bool has_trees = request.recursion == Recursion::complete;
   if (timed) t.columns.emplace_back("microseconds");
   if (has_trees) t.columns.insert(t.columns.end(), {"box tests", "plane tests"});
-  t.columns.insert(t.columns.end(), {"face tests", "refinements", "fingerprint"});
+  const bool has_wrappers = trace.header.engine.empty();
+  t.columns.emplace_back("face tests");
+  if (has_wrappers) t.columns.emplace_back("refinements");
+  t.columns.emplace_back("fingerprint");
   if (request.is_coarse()) t.columns.insert(t.columns.end(), {"error bound", "finished"});
   if (request.separation) t.columns.emplace_back("proof of separation");
   const bool has_distance = was_measured(trace, &trace::StepResult::distance);
@@ -333,8 +336,9 @@ report::Table steps_table(const trace::Trace& trace) {
     if (has_trees)
       row.insert(row.end(),
                  {render::group_digits(counters.box_tests), render::group_digits(counters.prefilter_tests)});
-    row.insert(row.end(), {render::group_digits(counters.face_tests),
-                           render::group_digits(counters.refinements), trace::to_hex(s.result.fingerprint)});
+    row.push_back(render::group_digits(counters.face_tests));
+    if (has_wrappers) row.push_back(render::group_digits(counters.refinements));
+    row.push_back(trace::to_hex(s.result.fingerprint));
     if (request.is_coarse())
       row.insert(row.end(), {s.result.error_bound == 0 ? "0" : error_bound_text(s.result.error_bound),
                              s.result.finished ? "yes" : "no"});
@@ -406,7 +410,7 @@ void add_tables(report::Document& doc, const RecordedRun& p) {
   if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
     doc.tab("Contacts").table(contact_table(p.results->back(), p.trace->steps.back().index));
   doc.tab("Work").each(work_tables(p), &report::Document::table);
-  doc.tab("Regions").each(group_tables(p), &report::Document::table);
+  if (p.trace->header.engine.empty()) doc.tab("Regions").each(group_tables(p), &report::Document::table);
   doc.tab("Bodies").table(quality_table(p));
 }
 

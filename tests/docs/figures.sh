@@ -29,6 +29,13 @@ for file in fig.pdf titled.pdf; do # 85 mm are 240.945 points
   "$pdf_text" <"$file" | grep -aE '/MediaBox \[ 0 0 240\.94[0-9]* ' >/dev/null || { echo "$file: expected a width of 85 mm"; exit 1; }
 done
 grep -q 'width="85mm"' tests.svg || { echo "tests.svg: expected a width of 85 mm"; exit 1; }
+# The archive makes the same figure, from its own copies of the inputs.
+mkdir archive
+(cd archive && python3 -m zipfile -e ../fig.zip .)
+mv out/mine moved
+printf '#!/bin/sh\nexec "%s" -q "$@"\n' "$program" >program.sh
+chmod +x program.sh
+LRBSCOPE=$work/program.sh sh archive/make.sh | grep -qx 'made/fig.pdf: the same, byte for byte' || { echo "fig.zip makes another figure"; exit 1; }
 [ -s fig.caption.txt ] || { echo "fig.caption.txt is empty"; exit 1; }
 if command -v pdflatex >/dev/null; then
   block tex >paper.tex

@@ -681,7 +681,7 @@ class WhyPanel {
       );
       return line;
     });
-    byId("why-regions").replaceChildren(...lines);
+    byId("why-regions").replaceChildren(...(this.events.engine ? [] : lines)); // another engine has no regions
   }
 
   // -- a step

@@ -12,6 +12,7 @@
 
 #include "scenarios/golden/check.hpp"
 #include "scenarios/golden/golden_report.hpp"
+#include "scenarios/io/zip.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
 #include <lrbscope/render/image.hpp>
@@ -177,12 +178,17 @@ TEST_CASE("goldens: a table for CI has failures first; a repeated failure is cha
   CHECK(failed.code == 1);
   // The cause is the line after the verdict and the repeats.
   CHECK(std::regex_search(failed.out,
-                          std::regex("^FAIL  balls: [^\n]*\n      changed: none of 2 repeats passed\n"
-                                     "      cause: the scenario file changed")));
+                          std::regex("^FAIL  balls: [^\n]*\n      cause: the scenario changed: motion.from: "
+                                     "\\[3,0.2,0.1\\] -> \\[3,0.3,0.1\\]\n(      cause: [^\n]*\n)*"
+                                     "      changed: none of 2 repeats passed\n")));
   const std::string table = slurp(folder / "summary.md");
   CHECK(table.find("### Goldens: 1 of 1 failed\n") == 0);
   CHECK(table.find("| balls | **failed** | ") != std::string::npos);
-  CHECK(table.find("the scenario file changed") != std::string::npos);
+  CHECK(table.find("the scenario changed: motion.from: ") != std::string::npos);
+  CHECK(has(table, "src=\"out/golden/balls/frame_1.expected.png\""));  // thumbnails, from beside the table
+  CHECK(fs::exists(folder / "out/golden/balls/frame_1.expected.png"));
+  CHECK(folder.test({"--markdown", "sub/summary.md", "--picture-url", "https://ci/7"}).code == 1);
+  CHECK(has(slurp(folder / "sub/summary.md"), "src=\"https://ci/7/balls/frame_1.actual.png\""));
 }
 
 TEST_CASE("goldens: approved twice, they are the same bytes") {
@@ -213,7 +219,11 @@ TEST_CASE("goldens: a moved camera is reported as such") {
   CHECK(has(o.out, "frame_1.png: too many pixels differ strongly"));
   CHECK(has(o.out, "the camera moved: expected eye ("));
   CHECK(has(o.out, "events equal; images: 2 of 2 differ"));
-  CHECK(has(o.out, "the scenario file changed since it was approved"));
+  CHECK(has(o.out,
+            "\n      cause: the scenario changed: frames.views: absent -> [{\"from\":[0.62,-0.6,0.42]}]"));
+  CHECK(has(o.out, "mean FLIP 0."));
+  CHECK(has(o.out, "pictures: approved and drawn with "));  // versions of Mesa and LLVM
+  CHECK(has(o.out, "Mesa"));
   CHECK(has(o.out, "lrbscope golden approve --goldens goldens balls\n"));
   CHECK(files_ending(folder, ".expected.png") == 2);
   CHECK(files_ending(folder, ".actual.png") == 2);
@@ -222,6 +232,10 @@ TEST_CASE("goldens: a moved camera is reported as such") {
   for (const char* word : {"Side by side", "Swipe", "Difference", "the camera moved",
                            "lrbscope golden approve --goldens goldens balls"})
     CHECK(has(page, word));
+  CHECK(has(page, "<td><a href=\"#balls\">balls</a></td>"));
+  CHECK(has(page, "id=\"balls\""));
+  CHECK(page.find("frames.views: absent") <
+        page.find("class=\"numbers\""));  // the cause is first on the page
   CHECK_FALSE(has(page, "http:"));
   CHECK_FALSE(has(page, "https:"));
 
@@ -293,7 +307,7 @@ TEST_CASE("goldens: two swapped events are reported, and both sides are drawn") 
   CHECK(has(o.out, "events " + std::to_string(e) + " and " + std::to_string(e + 1) + " are swapped"));
   for (const char* kind : {"expected", "actual", "difference"})
     CHECK(fs::exists(folder / ("out/golden/balls/divergence." + std::string(kind) + ".png")));
-  CHECK(fs::exists(folder / "out/golden/balls/actual.trace.json.gz"));
+  CHECK(fs::exists(folder / "out/golden/approve/balls/trace.json.gz"));
   CHECK(render::read_png(folder / "out/golden/balls/divergence.expected.png").image !=
         render::read_png(folder / "out/golden/balls/divergence.actual.png").image);
   CHECK(test::run(folder, {"golden", "approve", "--variant", "here"}).code == 2);  // events have no variants
@@ -525,11 +539,12 @@ TEST_CASE("goldens: the compared parts are set by the golden or by the call") {
   ++golden.trace.header.bodies[1].hash;
   golden.frames[0][0].png.image.fill({0, 0, 100, 100}, {1, 2, 3, 255});
   CHECK_FALSE(golden::check_golden(golden, run).passed());
-  golden.spec.levels = {true, false, false};  // answers alone: a better builder, or another camera, passes
+  golden.spec.levels = {true, false, false,
+                        false};  // answers alone: a better builder, or another camera, passes
   CHECK(golden::check_golden(golden, run).passed());
   golden.trace.steps[2].result.fingerprint ^= 1;
   CHECK(golden::check_golden(golden, run).answers_differ);
-  golden.spec.levels = {false, false, true};
+  golden.spec.levels = {false, false, true, false};
   CHECK_FALSE(golden::check_golden(golden, run).images_passed());
   golden.spec.tolerance.large_share = 0.2;
   CHECK(golden::check_golden(golden, run).passed());
@@ -546,6 +561,196 @@ TEST_CASE("goldens: the compared parts are set by the golden or by the call") {
   CAPTURE(o.out);
   CHECK(o.code == 0);
   CHECK(has(o.out, "ok    tips: answers of 2 steps: equal; images: not compared"));
+}
+
+TEST_CASE("goldens: work has a budget") {
+  const golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
+  golden.spec.levels = {false, false, false, true};
+  CHECK(golden::check_golden(golden, run).passed());
+  std::uint64_t sum = 0;
+  for (trace::Step& step : golden.trace.steps) sum += step.result.counters.box_tests;
+  REQUIRE(sum > 100);
+  const auto approve_sum = [&](std::uint64_t wanted) {
+    for (trace::Step& step : golden.trace.steps) step.result.counters.box_tests = 0;
+    golden.trace.steps.back().result.counters.box_tests = wanted;
+    return golden::test_golden(golden, run, "approve", false);
+  };
+  CHECK(approve_sum(sum).verdict.passed());
+  CHECK(approve_sum(10 * sum).verdict.passed());  // less work than approved
+  golden.spec.work = 0.5;
+  CHECK(approve_sum(sum * 2 / 3 + 1).verdict.passed());
+  const golden::GoldenResult more = approve_sum(sum / 2);
+  REQUIRE(more.verdict.more_work.size() == 1);
+  CHECK(has(golden::result_text(more), "FAIL  balls: more work than allowed"));
+  CHECK(has(golden::result_text(more), "work: box tests of all steps: approved " + std::to_string(sum / 2) +
+                                           ", found " + std::to_string(sum) + ", more than 50 % more"));
+  golden.spec.levels = {true, false, false, false};
+  CHECK(golden::check_golden(golden, run).passed());
+}
+
+TEST_CASE("goldens: ignored and selected rectangles, and FLIP, decide which pictures pass") {
+  const golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
+  golden.spec.levels = {false, false, true, false};
+  golden.frames[0][0].png.image.fill({100, 100, 80, 60}, {1, 200, 3, 255});
+  const auto passes = [&] { return golden::check_golden(golden, run).passed(); };
+  CHECK_FALSE(passes());
+  golden.spec.ignore = {{90, 90, 100, 80}};
+  CHECK(passes());
+  CHECK(golden::check_golden(golden, run).images[0].equal);
+  golden.spec.ignore = {{90, 90, 100, 80}, {0, 0, 10, 10}};
+  CHECK(passes());
+  golden.spec.ignore = {{0, 0, 10, 10}};
+  CHECK_FALSE(passes());
+  golden.spec.ignore.clear();
+  golden.spec.only = {{0, 0, 90, 320}};
+  CHECK(passes());
+  golden.spec.only = {{0, 0, 120, 320}};
+  CHECK_FALSE(passes());
+  // Shares are of the compared pixels: few that differ are many of a small rectangle.
+  golden.spec.only = {{100, 100, 4, 4}};
+  CHECK(has(golden::check_golden(golden, run).images[0].text, "100.0000 % of pixels differ"));
+  golden.spec.only.clear();
+  golden.spec.flip = 0.5;
+  CHECK(passes());
+  golden.spec.flip = 0.0001;
+  CHECK_FALSE(passes());
+  CHECK(has(golden::check_golden(golden, run).images[0].text, "(allowed 0.0001)"));
+
+  // The command stores them.
+  const Approved folder;
+  CHECK(test::run(folder, {"golden", "approve", "--ignore", "0,0,10,20", "--ignore", "5,6,7,8", "--only",
+                           "0,0,100,90", "--flip", "0.01", "--work-tolerance", "0.1", "balls"})
+            .code == 0);
+  const auto spec = nlohmann::json::parse(slurp(folder / "goldens/balls/golden.json"));
+  CHECK(spec["ignore"] == nlohmann::json({{0, 0, 10, 20}, {5, 6, 7, 8}}));
+  CHECK(spec["only"] == nlohmann::json::array({{0, 0, 100, 90}}));
+  CHECK(spec["tolerance"]["flip"] == 0.01);
+  CHECK(spec["tolerance"]["work"] == 0.1);
+  CHECK(folder.test().code == 0);
+  CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged balls\n");
+  for (const char* bad : {"1,2,3", "1,2,3,0", "a", "-1,2,3,4", "1,2,3,4,5"})
+    CHECK(test::run(folder, {"golden", "approve", std::string("--ignore=") + bad, "balls"}).code == 2);
+}
+
+TEST_CASE("goldens: approved from the results of a test, as a folder or an archive, without running") {
+  const Approved folder;
+  const std::string approved = slurp(folder / "goldens/balls/trace.json.gz");
+  folder.change();
+  REQUIRE(folder.test().code == 1);
+  fs::remove(folder / "balls.scenario.json");  // nothing runs
+  std::vector<io::ZipEntry> files;
+  for (const auto& file : fs::recursive_directory_iterator(folder / "out/golden"))
+    if (file.is_regular_file())
+      files.push_back({"results/" + file.path().lexically_relative(folder / "out/golden").generic_string(),
+                       slurp(file.path().string())});
+  const std::string archive = io::zip(files);
+  folder.write("results.zip", archive);
+  const auto approve = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"golden", "approve"});
+    return test::run(folder, words);
+  };
+  const Outcome dry = approve({"--from", "results.zip", "--dry-run"});
+  CHECK(dry.code == 0);
+  CHECK(has(dry.out, "would be approved goldens/balls/trace.json.gz\n"));
+  CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
+  CHECK(approve({"--from", "results.zip", "others"}).code == 2);
+  CHECK(approve({"--from", "results.zip", "--frames", "1"}).code == 2);
+
+  // A broken file: nothing is approved.
+  const auto broken = [&](const std::string& bytes, const char* why) {
+    folder.write("broken.zip", bytes);
+    const Outcome o = approve({"--from", "broken.zip"});
+    CAPTURE(o.err);
+    CHECK(o.code == 2);
+    CHECK(o.error_lines() == 1);
+    CHECK(has(o.err, why));
+    CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
+  };
+  broken(archive.substr(0, archive.size() / 2), "is not a ZIP archive, or is truncated");
+  std::string flipped = archive;
+  flipped[archive.find("frame_1.png") + 500] ^= 1;
+  broken(flipped, "damaged");
+  std::vector<io::ZipEntry> truncated = files;
+  for (io::ZipEntry& e : truncated)
+    if (e.name.ends_with("approve/balls/frame_1.png")) e.bytes.resize(e.bytes.size() / 2);
+  broken(io::zip(truncated), "nothing was approved");
+  broken(io::zip({}), "has no failures of goldens");
+  broken("no archive", "is not a ZIP archive");
+
+  CHECK(approve({"--from", "results.zip", "balls"}).code == 0);
+  CHECK(slurp(folder / "goldens/balls/trace.json.gz") != approved);
+  folder.change();  // the scenario that was approved
+  CHECK(folder.test().code == 0);
+  CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged balls\n");
+  CHECK(approve({"--from", "out/golden"}).code == 2);  // passed: nothing is left to approve
+}
+
+TEST_CASE("goldens: approving all approves no broken golden, and none without a scenario") {
+  const Approved folder;
+  for (const char* name : {"gone", "other"}) {
+    folder.write(std::string(name) + ".scenario.json", two_balls().replace(10, 5, name));
+    REQUIRE(test::run(folder, {"golden", "approve", "--frames", "1", std::string(name) + ".scenario.json"})
+                .code == 0);
+  }
+  fs::remove(folder / "gone.scenario.json");
+  const std::string png = slurp(folder / "goldens/balls/frame_1.png");
+  const std::string truncated = png.substr(0, png.size() / 2);
+  folder.write("goldens/balls/frame_1.png", truncated);
+  const Outcome all = test::run(folder, {"golden", "approve"});
+  CHECK(all.code == 1);
+  CHECK(has(all.out, "not approved: balls: "));
+  CHECK(has(all.out, "to replace it: lrbscope golden approve --goldens goldens balls\n"));
+  CHECK(has(all.out, "not approved: gone: "));
+  CHECK(has(all.out, "to remove the golden: lrbscope golden remove --goldens goldens gone\n"));
+  CHECK(has(all.out, "unchanged other\n"));
+  CHECK(slurp(folder / "goldens/balls/frame_1.png") == truncated);
+  CHECK(test::run(folder, {"golden", "approve", "balls"}).code == 0);
+  CHECK(slurp(folder / "goldens/balls/frame_1.png") == png);
+}
+
+TEST_CASE("goldens: one cause of several failures is reported once") {
+  const Approved folder;
+  folder.write("other.scenario.json", two_balls().replace(10, 5, "other"));
+  REQUIRE(test::run(folder, {"golden", "approve", "--frames", "1", "other.scenario.json"}).code == 0);
+  CHECK_FALSE(has(folder.test().out, "one cause in"));
+  folder.change();
+  folder.write("other.scenario.json",
+               std::regex_replace(two_balls().replace(10, 5, "other"), std::regex("3, 0.2"), "3, 0.3"));
+  const Outcome o = folder.test({"--markdown", "summary.md"});
+  const std::string line = "one cause in 2 goldens (balls, other): the scenario changed: motion.from: ";
+  CHECK(has(o.out, line));
+  CHECK(has(slurp(folder / "summary.md"), line));
+  CHECK(has(slurp(folder / "out/golden/index.html"), "one cause in 2 goldens (balls, other)"));
+}
+
+TEST_CASE("goldens: pictures have the scenario's shape") {
+  const auto size_of = [](int width, int height) {
+    golden::GoldenSpec spec;
+    render::FrameSpec frames;
+    frames.width = width;
+    frames.height = height;
+    golden::set_default_size(spec, frames);
+    return std::pair{spec.width, spec.height};
+  };
+  CHECK(size_of(640, 400) == std::pair{480, 300});
+  CHECK(size_of(960, 720) == std::pair{480, 360});
+  CHECK(size_of(1600, 400) == std::pair{960, 240});
+  CHECK(size_of(400, 3200) == std::pair{240, 1920});
+}
+
+TEST_CASE("goldens: differences of scenarios are named by key") {
+  const auto difference = [](const char* x, const char* y) {
+    return golden::scenario_difference(golden::compact_json(x), golden::compact_json(y));
+  };
+  CHECK(difference(R"({"a": 1, "b": [1, 2]})", R"({ "b": [1,2], "a": 1 })").empty());
+  CHECK(difference(R"({"a": {"b": 1, "c": 2}})", R"({"a": {"b": 1, "c": 3}})") == "a.c: 2 -> 3");
+  CHECK(difference(R"({"v": [{"x": 1}, {"x": 2}]})", R"({"v": [{"x": 1}, {"x": 4, "y": 5}]})") ==
+        "v[1].x: 2 -> 4; v[1].y: absent -> 5");
+  CHECK(difference(R"({"v": [{"x": 1}]})", R"({"v": []})") == "v: [{\"x\":1}] -> []");
+  CHECK(difference(R"({"a":1,"b":1,"c":1,"d":1})", R"({"a":2,"b":2,"c":2,"d":2})") ==
+        "a: 1 -> 2; b: 1 -> 2; c: 1 -> 2; and 1 more");
 }
 
 TEST_CASE("goldens: jobs change only the time; one that cannot run fails alone; list shows all") {
