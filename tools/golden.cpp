@@ -491,7 +491,7 @@ Command add_golden(CLI::App& root, const Globals& globals) {
       ->type_name("DIR|ZIP");
   approve->add_flag("--dry-run", o->dry, "Change nothing; print which files would be approved or removed");
   add_comparison(*approve, o);
-  // What a test found is approved as it was drawn and compared there.
+  // Results of a test are approved as they were drawn and compared there.
   for (CLI::Option* option : approve->get_options())
     if (const std::string name = option->get_name(); name != "--from" && name != "--goldens" &&
                                                      name != "--dry-run" && name != "--help" &&

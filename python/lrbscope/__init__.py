@@ -61,6 +61,8 @@ from ._core import (
 )
 from ._picture import Picture
 from .collision import CollisionManager, ContactData, DistanceData
+from .report import Interference, Report
+from .report import report as _report
 
 # Classes report, and pickle, the module that users import them from.
 for _name in dir(_core):
@@ -68,6 +70,8 @@ for _name in dir(_core):
     if isinstance(_object, type):
         _object.__module__ = __name__
 del _name, _object
+
+Scene.report = _report  # type: ignore[method-assign]
 
 # EnvironmentError is not exported: it would hide Python's own.
 __all__ = [
@@ -83,6 +87,7 @@ __all__ = [
     "FirstContact",
     "FirstContacts",
     "InputError",
+    "Interference",
     "Manifolds",
     "Meetings",
     "NearPairs",
@@ -90,6 +95,7 @@ __all__ = [
     "PairExplanation",
     "Picture",
     "PointDistances",
+    "Report",
     "Result",
     "Results",
     "Scenario",

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._picture import Picture
+from .report import Report
 
 __version__: str
 
@@ -30,10 +31,12 @@ _Colours = Literal[
     "plane_tests",
 ]
 _Vector = npt.ArrayLike
-# One pose gives one answer, many poses give as many. Types of arrays do not include the number of dimensions,
-# so a query with an array returns either kind, typed Any.
+_Direction = npt.ArrayLike | Literal["x", "y", "z", "-x", "-y", "-z"]
+# One pose gives one answer, many poses give as many. NumPy 2.2 and later know the number of dimensions of np.eye(4)
+# and the like; a query with an array of an unknown number returns either kind, typed Any.
 _Rows = Sequence[Sequence[float]]
-_Poses = Sequence[npt.NDArray[Any]] | Sequence[_Rows]
+_Pose = _Rows | np.ndarray[tuple[int, int], np.dtype[Any]]
+_Poses = Sequence[npt.NDArray[Any]] | Sequence[_Rows] | np.ndarray[tuple[int, int, int], np.dtype[Any]]
 _Array = npt.NDArray[Any]
 _Meet = Literal["disjoint", "touch", "cross"]
 _DecidedBy = Literal["node_boxes", "node_edges", "face_boxes", "planes", "floats", "exact"]
@@ -368,11 +371,11 @@ class CoherentQuery:
         a: Body,
         b: Body,
         *,
-        mode: _Mode | None = None,
-        contacts: bool | None = None,
-        interiors_overlap: bool | None = None,
-        max_pairs: int | None = None,
-        always: bool | None = None,
+        mode: _Mode | None = "all",
+        contacts: bool | None = False,
+        interiors_overlap: bool | None = False,
+        max_pairs: int | None = 0,
+        always: bool | None = False,
     ) -> None: ...
     def collide(self, pose_b: npt.ArrayLike | None = None, pose_a: npt.ArrayLike | None = None) -> Result: ...
     @property
@@ -405,7 +408,7 @@ class WalkExplanation:
     def dict(self) -> dict[str, Any]: ...
 
 class Scene:
-    def __init__(self, *, threads: int | None = None) -> None: ...
+    def __init__(self, *, threads: int | None = 0) -> None: ...
     def add(self, body: Body, pose: npt.ArrayLike | None = None) -> int: ...
     def remove(self, key: int) -> None: ...
     @overload
@@ -418,7 +421,7 @@ class Scene:
     def keys(self) -> _Keys: ...
     def near(
         self,
-        within: float | None = None,
+        within: float | None = 0,
         other: Scene | Body | None = None,
         pose: npt.ArrayLike | None = None,
     ) -> tuple[_Keys, _Floats]: ...
@@ -430,10 +433,10 @@ class Scene:
         other: Scene | Body | None = None,
         pose: npt.ArrayLike | None = None,
         *,
-        mode: _Mode | None = None,
-        contacts: bool | None = None,
-        interiors_overlap: bool | None = None,
-        max_pairs: int | None = None,
+        mode: _Mode | None = "all",
+        contacts: bool | None = False,
+        interiors_overlap: bool | None = False,
+        max_pairs: int | None = 0,
     ) -> Meetings: ...
     def any_meet(self, other: Scene | Body | None = None, pose: npt.ArrayLike | None = None) -> bool: ...
     def nearest(
@@ -441,15 +444,23 @@ class Scene:
         other: Scene | Body | None = None,
         pose: npt.ArrayLike | None = None,
         *,
-        solids: bool | None = None,
-        relative_tolerance: float | None = None,
-        tolerance: float | None = None,
+        solids: bool | None = False,
+        relative_tolerance: float | None = 0,
+        tolerance: float | None = 0,
     ) -> tuple[int, int, Distance] | None: ...
+    def report(
+        self,
+        *,
+        clearance: float = 0,
+        pictures: bool = True,
+        size: tuple[int, int] = (480, 360),
+        up: npt.ArrayLike | str = "z",
+    ) -> Report: ...
     def __len__(self) -> int: ...
     def __contains__(self, key: object) -> bool: ...
 
 class Wrapper:
-    def __init__(self, body: Body, mode: Literal["regularised", "unregularised"] | None = None) -> None: ...
+    def __init__(self, body: Body, mode: Literal["regularised", "unregularised"] | None = "regularised") -> None: ...
     @staticmethod
     def at(body: Body, tolerance: float, *, threads: int = 0) -> Wrapper: ...
     def refine(self, region: int) -> bool: ...
@@ -489,16 +500,16 @@ class Trace:
         self,
         step: int = -1,
         *,
-        size: tuple[int, int] | None = None,
-        view_from: _Vector | None = None,
-        up: _Vector | None = None,
+        size: tuple[int, int] | None = (960, 720),
+        view_from: _Direction | None = None,
+        up: _Direction | None = (0, 0, 1),
         look_at: _Vector | None = None,
-        zoom: float | None = None,
-        orthographic: bool | None = None,
-        wrappers: bool | None = None,
-        close_up: bool | None = None,
-        colour_by: _Colours | None = None,
-        transparent: bool | None = None,
+        zoom: float | None = 1,
+        orthographic: bool | None = False,
+        wrappers: bool | None = False,
+        close_up: bool | None = False,
+        colour_by: _Colours | None = "kind",
+        transparent: bool | None = False,
     ) -> Picture: ...
     def __len__(self) -> int: ...
 
@@ -533,19 +544,19 @@ class SweepAndPrune:
 def collide(
     a: Body,
     b: Body,
-    poses_b: _Rows | None = None,
+    poses_b: _Pose | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
-    mode: _Mode | None = None,
-    contacts: bool | None = None,
-    interiors_overlap: bool | None = None,
-    tolerance: float | None = None,
-    max_tests: int | None = None,
-    max_time: float | None = None,
-    separation: bool | None = None,
-    max_pairs: int | None = None,
-    recursion: _Recursion | None = None,
-    threads: int | None = None,
+    mode: _Mode | None = "all",
+    contacts: bool | None = False,
+    interiors_overlap: bool | None = False,
+    tolerance: float | None = 0,
+    max_tests: int | None = 0,
+    max_time: float | None = 0,
+    separation: bool | None = False,
+    max_pairs: int | None = 0,
+    recursion: _Recursion | None = "complete",
+    threads: int | None = 0,
 ) -> Result: ...
 @overload
 def collide(
@@ -554,16 +565,16 @@ def collide(
     poses_b: _Poses,
     pose_a: npt.ArrayLike | None = None,
     *,
-    mode: _Mode | None = None,
-    contacts: bool | None = None,
-    interiors_overlap: bool | None = None,
-    tolerance: float | None = None,
-    max_tests: int | None = None,
-    max_time: float | None = None,
-    separation: bool | None = None,
-    max_pairs: int | None = None,
-    recursion: _Recursion | None = None,
-    threads: int | None = None,
+    mode: _Mode | None = "all",
+    contacts: bool | None = False,
+    interiors_overlap: bool | None = False,
+    tolerance: float | None = 0,
+    max_tests: int | None = 0,
+    max_time: float | None = 0,
+    separation: bool | None = False,
+    max_pairs: int | None = 0,
+    recursion: _Recursion | None = "complete",
+    threads: int | None = 0,
 ) -> Results: ...
 @overload
 def collide(
@@ -572,16 +583,16 @@ def collide(
     poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
-    mode: _Mode | None = None,
-    contacts: bool | None = None,
-    interiors_overlap: bool | None = None,
-    tolerance: float | None = None,
-    max_tests: int | None = None,
-    max_time: float | None = None,
-    separation: bool | None = None,
-    max_pairs: int | None = None,
-    recursion: _Recursion | None = None,
-    threads: int | None = None,
+    mode: _Mode | None = "all",
+    contacts: bool | None = False,
+    interiors_overlap: bool | None = False,
+    tolerance: float | None = 0,
+    max_tests: int | None = 0,
+    max_time: float | None = 0,
+    separation: bool | None = False,
+    max_pairs: int | None = 0,
+    recursion: _Recursion | None = "complete",
+    threads: int | None = 0,
 ) -> Any: ...
 def collide_pairs(
     bodies_a: Sequence[Body],
@@ -589,20 +600,20 @@ def collide_pairs(
     bodies_b: Sequence[Body],
     poses_b: npt.ArrayLike,
     *,
-    mode: _Mode | None = None,
-    contacts: bool | None = None,
-    max_pairs: int | None = None,
-    threads: int | None = None,
+    mode: _Mode | None = "all",
+    contacts: bool | None = False,
+    max_pairs: int | None = 0,
+    threads: int | None = 0,
 ) -> list[Result]: ...
 @overload
 def contacts(
     a: Body,
     b: Body,
-    poses_b: _Rows | None = None,
+    poses_b: _Pose | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
-    max_pairs: int | None = None,
-    threads: int | None = None,
+    max_pairs: int | None = 0,
+    threads: int | None = 0,
 ) -> list[ContactRegion]: ...
 @overload
 def contacts(
@@ -611,8 +622,8 @@ def contacts(
     poses_b: _Poses,
     pose_a: npt.ArrayLike | None = None,
     *,
-    max_pairs: int | None = None,
-    threads: int | None = None,
+    max_pairs: int | None = 0,
+    threads: int | None = 0,
 ) -> list[list[ContactRegion]]: ...
 @overload
 def contacts(
@@ -621,22 +632,22 @@ def contacts(
     poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
-    max_pairs: int | None = None,
-    threads: int | None = None,
+    max_pairs: int | None = 0,
+    threads: int | None = 0,
 ) -> Any: ...
 @overload
 def distance(
     a: Body,
     b: Body,
-    poses_b: _Rows | None = None,
+    poses_b: _Pose | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
     within: float | None = None,
-    tolerance: float | None = None,
-    relative_tolerance: float | None = None,
-    max_steps: int | None = None,
-    relation: bool | None = None,
-    threads: int | None = None,
+    tolerance: float | None = 0,
+    relative_tolerance: float | None = 0,
+    max_steps: int | None = 0,
+    relation: bool | None = True,
+    threads: int | None = 0,
 ) -> Distance: ...
 @overload
 def distance(
@@ -646,11 +657,11 @@ def distance(
     pose_a: npt.ArrayLike | None = None,
     *,
     within: float | None = None,
-    tolerance: float | None = None,
-    relative_tolerance: float | None = None,
-    max_steps: int | None = None,
-    relation: bool | None = None,
-    threads: int | None = None,
+    tolerance: float | None = 0,
+    relative_tolerance: float | None = 0,
+    max_steps: int | None = 0,
+    relation: bool | None = True,
+    threads: int | None = 0,
 ) -> Distances: ...
 @overload
 def distance(
@@ -660,11 +671,11 @@ def distance(
     pose_a: npt.ArrayLike | None = None,
     *,
     within: float | None = None,
-    tolerance: float | None = None,
-    relative_tolerance: float | None = None,
-    max_steps: int | None = None,
-    relation: bool | None = None,
-    threads: int | None = None,
+    tolerance: float | None = 0,
+    relative_tolerance: float | None = 0,
+    max_steps: int | None = 0,
+    relation: bool | None = True,
+    threads: int | None = 0,
 ) -> Any: ...
 def near_pairs(
     a: Body,
@@ -673,9 +684,9 @@ def near_pairs(
     pose_a: npt.ArrayLike | None = None,
     *,
     within: float,
-    nearest: int | None = None,
-    max_pairs: int | None = None,
-    threads: int | None = None,
+    nearest: int | None = 0,
+    max_pairs: int | None = 0,
+    threads: int | None = 0,
 ) -> NearPairs: ...
 def contact_manifolds(
     a: Body,
@@ -683,35 +694,35 @@ def contact_manifolds(
     pose_b: npt.ArrayLike | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
-    margin: float | None = None,
+    margin: float | None = 0,
     previous: Manifolds | None = None,
-    max_pairs: int | None = None,
-    threads: int | None = None,
+    max_pairs: int | None = 0,
+    threads: int | None = 0,
 ) -> Manifolds: ...
 def self_intersections(
-    body: Body, *, max_pairs: int | None = None, threads: int | None = None
+    body: Body, *, max_pairs: int | None = 0, threads: int | None = 0
 ) -> SelfIntersections: ...
 def signed_distance(
     body: Body,
     points: npt.ArrayLike,
     pose: npt.ArrayLike | None = None,
     *,
-    tolerance: float | None = None,
-    relative_tolerance: float | None = None,
-    threads: int | None = None,
+    tolerance: float | None = 0,
+    relative_tolerance: float | None = 0,
+    threads: int | None = 0,
 ) -> PointDistances: ...
 @overload
 def clash(
     a: Body,
     b: Body,
-    poses_b: _Rows | None = None,
+    poses_b: _Pose | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
-    clearance: float | None = None,
+    clearance: float | None = 0,
     along: npt.ArrayLike | None = None,
-    depth: bool | None = None,
-    volume: bool | None = None,
-    threads: int | None = None,
+    depth: bool | None = True,
+    volume: bool | None = True,
+    threads: int | None = 0,
 ) -> Clash: ...
 @overload
 def clash(
@@ -720,11 +731,11 @@ def clash(
     poses_b: _Poses,
     pose_a: npt.ArrayLike | None = None,
     *,
-    clearance: float | None = None,
+    clearance: float | None = 0,
     along: npt.ArrayLike | None = None,
-    depth: bool | None = None,
-    volume: bool | None = None,
-    threads: int | None = None,
+    depth: bool | None = True,
+    volume: bool | None = True,
+    threads: int | None = 0,
 ) -> list[Clash]: ...
 @overload
 def clash(
@@ -733,23 +744,23 @@ def clash(
     poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
-    clearance: float | None = None,
+    clearance: float | None = 0,
     along: npt.ArrayLike | None = None,
-    depth: bool | None = None,
-    volume: bool | None = None,
-    threads: int | None = None,
+    depth: bool | None = True,
+    volume: bool | None = True,
+    threads: int | None = 0,
 ) -> Any: ...
 @overload
 def first_contact(
     a: Body,
     b: Body,
-    motion_b: _Rows | _Poses,
+    motion_b: _Pose | _Poses,
     motion_a: npt.ArrayLike | None = None,
     *,
-    tolerance: float | None = None,
-    max_steps: int | None = None,
-    relation: bool | None = None,
-    threads: int | None = None,
+    tolerance: float | None = 1e-09,
+    max_steps: int | None = 10000000,
+    relation: bool | None = True,
+    threads: int | None = 0,
 ) -> FirstContact: ...
 @overload
 def first_contact(
@@ -758,10 +769,10 @@ def first_contact(
     motion_b: _Array,
     motion_a: npt.ArrayLike | None = None,
     *,
-    tolerance: float | None = None,
-    max_steps: int | None = None,
-    relation: bool | None = None,
-    threads: int | None = None,
+    tolerance: float | None = 1e-09,
+    max_steps: int | None = 10000000,
+    relation: bool | None = True,
+    threads: int | None = 0,
 ) -> Any: ...
 def trace(
     a: Body,
@@ -769,14 +780,14 @@ def trace(
     poses_b: npt.ArrayLike | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
-    events: Literal["faces", "nodes", "all"] | None = None,
-    max_events: int | None = None,
-    mode: _Mode | None = None,
+    events: Literal["faces", "nodes", "all"] | None = "faces",
+    max_events: int | None = 1000000,
+    mode: _Mode | None = "all",
     contacts: bool | None = None,
-    tolerance: float | None = None,
-    max_tests: int | None = None,
-    separation: bool | None = None,
-    recursion: _Recursion | None = None,
+    tolerance: float | None = 0,
+    max_tests: int | None = 0,
+    separation: bool | None = False,
+    recursion: _Recursion | None = "complete",
 ) -> Trace: ...
 def render(
     a: Body,
@@ -784,16 +795,16 @@ def render(
     pose_b: npt.ArrayLike | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
-    size: tuple[int, int] | None = None,
-    view_from: _Vector | None = None,
-    up: _Vector | None = None,
+    size: tuple[int, int] | None = (960, 720),
+    view_from: _Direction | None = None,
+    up: _Direction | None = (0, 0, 1),
     look_at: _Vector | None = None,
-    zoom: float | None = None,
-    orthographic: bool | None = None,
-    wrappers: bool | None = None,
-    close_up: bool | None = None,
-    colour_by: _Colours | None = None,
-    transparent: bool | None = None,
+    zoom: float | None = 1,
+    orthographic: bool | None = False,
+    wrappers: bool | None = False,
+    close_up: bool | None = False,
+    colour_by: _Colours | None = "kind",
+    transparent: bool | None = False,
 ) -> Picture: ...
 def scenarios() -> list[str]: ...
 def _encode_png(pixels: npt.ArrayLike) -> bytes: ...

@@ -34,6 +34,11 @@ class Picture(_Pixels):
     def __array_finalize__(self, other: Any) -> None:
         self.caption = getattr(other, "caption", "")
 
+    def __repr__(self) -> str:
+        if self.ndim != 3 or self.shape[2] not in (3, 4):  # a part of a picture, such as one channel
+            return super().__repr__()
+        return f"<lrbscope.Picture {self.shape[1]}x{self.shape[0]}>"
+
     def _repr_png_(self) -> bytes | None:
         # Parts of a picture, such as one channel, are plain arrays.
         return _core._encode_png(self) if self.ndim == 3 and self.shape[2] in (3, 4) else None

@@ -51,7 +51,33 @@ if TYPE_CHECKING:
 _EXTERNAL = "__external"
 
 
-class ContactData:
+class Shown:
+    """Displays an object in one line, with its public attributes and properties."""
+
+    def __repr__(self) -> str:
+        names = [name for name in vars(self) if not name.startswith("_")]
+        names += [name for name, value in vars(type(self)).items() if isinstance(value, property)]
+        shown = ", ".join(f"{name}={_short(getattr(self, name))}" for name in names)
+        return f"<{type(self).__module__}.{type(self).__name__}{' ' if shown else ''}{shown}>"
+
+
+def _short(value: Any) -> str:
+    """Return a value in a few characters: numbers rounded, lists and large arrays counted."""
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, np.ndarray):
+        if value.size > 4:
+            return f"({', '.join(map(str, value.shape))}) array"
+        return "[" + ", ".join(f"{x:.4g}" for x in value.ravel()) + "]"
+    if isinstance(value, list) and len(value) > 2:
+        return f"[{len(value)} items]"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_short, value)) + "]"
+    text = repr(value)
+    return text if len(text) <= 80 else f"<{type(value).__name__}>"
+
+
+class ContactData(Shown):
     """A contact: a triangle of one object that intersects a triangle of another.
 
     names: set of the two objects' names. Points and vectors are in the world frame.
@@ -86,7 +112,7 @@ class ContactData:
         return self._faces[name]
 
 
-class DistanceData:
+class DistanceData(Shown):
     """The closest points of two objects. names: set of their names."""
 
     def __init__(self, names: _Names, faces: Sequence[int], points: _Floats, distance: float) -> None:
@@ -205,6 +231,9 @@ class CollisionManager:
         self._scene = _core.Scene()
         self._keys: dict[Any, int] = {}  # by name
         self._names: dict[int, Any] = {}  # by key
+
+    def __repr__(self) -> str:
+        return f"<lrbscope.CollisionManager of {len(self._keys)} objects>"
 
     def add_object(self, name: Hashable, mesh: _Mesh, transform: _Pose = None) -> Body:
         """Add an object, or replace the one of this name. transform: (4, 4) float. Returns its Body."""

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from . import _core
-from .collision import contacts_of
+from .collision import Shown, _short, contacts_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -162,6 +162,10 @@ class Transform:
         """Set the rotation from w, x, y, z."""
         self._r = _matrix_of_quaternion(q)
 
+    def __repr__(self) -> str:
+        rotation, translation = (np.array2string(x, separator=", ") for x in (self._r, self._t))
+        return f"<lrbscope.fcl.Transform {' '.join(rotation.split())}, {' '.join(translation.split())}>"
+
     def _pose(self) -> _Floats:
         pose = np.eye(4)
         pose[:3, :3], pose[:3, 3] = self._r, self._t
@@ -184,6 +188,10 @@ class CollisionGeometry:
                 value = np.array(value, dtype=float)
                 value.flags.writeable = False
         object.__setattr__(self, name, value)
+
+    def __repr__(self) -> str:
+        dimensions = [f"{name}={_short(value)}" for name, value in vars(self).items() if not name.startswith("_")]
+        return f"<lrbscope.fcl.{' '.join([type(self).__name__, ', '.join(dimensions)]).strip()}>"
 
     def getNodeType(self) -> int:
         """Return FCL's number of the kind of shape."""
@@ -466,6 +474,9 @@ class CollisionObject:
         self._geom = geom
         self._tf = Transform() if tf is None else Transform(tf)
 
+    def __repr__(self) -> str:
+        return f"<lrbscope.fcl.CollisionObject of {self._geom!r} at {self._tf!r}>"
+
     def getObjectType(self) -> int:
         """Return FCL's type number: 1 for a mesh, 2 for a shape."""
         return self._geom._object_type
@@ -529,7 +540,7 @@ class CollisionObject:
         return self._tf._pose()
 
 
-class Contact:
+class Contact(Shown):
     """A contact of two objects. b1, b2: triangles, -1 for shapes; normal: from o1 to o2; pos: world frame."""
 
     def __init__(self) -> None:
@@ -545,7 +556,7 @@ class CostSource:
     """Never created: costs are not supported."""
 
 
-class CollisionRequest:
+class CollisionRequest(Shown):
     """num_max_contacts: maximum number of contacts; enable_contact: with point, normal and depth."""
 
     def __init__(
@@ -564,7 +575,7 @@ class CollisionRequest:
         self.use_approximate_cost, self.gjk_solver_type = use_approximate_cost, gjk_solver_type
 
 
-class CollisionResult:
+class CollisionResult(Shown):
     """is_collision: bool; contacts: list of Contact."""
 
     def __init__(self) -> None:
@@ -573,7 +584,7 @@ class CollisionResult:
         self.cost_sources: list[CostSource] = []
 
 
-class DistanceRequest:
+class DistanceRequest(Shown):
     """Closest points are always computed."""
 
     def __init__(
@@ -587,7 +598,7 @@ class DistanceRequest:
         self.gjk_solver_type = gjk_solver_type
 
 
-class DistanceResult:
+class DistanceResult(Shown):
     """min_distance; nearest_points: two (3,) arrays, world frame; b1, b2: triangles, -1 for shapes."""
 
     def __init__(self, min_distance_: float = sys.float_info.max) -> None:
@@ -598,7 +609,7 @@ class DistanceResult:
         self.b1 = self.b2 = -1
 
 
-class ContinuousCollisionRequest:
+class ContinuousCollisionRequest(Shown):
     """toc_err: maximum error of the time of contact. The rest has no effect here."""
 
     def __init__(
@@ -614,14 +625,14 @@ class ContinuousCollisionRequest:
         self.gjk_solver_type, self.ccd_solver_type = gjk_solver_type, ccd_solver_type
 
 
-class ContinuousCollisionResult:
+class ContinuousCollisionResult(Shown):
     """is_collide: bool; time_of_contact: from 0 to 1, 1 if there is no contact."""
 
     def __init__(self, is_collide: bool = False, time_of_contact: float = 1.0) -> None:
         self.is_collide, self.time_of_contact = is_collide, time_of_contact
 
 
-class CollisionData:
+class CollisionData(Shown):
     """Data that managers pass to collision callbacks."""
 
     def __init__(
@@ -632,7 +643,7 @@ class CollisionData:
         self.done = False
 
 
-class DistanceData:
+class DistanceData(Shown):
     """Data that managers pass to distance callbacks."""
 
     def __init__(self, request: DistanceRequest | None = None, result: DistanceResult | None = None) -> None:
@@ -771,6 +782,9 @@ class DynamicAABBTreeCollisionManager:
 
     def __init__(self) -> None:
         self.clear()
+
+    def __repr__(self) -> str:
+        return f"<lrbscope.fcl.DynamicAABBTreeCollisionManager of {len(self._objects)} objects>"
 
     def registerObjects(self, other_objs: Iterable[CollisionObject]) -> None:
         """Add objects."""

@@ -81,6 +81,10 @@ void bind_coherent(py::module_& m) {
   c.def("collide", &collide_next, py::arg("pose_b") = no, py::arg("pose_a") = no,
         "collide(pose_b=None, pose_a=None)\n\n"
         "Returns the Result for these poses, (4, 4); None: the identity.");
+  c.def("__repr__", [](const QueryHandle& q) {
+    return printable("<lrbscope.CoherentQuery of '" + q.a->rep().name() + "' and '" + q.b->rep().name() +
+                     "'>");
+  });
   c.def_property_readonly(
       "statistics", &statistics,
       "dict of int: queries answered from_cache, caches_made for a query (swept_caches of them "

@@ -263,6 +263,9 @@ void bind_distances(py::module_& m) {
   c.def("__getitem__",
         [](const Distances& d, py::ssize_t i) { return d.at(checked_index(i, d.all->size())); });
   bind_iterator(c);
+  c.def("__repr__", [](const Distances& d) {
+    return "<lrbscope.Distances of " + std::to_string(d.all->size()) + " poses>";
+  });
   c.def_property_readonly(
       "lower", [](const Distances& d) { return ends_of(d, &DistanceResult::lower); }, "(k,) float64");
   c.def_property_readonly(
@@ -462,6 +465,9 @@ void bind_first_contacts(py::module_& m) {
   c.def("__getitem__",
         [](const FirstContacts& f, py::ssize_t i) { return f.at(checked_index(i, f.all->size())); });
   bind_iterator(c);
+  c.def("__repr__", [](const FirstContacts& f) {
+    return "<lrbscope.FirstContacts of " + std::to_string(f.all->size()) + " motions>";
+  });
   const auto ends = [&c](const char* name, double FirstContactResult::*end, const char* text) {
     c.def_property_readonly(
         name,

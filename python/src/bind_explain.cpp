@@ -77,6 +77,10 @@ void bind_pair(py::module_& m) {
   py::class_<OfPair> c(m, "PairExplanation",
                        "Why two triangles are in an answer or not. Made by explain_pair(). str() gives the "
                        "explanation as text.");
+  c.def("__repr__", [](const OfPair& e) {
+    return "<lrbscope.PairExplanation " + std::string(name_of(e.reported.meet)) + ", decided by " +
+           std::string(name_of(e.reported.decided_by)) + ">";
+  });
   c.def_property_readonly(
       "meet", [](const OfPair& e) { return py::str(std::string(name_of(e.reported.meet))); },
       "str: 'disjoint', 'touch' or 'cross'.");
@@ -105,6 +109,9 @@ void bind_walk(py::module_& m) {
   py::class_<OfWalk> c(m, "WalkExplanation",
                        "How a query proceeded, and what proves two bodies separate. Made by explain_walk(). "
                        "str() gives the explanation as text.");
+  c.def("__repr__", [](const OfWalk& e) {
+    return "<lrbscope.WalkExplanation " + std::string(name_of(e.reported.result.relation)) + ">";
+  });
   c.def_property_readonly(
       "result",
       [](const OfWalk& e) {

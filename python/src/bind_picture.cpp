@@ -23,6 +23,17 @@ struct Wanted {
   bool from_given = false;
 };
 
+/// Returns the direction of "x", "-y" and the like, or of three numbers.
+Eigen::Vector3d direction(py::handle given, const char* what) {
+  if (!py::isinstance<py::str>(given)) return vector(given, what);
+  const auto word = given.cast<std::string>();
+  const std::size_t sign = word.starts_with("-") ? 1 : 0;
+  if (word.size() != sign + 1 || word[sign] < 'x' || word[sign] > 'z')
+    throw InputError(std::string(what) + ": expected three numbers, 'x', 'y', 'z', '-x', '-y' or '-z', got " +
+                     described(given));
+  return (sign == 1 ? -1.0 : 1.0) * Eigen::Vector3d::Unit(word[sign] - 'x');
+}
+
 Wanted wanted(const PictureArguments& given) {
   Wanted out;
   render::FrameSpec& f = out.frames;
@@ -37,8 +48,8 @@ Wanted wanted(const PictureArguments& given) {
   }
   View view;
   out.from_given = !given.view_from.is_none();
-  if (out.from_given) view.from = vector(given.view_from, "view_from");
-  if (!given.up.is_none()) view.up = vector(given.up, "up");
+  if (out.from_given) view.from = direction(given.view_from, "view_from");
+  if (!given.up.is_none()) view.up = direction(given.up, "up");
   for (const Eigen::Vector3d* v : {&view.from, &view.up})
     if (!v->allFinite() || !(v->squaredNorm() > 0))
       throw InputError(std::string(v == &view.from ? "view_from" : "up") +

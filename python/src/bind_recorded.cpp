@@ -212,7 +212,9 @@ void bind_trace(py::module_& m) {
               {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
         },
         py::arg("step") = -1, py::kw_only(), names...,
-        "picture(step=-1, *, ...)\n\n"
+        "picture(step=-1, *, size=(960, 720), view_from=None, up=(0, 0, 1), look_at=None, zoom=1, "
+        "orthographic=False,\n"
+        "        wrappers=False, close_up=False, colour_by='kind', transparent=False)\n\n"
         "Draws the end of a step, counted from the end if negative. Options and result as in "
         "render().");
   });
@@ -286,8 +288,8 @@ True)");
 Draws one body, or two bodies and their contact.
 
 size: pixels, width and height. view_from: the direction from the bodies to the viewer; None: the one that
-hides least of the contact. up: the upward direction in the picture. look_at: the point at its centre; zoom:
-above 1 magnifies. wrappers: show the wrappers that the query used. close_up: show the contact alone.
+hides least of the contact. up: the upward direction in the picture. Directions are (3,) or words such as 'y'
+and '-x'. look_at: the point at its centre; zoom: above 1 magnifies. wrappers: show the wrappers that the query used. close_up: show the contact alone.
 colour_by: 'kind', 'layer', 'region', 'face_tests', 'refinements', 'hits', 'misses'. transparent: no
 background.
 

@@ -1,3 +1,7 @@
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
 #include "python/src/arguments.hpp"
 #include "python/src/bind.hpp"
 #include <lrbscope/trace/trace.hpp>
@@ -18,6 +22,36 @@ void reject_objects_without_value(const py::module_& m) {
     if (PyType_Check(member.ptr()) != 0)
       if (auto* const info = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(member.ptr())))
         info->operator_new = reject_memory;
+}
+
+/// Turns "name(a, b=None)", with which a docstring begins, into the form from which inspect and IPython read
+/// a signature: "name(self, a, b=None)" and a line "--". Python then shows the rest as __doc__.
+void state_signature(PyObject* member) {
+  const bool is_method = PyInstanceMethod_Check(member) != 0;
+  PyObject* const function = is_method ? PyInstanceMethod_GET_FUNCTION(member) : member;
+  if (PyCFunction_Check(function) == 0) return;
+  PyMethodDef& def = *reinterpret_cast<PyCFunctionObject*>(function)->m_ml;
+  if (def.ml_doc == nullptr) return;
+  const std::string text = def.ml_doc;
+  const std::size_t open = text.find('('), end = text.find(")\n\n");
+  if (open == std::string::npos || end == std::string::npos || text.find_first_of(" \n") < open) return;
+  std::string arguments = text.substr(open + 1, end - open - 1);
+  if (is_method) arguments = arguments.empty() ? "self" : "self, " + arguments;
+  const std::string stated = std::string(def.ml_name) + "(" + arguments + ")\n--\n" + text.substr(end + 1);
+  char* const copy = strdup(stated.c_str());  // pybind11 frees it
+  std::free(const_cast<char*>(def.ml_doc));
+  def.ml_doc = copy;
+}
+
+/// Gives functions, constructors and methods of the module signatures.
+void state_signatures(const py::module_& m) {
+  for (const auto& [name, member] : m.attr("__dict__").cast<py::dict>()) {
+    state_signature(member.ptr());
+    if (PyType_Check(member.ptr()) == 0) continue;
+    for (const auto& [own, item] : py::dict(member.attr("__dict__")))
+      state_signature(py::isinstance<py::staticmethod>(item) ? py::object(item.attr("__func__")).ptr()
+                                                             : item.ptr());
+  }
 }
 
 PyObject* input_error = nullptr;  // live as long as the module
@@ -77,4 +111,5 @@ PYBIND11_MODULE(_core, m) {
   bind_recorded(m);
   bind_scenario(m);
   reject_objects_without_value(m);
+  state_signatures(m);
 }

@@ -302,10 +302,11 @@ GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::
     if (all || !v.passed) add_image(result, golden, run, v);
   if (!result.verdict.images_passed()) {
     const std::string& approved = golden.facts.renderer;
-    result.renderer = approved.empty() ? "drawn with " + render::gl_version()
+    const std::string drawn = "OpenGL " + render::gl_version();
+    result.renderer = approved.empty() ? "drawn with " + drawn
                       : approved == render::gl_version()
-                          ? "approved and drawn with " + approved
-                          : "approved with " + approved + "; drawn with " + render::gl_version();
+                          ? "approved and drawn with " + drawn
+                          : "approved with OpenGL " + approved + "; drawn with " + drawn;
   }
   return result;
 }
@@ -357,11 +358,20 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
     scenarios.targets.push_back(!v.passed()             ? "#" + r.name
                                 : r.comparisons.empty() ? std::string()
                                                         : "#" + r.comparisons.front().id);
-    if (!v.passed() && failed <= kNamed)
-      causes += (causes.empty() ? "" : " ") + r.name + ": " + cause_text(r) + ".";
   }
-  if (failed > kNamed) causes += " And " + std::to_string(failed - kNamed) + " more failures.";
-  for (const std::string& line : equal_causes(results)) causes += " " + line + ".";
+  // The causes, each once with the names of all goldens that have it.
+  std::size_t named = 0;
+  std::set<std::string> told;
+  for (const GoldenResult& r : results) {
+    const std::string& group = r.verdict.group;
+    if (r.verdict.passed() || (!group.empty() && !told.insert(group).second)) continue;
+    if (++named > kNamed) continue;
+    std::string names = r.name;
+    for (const GoldenResult& other : results)
+      if (&other != &r && !group.empty() && other.verdict.group == group) names += ", " + other.name;
+    causes += (causes.empty() ? "" : " ") + names + ": " + cause_text(r) + ".";
+  }
+  if (named > kNamed) causes += " And " + render::counted(named - kNamed, "more cause", "more causes") + ".";
   report::Document doc(
       kTitle,
       "Runs against their approved goldens: events and counters must be equal; pictures may differ by the "

@@ -1,0 +1,156 @@
+"""Interference reports, one-line displays, and signatures for call tips."""
+
+import inspect
+import re
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import fcl
+from shapes import shifted
+
+
+@pytest.fixture
+def scene(cube):
+    """Return cubes, some in contact: pierced by a rod, overlapping by a quarter, face to face, and alone."""
+    rod = lrbscope.Body(cube.vertices * [0.5, 0.5, 3] + [0.2, 0.2, -1], cube.faces, name="rod <1>")
+    shell = lrbscope.Body(cube.vertices, cube.faces[:-1], name="shell")
+    out = lrbscope.Scene()
+    for body, x in ((cube, 0), (cube, 0.75), (rod, 0), (cube, 5), (cube, 6), (shell, 20.5), (cube, 20), (cube, 40)):
+        out.add(body, shifted(x, 0, 0))
+    return out
+
+
+def test_rows_are_the_clashes_of_the_scene(scene):
+    """Every pair in contact is a row, with kind, depth and volume of clash(), deepest first."""
+    report = scene.report(pictures=False)
+    assert len(report) == len(report.rows) == len(list(report))
+    expected = {tuple(k) for k in scene.collide().keys.tolist()}
+    assert {row.keys for row in report} == expected
+    assert (3, 4) in expected
+    for row in report:
+        a, b = (scene.body(k) for k in row.keys)
+        assert (row.a, row.b) == (a.name, b.name)
+        if not (a.is_solid and b.is_solid):
+            assert row.depth is None and row.volume is None and "not closed" in row.note
+            continue
+        clash = lrbscope.clash(a, b, scene.pose(row.keys[1]), scene.pose(row.keys[0]))
+        assert (row.kind, row.depth, row.volume) == (clash.kind, clash.depth, clash.volume)
+    depths = [row.depth[1] for row in report if row.depth]
+    assert depths == sorted(depths, reverse=True)
+    assert report.rows[-1].kind == "touching_face"
+
+
+def test_clearance_adds_pairs(scene):
+    """Solids that are near are reported only with a clearance."""
+    assert all(row.kind != "within_clearance" for row in scene.report(pictures=False))
+    near = [row for row in scene.report(pictures=False, clearance=4) if row.kind == "within_clearance"]
+    assert near and all(row.pairs == 0 for row in near)
+
+
+def test_the_page_shows_names_numbers_and_pictures(scene, tmp_path):
+    """The page escapes names, and has a picture of every row."""
+    report = scene.report(up="y", size=(320, 240))
+    report.save(tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert page.count("data:image/png;base64,") == len(report)
+    assert "rod &lt;1&gt;" in page and "rod <1>" not in page
+    assert re.search(r"<td>0\.25</td>", page)
+    assert "8 bodies: " in page and "1 touches" in page
+    assert report._repr_html_() in page
+    assert all(row.picture.shape == (240, 320, 3) for row in report)
+    assert "data:image" not in scene.report(pictures=False).html()
+
+
+def test_an_empty_scene_has_an_empty_report():
+    """No bodies: no rows, no table."""
+    report = lrbscope.Scene().report()
+    assert (len(report), repr(report)) == (0, "<lrbscope.Report of 0 bodies: 0 pairs in contact>")
+    assert "<table>" not in report.html()
+
+
+def test_every_object_is_displayed_in_one_line(cube, ball):
+    """The display of an object is one line that names its class, not an address."""
+    near = shifted(0.5, 0.25, 0.125)
+    poses = np.stack([near, shifted(9, 0, 0)])
+    scene = lrbscope.Scene()
+    scene.add(cube)
+    manager = lrbscope.CollisionManager()
+    manager.add_object("cube", cube)
+    manager.add_object("other", cube, near)
+    box = fcl.CollisionObject(fcl.Box(1, 2, 3), fcl.Transform(np.array([0.5, 0, 0])))
+    request, result = fcl.CollisionRequest(enable_contact=True), fcl.CollisionResult()
+    fcl.collide(box, fcl.CollisionObject(fcl.Sphere(1)), request, result)
+    crossing = lrbscope.collide(cube, cube, near)
+    objects = [
+        lrbscope.distance(cube, cube, poses),
+        lrbscope.first_contact(cube, cube, np.stack([poses, poses])),
+        lrbscope.clash(cube, cube, near),
+        lrbscope.explain_pair(cube, cube, crossing.pairs[0], near),
+        lrbscope.explain_walk(cube, cube, near),
+        lrbscope.CoherentQuery(cube, cube),
+        lrbscope.render(cube, size=(320, 240)),
+        lrbscope.trace(cube, cube, near),
+        scene,
+        scene.report(),
+        manager,
+        *manager.in_collision_internal(return_data=True)[1],
+        box,
+        box._geom,
+        box.getTransform(),
+        fcl.BVHModel(),
+        request,
+        result,
+        *result.contacts,
+        fcl.DistanceRequest(),
+        fcl.DistanceResult(),
+        fcl.ContinuousCollisionRequest(),
+        fcl.ContinuousCollisionResult(),
+        fcl.CollisionData(),
+        fcl.DistanceData(),
+        fcl.DynamicAABBTreeCollisionManager(),
+    ]
+    for each in objects:
+        shown = repr(each)
+        assert "\n" not in shown and len(shown) < 400, shown
+        assert type(each).__name__ in shown or "Explanation" in shown
+        assert " at 0x" not in shown
+
+
+def test_a_picture_is_displayed_by_its_size(cube):
+    """A picture is displayed by its size; its channels are arrays."""
+    picture = lrbscope.render(cube, size=(320, 240))
+    assert repr(picture) == "<lrbscope.Picture 320x240>"
+    assert repr(picture[:2, :2, 0]).startswith("Picture(")
+
+
+def test_up_and_view_from_are_axes_or_vectors(cube):
+    """A word stands for the direction of an axis."""
+    for word, vector in (("y", (0, 1, 0)), ("-x", (-1, 0, 0)), ("z", (0, 0, 1))):
+        of_word = lrbscope.render(cube, up=word, view_from=(1, 2, 3), size=(320, 240))
+        assert np.array_equal(of_word, lrbscope.render(cube, up=vector, view_from=(1, 2, 3), size=(320, 240)))
+    for bad in ("w", "xy", "-", "", "+x"):
+        with pytest.raises(lrbscope.InputError, match="up: expected three numbers, 'x'"):
+            lrbscope.render(cube, up=bad)
+
+
+def test_signatures_are_those_of_the_docs(cube):
+    """Functions, classes and methods have signatures, for call tips; bound methods without self."""
+    assert list(inspect.signature(lrbscope.collide).parameters)[:4] == ["a", "b", "poses_b", "pose_a"]
+    assert inspect.signature(lrbscope.collide).parameters["mode"].default == "all"
+    assert inspect.signature(lrbscope.collide).parameters["threads"].kind is inspect.Parameter.KEYWORD_ONLY
+    assert list(inspect.signature(lrbscope.Body).parameters)[:3] == ["vertices", "faces", "regions"]
+    assert list(inspect.signature(lrbscope.Body.load).parameters)[0] == "path"
+    assert list(inspect.signature(lrbscope.Scene().collide).parameters)[:2] == ["other", "pose"]
+    assert list(inspect.signature(lrbscope.Scene().report).parameters)[0] == "clearance"
+    assert not lrbscope.collide.__doc__.startswith("collide(")
+    # Every public function, and every method that has a text.
+    for name in lrbscope.__all__:
+        found = getattr(lrbscope, name)
+        if not inspect.isclass(found):
+            inspect.signature(found)
+            continue
+        for member, value in vars(found).items():
+            if callable(value) and not member.startswith("_") and (value.__doc__ or "").strip():
+                assert inspect.signature(value) is not None, (name, member)
