@@ -1,15 +1,15 @@
 /// Motions by rotation about a fixed axis at constant speed plus constant translation, piece by piece.
 ///
-/// Poses are computed in long double, with functions that round identically on every processor
-/// (core/random.hpp), and rounded to double once. motion_bounds.hpp bounds the error.
+/// Poses are computed with significands of 64 bits, with functions that are the same on every processor
+/// (core/extended.hpp), and rounded to double once. motion_bounds.hpp bounds the error.
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <Eigen/Geometry>
 
+#include "engine/core/extended.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/motion/motion_bounds.hpp"
 #include "engine/tree/kernel_setup.hpp"
@@ -19,16 +19,14 @@
 namespace lrb {
 namespace {
 
-using Real = long double;
-static_assert(std::numeric_limits<Real>::digits >= 64, "poses of motions need long doubles");
+using Real = Extended;
 using Matrix = Eigen::Matrix<Real, 3, 3>;
 using Vector = Eigen::Matrix<Real, 3, 1>;
 
 Matrix rotation_by(const Vector& turn) {
   const Real angle = turn.norm();
   if (!(angle > 0)) return Matrix::Identity();
-  // Rodrigues' formula.
-  return Eigen::AngleAxis<Real>(angle, turn / angle).toRotationMatrix();
+  return extended::rotation<Real>(turn / angle, angle);
 }
 
 /// Returns the rotation vector, of length at most pi, of a matrix that is nearly a rotation.
@@ -44,8 +42,9 @@ Eigen::Vector3d logarithm(const Matrix& m) {
   int first = 0;
   while (axis[first] == 0) ++first;
   if (q.w() < 0 || (q.w() == 0 && axis[first] < 0)) axis = -axis;
-  // atan2 is accurate at all angles; acos(w) is not near 0.
-  return (axis * (2 * std::atan2(sine, std::abs(q.w())) / sine)).cast<double>();
+  // The arc tangent is accurate at all angles; acos(w) is not near 0.
+  const Real w = q.w() < 0 ? Real(-q.w()) : q.w();
+  return (axis * Real(2 * extended::arc_tangent<Real>(sine, w) / sine)).cast<double>();
 }
 
 void check_rotation(const Eigen::Matrix3d& r, const char* which) {

@@ -9,11 +9,11 @@
 ///
 /// Rounding. Let N = |r| |first.r|, in Euclidean and Frobenius norms, X bound |x|, P = |r| |first.t|, Q = the
 /// larger of |from| and |to|, u = 2^-53, and S = N X + P + Q. Pose::apply() adds four terms, with a rounding
-/// error of at most 4 u S. Rounding the entries of the pose to double adds u S. In long double, u' = 2^-64,
+/// error of at most 4 u S. Rounding the entries of the pose to double adds u S. In extended.hpp, u' = 2^-64,
 /// the relative errors of s and of the direction of s turn are at most 4 u'; the relative error of the angle,
-/// which is at most |turn|, is 5 u'; and sines, cosines and the products that form the rotation add 24 u'.
-/// Together that is (60 + 10 |turn|) u' S < (2^-5 + 2^-7 |turn|) u S. The sum is below (5.1 + 2^-7 |turn|) u
-/// S <= 8 u S (1 + 2^-10 |turn|): kMotionRounding is 8 u.
+/// which is at most |turn|, is 6 u' (1 u' for large angles); and sines, cosines and the products that form
+/// the rotation add 24 u'. Together that is (60 + 12 |turn|) u' S < (2^-5 + 2^-7 |turn|) u S. The sum is
+/// below (5.1 + 2^-7 |turn|) u S <= 8 u S (1 + 2^-10 |turn|): kMotionRounding is 8 u.
 ///
 /// A velocity is computed in double with a dozen roundings of terms that are each at most V = (|turn| (N X +
 /// P) + |from| + |to|) / T; 4 kMotionRounding (1 + 2^-10 |turn|) V, that is 32 u, covers them and a product

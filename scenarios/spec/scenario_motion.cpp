@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "scenarios/spec/scenario.hpp"
+#include <lrbscope/core/random.hpp>
 
 namespace lrb::spec {
 namespace {
@@ -68,18 +69,15 @@ Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& 
 }
 
 std::vector<Pose> keyframe_poses(const std::vector<Motion::Keyframe>& keys) {
-  const auto rotation = [](const Motion::Keyframe& k) {
-    // All computations use long double, including slerp: see engine/include/lrbscope/core/random.hpp.
-    return Eigen::Quaternion<long double>(
-        Eigen::AngleAxis<long double>(k.degrees * kDegree, k.axis.normalized().cast<long double>()));
-  };
   std::vector<Pose> out = {turned(keys[0].axis, keys[0].degrees, keys[0].position)};
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const std::uint32_t span = keys[i].step - keys[i - 1].step;
     for (std::uint32_t s = 1; s <= span; ++s) {
       const double t = static_cast<double>(s) / span;
-      out.push_back({rotation(keys[i - 1]).slerp(t, rotation(keys[i])).toRotationMatrix().cast<double>(),
-                     keys[i - 1].position + t * (keys[i].position - keys[i - 1].position)});
+      const Motion::Keyframe &a = keys[i - 1], &b = keys[i];
+      out.push_back({deterministic::rotation_between(a.axis.normalized(), a.degrees * kDegree,
+                                                     b.axis.normalized(), b.degrees * kDegree, t),
+                     a.position + t * (b.position - a.position)});
     }
   }
   return out;

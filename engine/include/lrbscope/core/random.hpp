@@ -45,47 +45,30 @@ class Random {
 
 namespace lrb::deterministic {
 
-// Mathematical functions with the same result on every x86-64 processor.
+// Mathematical functions with the same result on every processor and with every compiler.
 //
-// glibc selects the code of sin, cos, exp and others for double by processor, with or without fused
-// multiply-add. The results occasionally differ in the last bit, which is enough to change a body and thus a
-// run. The functions for long double have the same code everywhere. Rounded to double, their results are
-// correctly rounded, except for about one in two thousand. Verified by running the goldens with
-// GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2.
+// Those of standard libraries differ in the last bit, between libraries and, if they select code with or
+// without fused multiply-add, between processors, which is enough to change a body and thus a run. These are
+// computed with significands of 64 bits (engine/core/extended.hpp) and rounded to double. The results are
+// correctly rounded, except for about one in two thousand. Arguments that are not finite result in NaN.
 
-inline double sin(double x) {
-  return static_cast<double>(std::sin(static_cast<long double>(x)));
-}
-inline double cos(double x) {
-  return static_cast<double>(std::cos(static_cast<long double>(x)));
-}
-inline double exp(double x) {
-  return static_cast<double>(std::exp(static_cast<long double>(x)));
-}
-inline double exp2(double x) {
-  return static_cast<double>(std::exp2(static_cast<long double>(x)));
-}
-inline double pow10(double x) {
-  return static_cast<double>(std::pow(10.0L, static_cast<long double>(x)));
-}
-inline double tan(double x) {
-  return static_cast<double>(std::tan(static_cast<long double>(x)));
-}
-inline double atan(double x) {
-  return static_cast<double>(std::atan(static_cast<long double>(x)));
-}
-inline double acos(double x) {
-  return static_cast<double>(std::acos(static_cast<long double>(x)));
-}
-inline double atan2(double y, double x) {
-  return static_cast<double>(std::atan2(static_cast<long double>(y), static_cast<long double>(x)));
-}
+double sin(double x);
+double cos(double x);
+double tan(double x);
+double atan(double x);
+double acos(double x);
+double atan2(double y, double x);
+double exp(double x);
+double exp2(double x);
+double pow10(double x);
 
 /// Returns the rotation about a unit vector by an angle in radians.
-inline Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle) {
-  using Turn = Eigen::AngleAxis<long double>;
-  return Turn(angle, axis.cast<long double>()).toRotationMatrix().cast<double>();
-}
+Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle);
+
+/// Returns the rotation at t in [0, 1] between two, each about a unit vector by an angle in radians, with a
+/// constant axis and angular velocity in between (slerp).
+Eigen::Matrix3d rotation_between(const Eigen::Vector3d& axis_0, double angle_0, const Eigen::Vector3d& axis_1,
+                                 double angle_1, double t);
 
 /// Returns the smallest rotation that maps one vector's direction to another's; neither may be 0.
 /// Equal to Eigen's FromTwoVectors() unless they are opposite, without the singular value decomposition that
