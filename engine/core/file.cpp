@@ -1,4 +1,4 @@
-// Atomic replacement of a file, by the rename idiom of POSIX.
+// Atomic replacement of a file, by renaming.
 // 1. Create a temporary file beside the target, on the same file system, and register it.
 // 2. Write to it through a buffer.
 // 3. commit(): close it and rename it over the target, which is atomic for readers.
@@ -13,11 +13,7 @@
 #include <mutex>
 #include <set>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <sys/vfs.h>
-#include <unistd.h>
-
+#include "engine/platform/platform.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
@@ -43,14 +39,6 @@ std::string escaped(std::string_view text, bool keep_high) {
   throw InputError(printable_name(path) + ": " + why);
 }
 
-/// Returns true if a FIFO has a name. Anonymous pipes, as created by <(...) and |, are filled by the process
-/// at the other end. Opening a named pipe blocks until a process writes to it.
-bool has_name(const char* fifo) {
-  constexpr long kPipeFileSystem = 0x50495045;  // PIPEFS_MAGIC
-  struct statfs where {};
-  return statfs(fifo, &where) != 0 || static_cast<long>(where.f_type) != kPipeFileSystem;
-}
-
 [[noreturn]] void too_large(const std::string& path, std::uint64_t most) {
   cannot_read(path, "expected at most " + std::to_string(most) +
                         " bytes for a file of this kind, found more; check that it is the right file");
@@ -68,7 +56,7 @@ std::string_view what_is_no_file(const std::string& path) {
     case Kind::block:
       return "a device";
     case Kind::fifo:
-      return has_name(path.c_str()) ? "a named pipe" : "";
+      return platform::has_name(path.c_str()) ? "a named pipe" : "";
     case Kind::socket:
       return "a socket";
     default:
@@ -125,8 +113,11 @@ namespace {
 constexpr std::size_t kBuffer = std::size_t{1} << 16;
 
 bool is_machines_fault(int reason) {
-  return reason == ENOSPC || reason == EDQUOT || reason == EIO || reason == EROFS || reason == EFBIG ||
-         reason == EMFILE || reason == ENFILE;
+#if defined(EDQUOT)
+  if (reason == EDQUOT) return true;
+#endif
+  return reason == ENOSPC || reason == EIO || reason == EROFS || reason == EFBIG || reason == EMFILE ||
+         reason == ENFILE;
 }
 
 /// Resolves symbolic links, so that the file is replaced and not the link.
@@ -139,7 +130,7 @@ std::string behind_links(const std::string& path) {
 /// Returns an unused name beside the target, on the same file system, unique among processes and threads.
 std::string temporary_name(const std::string& target) {
   static std::atomic<unsigned> counter{0};
-  return target + ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
+  return target + ".tmp-" + std::to_string(platform::process()) + "-" + std::to_string(counter++);
 }
 
 /// The existing temporary files. Never destroyed, because threads may outlive main().
@@ -154,13 +145,12 @@ Unfinished& unfinished() {
 }
 
 int create_temporary(const std::string& name) {
-  static constexpr mode_t kAll = 0666;  // minus the umask
   Unfinished& all = unfinished();
   // Register before creating: abandon_atomic_files() must not miss a file. Once it has the lock, none is
   // created.
   const std::lock_guard lock(all.mutex);
   const auto entry = all.files.insert(name).first;
-  const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kAll);
+  const int file = platform::create_file(name);
   // erase() may change errno, which the caller reports.
   const int reason = errno;
   if (file < 0) all.files.erase(entry);
@@ -171,12 +161,14 @@ int create_temporary(const std::string& name) {
 }  // namespace
 
 AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_links(path)) {
-  struct stat status {};
-  const bool exists = stat(target_.c_str(), &status) == 0;
-  if (exists && S_ISDIR(status.st_mode)) fail("write", EISDIR);
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::file_status status = fs::status(target_, ignored);
+  const bool exists = fs::exists(status);
+  if (fs::is_directory(status)) fail("write", EISDIR);
   // Pipes and devices cannot be replaced: write to them directly.
-  if (exists && !S_ISREG(status.st_mode)) {
-    file_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  if (exists && !fs::is_regular_file(status)) {
+    file_ = platform::open_to_write(path_);
   } else {
     temporary_ = temporary_name(target_);
     file_ = create_temporary(temporary_);
@@ -187,15 +179,15 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_li
     fail("create", reason);
   }
   if (exists && !temporary_.empty())
-    static_cast<void>(fchmod(file_, status.st_mode & 07777));  // keep the mode if permitted
+    fs::permissions(temporary_, status.permissions(), ignored);  // if permitted
 }
 
 AtomicFile::~AtomicFile() {
-  if (file_ >= 0) close(file_);
+  if (file_ >= 0) platform::close(file_);
   if (temporary_.empty()) return;
   // Not committed: the target is unchanged.
   const std::lock_guard lock(unfinished().mutex);
-  unlink(temporary_.c_str());
+  platform::remove(temporary_.c_str());
   unfinished().files.erase(temporary_);
 }
 
@@ -207,7 +199,7 @@ void AtomicFile::write(std::string_view bytes) {
 void AtomicFile::flush() {
   const char* at = buffer_.data();
   for (std::size_t left = buffer_.size(); left > 0;) {
-    const ssize_t written = ::write(file_, at, left);
+    const std::ptrdiff_t written = platform::write(file_, at, left);
     // Interrupted by a signal, or a partial write: continue with the rest.
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail("write", errno);
@@ -223,12 +215,14 @@ void AtomicFile::commit() {
   // errors.
   const int file = file_;
   file_ = -1;
-  if (close(file) != 0) fail("write", errno);
+  if (platform::close(file) != 0) fail("write", errno);
   if (temporary_.empty()) return;
   {
     // Rename under the lock, so that abandon_atomic_files() sees the file either unfinished or in place.
     const std::lock_guard lock(unfinished().mutex);
-    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("replace", errno);
+    std::error_code error;
+    std::filesystem::rename(temporary_, target_, error);
+    if (error) fail("replace", error.default_error_condition().value());
     unfinished().files.erase(temporary_);
   }
   temporary_.clear();
@@ -245,7 +239,7 @@ void abandon_atomic_files() {
   Unfinished& all = unfinished();
   // Never unlocked: no thread can create or commit a file from here on.
   all.mutex.lock();
-  for (const std::string& file : all.files) unlink(file.c_str());
+  for (const std::string& file : all.files) platform::remove(file.c_str());
 }
 
 void write_file(const std::string& path, std::string_view bytes) {

@@ -41,7 +41,20 @@ using Doubles = Double4;
 using DoubleLanes = std::int64_t __attribute__((vector_size(32)));
 
 inline DoubleLanes greater(Doubles x, Doubles y) {
+#if defined(__AVX__)
   return reinterpret_cast<DoubleLanes>(x > y);
+#else
+  // As for floats: in halves.
+  using Double2 = double __attribute__((vector_size(16)));
+  using Int2 = std::int64_t __attribute__((vector_size(16)));
+  Double2 a[2], b[2];
+  __builtin_memcpy(a, &x, sizeof x);
+  __builtin_memcpy(b, &y, sizeof y);
+  const Int2 half[2] = {a[0] > b[0], a[1] > b[1]};
+  DoubleLanes lanes;
+  __builtin_memcpy(&lanes, half, sizeof lanes);
+  return lanes;
+#endif
 }
 
 /// Returns a mask whose bit k is set if lane k is true.
@@ -89,6 +102,16 @@ inline Doubles abs8(Doubles x) {
 inline Doubles root8(Doubles x) {
 #if defined(__AVX__)
   return reinterpret_cast<Doubles>(_mm256_sqrt_pd(reinterpret_cast<__m256d>(x)));
+#elif defined(__SSE2__)
+  auto* half = reinterpret_cast<__m128d*>(&x);
+  half[0] = _mm_sqrt_pd(half[0]);
+  half[1] = _mm_sqrt_pd(half[1]);
+  return x;
+#elif defined(__aarch64__)
+  auto* half = reinterpret_cast<float64x2_t*>(&x);
+  half[0] = vsqrtq_f64(half[0]);
+  half[1] = vsqrtq_f64(half[1]);
+  return x;
 #else
   for (int k = 0; k < kDoubles; ++k) x[k] = __builtin_sqrt(x[k]);
   return x;

@@ -44,7 +44,7 @@ inline void two_difference(double a, double b, double& x, double& y) {
 /// Sets x = fl(a * b) and y such that x + y = a * b exactly.
 inline void two_product(double a, double b, double& x, double& y) {
   x = a * b;
-#ifdef __FMA__
+#if defined(__FMA__) || defined(__aarch64__)
   y = std::fma(a, b, -x);
 #else
   // Dekker: split both into halves of at most 26 bits, whose products are exact.

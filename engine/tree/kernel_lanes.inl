@@ -6,6 +6,8 @@
 
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #elif defined(__wasm_simd128__)
 #include <wasm_simd128.h>
 #endif
@@ -64,7 +66,18 @@ using Lanes = Int8;
 constexpr Lanes kAllLanes = {-1, -1, -1, -1, -1, -1, -1, -1}, kNoLanes = {};
 
 inline Lanes greater(Float8 x, Float8 y) {
+#if defined(__AVX__)
   return x > y;
+#else
+  // GCC compares vectors that are wider than the registers number by number.
+  Float4 a[2], b[2];
+  __builtin_memcpy(a, &x, sizeof x);
+  __builtin_memcpy(b, &y, sizeof y);
+  const Int4 half[2] = {a[0] > b[0], a[1] > b[1]};
+  Lanes lanes;
+  __builtin_memcpy(&lanes, half, sizeof lanes);
+  return lanes;
+#endif
 }
 
 /// Returns a mask whose bit k is set if lane k is true.
@@ -75,6 +88,12 @@ inline std::uint32_t bits(Lanes lanes) {
 #elif defined(__SSE2__)
   const auto* half = reinterpret_cast<const __m128*>(&lanes);
   return static_cast<std::uint32_t>(_mm_movemask_ps(half[0]) | _mm_movemask_ps(half[1]) << 4);
+#elif defined(__aarch64__)
+  // A bit of each lane; the sum of four lanes is a single instruction.
+  constexpr Int8 kBit = {1, 2, 4, 8, 16, 32, 64, 128};
+  const Int8 bit = lanes & kBit;
+  const auto* half = reinterpret_cast<const int32x4_t*>(&bit);
+  return static_cast<std::uint32_t>(vaddvq_s32(half[0] | half[1]));
 #elif defined(__wasm_simd128__)
   const auto* half = reinterpret_cast<const v128_t*>(&lanes);
   return static_cast<std::uint32_t>(wasm_i32x4_bitmask(half[0]) | wasm_i32x4_bitmask(half[1]) << 4);
@@ -120,16 +139,31 @@ inline Float8 larger(Float8 x, Float8 y) {
 }
 
 inline float largest_of(Float8 x) {
-  // Horizontal maximum: exchange halves, then pairs, then neighbours. Every lane ends with the maximum.
-  x = larger(x, __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3));
-  x = larger(x, __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5));
-  x = larger(x, __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6));
-  return x[0];
+  const auto larger4 = [](Float4 a, Float4 b) {
+    const Int4 which = a > b;
+    return reinterpret_cast<Float4>((reinterpret_cast<Int4>(a) & which) |
+                                    (reinterpret_cast<Int4>(b) & ~which));
+  };
+  // Horizontal maximum: of the halves, then of pairs, then of neighbours.
+  Float4 m = larger4(__builtin_shufflevector(x, x, 0, 1, 2, 3), __builtin_shufflevector(x, x, 4, 5, 6, 7));
+  m = larger4(m, __builtin_shufflevector(m, m, 2, 3, 0, 1));
+  m = larger4(m, __builtin_shufflevector(m, m, 1, 0, 3, 2));
+  return m[0];
 }
 
 inline Float8 root8(Float8 x) {
 #if defined(__AVX__)
   return reinterpret_cast<Float8>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
+#elif defined(__SSE2__)
+  auto* half = reinterpret_cast<__m128*>(&x);
+  half[0] = _mm_sqrt_ps(half[0]);
+  half[1] = _mm_sqrt_ps(half[1]);
+  return x;
+#elif defined(__aarch64__)
+  auto* half = reinterpret_cast<float32x4_t*>(&x);
+  half[0] = vsqrtq_f32(half[0]);
+  half[1] = vsqrtq_f32(half[1]);
+  return x;
 #else
   for (int k = 0; k < 8; ++k) x[k] = __builtin_sqrtf(x[k]);
   return x;
@@ -149,6 +183,15 @@ inline Int8 bytes_to_int(const std::uint8_t* q) {
   } u;
   u.half[0] = _mm_unpacklo_epi16(words, zero);
   u.half[1] = _mm_unpackhi_epi16(words, zero);
+  return u.all;
+#elif defined(__aarch64__)
+  const uint16x8_t words = vmovl_u8(vld1_u8(q));
+  union {
+    uint32x4_t half[2];
+    Int8 all;
+  } u;
+  u.half[0] = vmovl_u16(vget_low_u16(words));
+  u.half[1] = vmovl_high_u16(words);
   return u.all;
 #elif defined(__wasm_simd128__)
   const v128_t words = wasm_u16x8_load8x8(q);

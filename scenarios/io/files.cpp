@@ -1,14 +1,10 @@
 #include "scenarios/io/files.hpp"
 
-#include <cerrno>
 #include <filesystem>
 #include <string>
 #include <system_error>
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
+#include "engine/platform/platform.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
@@ -80,18 +76,15 @@ void mark_run(const std::string& folder, const std::string& scenario_file) {
     write_text(folder + "/" + kMadeFrom, fs::canonical(scenario_file, error).string() + "\n");
 }
 
-FolderLock::FolderLock(const std::string& path)
-    : folder_(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (folder_ < 0) return;  // the folder is writable but not readable: no descriptor to lock
-  if (flock(folder_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  close(folder_);
-  throw EnvironmentError(
-      printable_name(path) +
-      ": another lrbscope process is writing to this folder; wait for it, or choose another folder with -o");
+FolderLock::FolderLock(const std::string& path) : folder_(platform::lock_folder(path)) {
+  if (folder_ == platform::kOthersLock)
+    throw EnvironmentError(
+        printable_name(path) +
+        ": another lrbscope process is writing to this folder; wait for it, or choose another folder with -o");
 }
 
 FolderLock::~FolderLock() {
-  if (folder_ >= 0) close(folder_);
+  if (folder_ >= 0) platform::close(folder_);
 }
 
 }  // namespace lrb::io

@@ -1,0 +1,50 @@
+#if defined(_WIN32)
+
+#include <fcntl.h>
+#include <io.h>
+#include <sys/stat.h>
+#define WIN32_LEAN_AND_MEAN
+#define NOMINMAX
+#include <windows.h>
+
+#include "engine/platform/platform.hpp"
+
+namespace lrb::platform {
+
+int create_file(const std::string& path) {
+  return _open(path.c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT, _S_IREAD | _S_IWRITE);
+}
+int open_to_write(const std::string& path) {
+  return _open(path.c_str(), _O_WRONLY | _O_BINARY | _O_NOINHERIT);
+}
+std::ptrdiff_t write(int file, const char* bytes, std::size_t size) {
+  constexpr std::size_t kMost = std::size_t{1} << 30;  // the function takes an unsigned int
+  return _write(file, bytes, static_cast<unsigned>(size < kMost ? size : kMost));
+}
+int close(int file) {
+  return _close(file);
+}
+void remove(const char* path) {
+  DeleteFileA(path);
+}
+
+std::uint64_t process() {
+  return GetCurrentProcessId();
+}
+
+bool has_name(const char*) {
+  return true;
+}
+
+int lock_folder(const std::string& folder) {
+  // A file that no other process can open, and that is removed when it is closed.
+  const HANDLE file = CreateFileA((folder + "/.lrbscope-lock").c_str(), GENERIC_WRITE, 0, nullptr,
+                                  OPEN_ALWAYS, FILE_ATTRIBUTE_HIDDEN | FILE_FLAG_DELETE_ON_CLOSE, nullptr);
+  if (file == INVALID_HANDLE_VALUE)
+    return GetLastError() == ERROR_SHARING_VIOLATION ? kOthersLock : kNotLockable;
+  return _open_osfhandle(reinterpret_cast<std::intptr_t>(file), 0);
+}
+
+}  // namespace lrb::platform
+
+#endif
