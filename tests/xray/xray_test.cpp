@@ -92,6 +92,12 @@ TEST_CASE("xray: a page with both runs, or one error line") {
     CHECK(outcome.code == 0);
     CHECK(outcome.out == "out/index.html\n");
     CHECK(slurp(folder / "out/index.html").find("Box tests by face, step ") != std::string::npos);
+    // The page of an engine without wrappers has no figures of them; lrbscope's own has.
+    for (const char* word : {"<td>LRB-rep: regions</td>", "<dt>Without wrapper", ">refinements</th>"}) {
+      CAPTURE(word);
+      CHECK(slurp(folder / ("out/" + engine + "/index.html")).find(word) == std::string::npos);
+    }
+    CHECK(slurp(folder / "out/ours/index.html").find("<td>LRB-rep: regions</td>") != std::string::npos);
     CHECK(render::read_png(folder / "out/heat.png").image.width() > 1500);
     const auto theirs = nlohmann::json::parse(slurp(folder / ("out/" + engine + "/summary.json")));
     const auto ours = nlohmann::json::parse(slurp(folder / "out/ours/summary.json"));
