@@ -20,10 +20,10 @@ extended::SineCosine<Extended> sine_cosine(double x) {
 /// Calls power(x) unless the result is 0 or infinite.
 template <class Power>
 double power_in_range(double x, double log2_base, Power&& power) {
-  constexpr double kMost = 1100;
+  constexpr double kMax = 1100;
   const double exponent = x * log2_base;
-  if (!(exponent < kMost)) return exponent + std::numeric_limits<double>::infinity();  // NaN: NaN
-  return exponent > -kMost ? static_cast<double>(power(Extended(x))) : 0;
+  if (!(exponent < kMax)) return exponent + std::numeric_limits<double>::infinity();  // NaN: NaN
+  return exponent > -kMax ? static_cast<double>(power(Extended(x))) : 0;
 }
 
 Quaternion quaternion(const Eigen::Vector3d& axis, double angle) {

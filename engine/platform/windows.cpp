@@ -18,8 +18,8 @@ int open_to_write(const std::string& path) {
   return _open(path.c_str(), _O_WRONLY | _O_BINARY | _O_NOINHERIT);
 }
 std::ptrdiff_t write(int file, const char* bytes, std::size_t size) {
-  constexpr std::size_t kMost = std::size_t{1} << 30;  // the function takes an unsigned int
-  return _write(file, bytes, static_cast<unsigned>(size < kMost ? size : kMost));
+  constexpr std::size_t kMax = std::size_t{1} << 30;  // the function takes an unsigned int
+  return _write(file, bytes, static_cast<unsigned>(size < kMax ? size : kMax));
 }
 int close(int file) {
   return _close(file);
