@@ -187,7 +187,6 @@ TEST_CASE("invalid input: one line on stderr, exit code 2, no output, no files")
       {"query", "a.obj", "missing.obj", "--poses", "good.txt"},
       {"query", "a.obj", "empty.obj", "--poses", "good.txt"},
       {"query", "a.obj", "flat.obj", "--poses", "good.txt"},
-      {"query", "a.obj", "a.obj"},
       {"query", "a.obj", "a.obj", "--poses", "good.txt", "--mode", "some"},
       {"query", "a.obj", "a.obj", "--poses", "good.txt", "--repeat", "0"},
       {"build", "broken.obj", "-o", "x.lrb"},
