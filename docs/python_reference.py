@@ -199,7 +199,7 @@ for module, title in MODULES.items():
     nodes = parsed(f"{module.partition('.')[2]}.py" if "." in module else "__init__.py")
     names = exported(nodes)
     if module == "lrbscope":
-        nodes = core + parsed("_picture.py") + parsed("collision.py")
+        nodes = core + parsed("_picture.py") + parsed("collision.py") + parsed("report.py")
     found = {}
     for node in nodes:
         if isinstance(node, (ast.ClassDef, ast.FunctionDef)):

@@ -74,7 +74,7 @@ offers "query" lrbscope --quiet que
 offers "approve" lrbscope golden app
 offers "--poses" lrbscope query --po
 offers "--quiet" lrbscope query --qui
-offers "--picture-tolerance" lrbscope golden test --pic
+offers "--picture-tolerance" lrbscope golden test --picture-t
 offers "all any first" lrbscope query --mode ''
 offers "any" lrbscope query a.obj b.obj --mode an
 offers "any" lrbscope query --mode = an
