@@ -40,26 +40,6 @@ struct LiveOptions {
   bool ends_with_program = false;
 };
 
-/// A new folder that is removed in the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code error;
-    std::string pattern = (fs::temp_directory_path(error) / "lrbscope-live-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw EnvironmentError(pattern + ": cannot create a folder: " + std::strerror(errno) + "; set TMPDIR");
-    path = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  fs::path path;
-};
-
 /// The reading end of a named pipe.
 class NamedPipe {
  public:
@@ -378,7 +358,7 @@ class Live {
 
   const LiveOptions& options_;
   const Globals& globals_;
-  TemporaryFolder folder_;
+  io::TemporaryFolder folder_;
   StopSignal stop_;
   NamedPipe pipe_;
   LoopbackServer server_;

@@ -553,27 +553,6 @@ std::vector<std::string> approve_variant(Approval approval, const GoldenVerdict&
   return std::move(approval.done);
 }
 
-/// A new folder for files that are needed for a moment.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "lrbscope-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw EnvironmentError(pattern + ": cannot be created; set TMPDIR to a folder that can be written");
-    path_ = pattern;
-  }
-  ~ScratchFolder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 /// Copies the files of one golden that differ from the approved ones. Returns one line for each.
 std::vector<std::string> approve_files(const std::string& goldens, const ApprovableGolden& from, bool dry) {
   const std::string folder = (fs::path(goldens) / from.name).string();
@@ -644,19 +623,20 @@ std::vector<std::string> approve_from(const std::string& goldens, const std::str
                      ": has no failures of goldens; expected the output folder of lrbscope "
                      "golden test, or a ZIP archive of it");
   // All of them must be sound before the first one is approved.
-  const ScratchFolder scratch;
+  const io::TemporaryFolder temporary;
+  const std::string scratch = temporary.path.string();
   for (ApprovableGolden& g : all) {
-    make_folder(scratch.path() + "/" + g.name);
-    for (const io::ZipEntry& e : g.files) write_file(scratch.path() + "/" + g.name + "/" + e.name, e.bytes);
+    make_folder(scratch + "/" + g.name);
+    for (const io::ZipEntry& e : g.files) write_file(scratch + "/" + g.name + "/" + e.name, e.bytes);
     try {
-      g.golden = load_golden(scratch.path(), g.name);
+      g.golden = load_golden(scratch, g.name);
       for (const auto& variants : g.golden.frames)
         for (const GoldenImage& image : variants)
           if (!image.damage.empty()) throw InputError(image.damage);
     } catch (const InputError& e) {
       std::string what = e.what();
-      if (const std::size_t at = what.find(scratch.path() + "/"); at != std::string::npos)
-        what.replace(at, scratch.path().size() + 1, printable_name(from) + ": ");
+      if (const std::size_t at = what.find(scratch + "/"); at != std::string::npos)
+        what.replace(at, scratch.size() + 1, printable_name(from) + ": ");
       throw InputError(what + "; nothing was approved");
     }
   }

@@ -1,5 +1,8 @@
 #include "scenarios/io/files.hpp"
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -85,6 +88,19 @@ FolderLock::FolderLock(const std::string& path) : folder_(platform::lock_folder(
 
 FolderLock::~FolderLock() {
   if (folder_ >= 0) platform::close(folder_);
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::error_code error;
+  std::string pattern = (fs::temp_directory_path(error) / "lrbscope-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr)
+    throw EnvironmentError(pattern + ": cannot create a folder: " + std::strerror(errno) + "; set TMPDIR");
+  path = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
 }
 
 }  // namespace lrb::io

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <span>
 #include <string>
@@ -57,6 +58,17 @@ class FolderLock {
 
  private:
   int folder_;
+};
+
+/// A new folder for temporary files, which is removed with this object. Throws EnvironmentError if it cannot
+/// be created.
+struct TemporaryFolder {
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::filesystem::path path;
 };
 
 }  // namespace lrb::io

@@ -88,7 +88,8 @@ Prices PriceBook::add(const capture::Query& query, const QueryWalk* walk, std::s
   }
   const std::vector<TrianglePair> found = found_early(*walk, exact);
   const bool one_is_enough = !found.empty();
-  price_visits(*walk, one_is_enough ? std::span<const TrianglePair>(found) : exact, one_is_enough, out);
+  price_visits(*walk, one_is_enough ? std::span<const TrianglePair>(found) : exact, one_is_enough,
+               std::nullopt, out);
   price_leaves(*walk, out);
   for (std::size_t i = 0; i < query.events.size(); ++i) {
     const Event& e = query.events[i];
@@ -146,45 +147,17 @@ void PriceBook::price_distance(const QueryWalk& walk, std::span<const TrianglePa
   for (std::size_t i = 0; i < closest.size() && !goal; ++i)
     if (walk.deepest_above(closest[i]) != QueryWalk::kNone) goal = closest[i];
   // Step 3: the visits.
-  const bool touching = distance == 0;
-  price_visits(walk, goal ? std::span<const TrianglePair>(&*goal, 1) : std::span<const TrianglePair>(),
-               touching && goal.has_value(), out);
-  if (!goal || (!split && !touching)) return;
-  const std::uint64_t wasted = std::exchange(out.unsplit, 0);
-  out.order = touching ? wasted : saved_by_distance(walk, *goal, distance);
-  out.volumes = wasted - out.order;
-}
-
-std::uint64_t PriceBook::saved_by_distance(const QueryWalk& walk, const TrianglePair& goal, double distance) {
-  constexpr std::uint32_t kNone = QueryWalk::kNone;
-  constexpr double kRounding = 1e-9;  // volumes this close to the distance count as no closer
-  const std::vector<Event>& events = walk.query().events;
-  const Volumes &a = bodies_.volumes(walk.trees()[0]), &b = bodies_.volumes(walk.trees()[1]);
-  std::vector<char> needed(events.size(), 0);
-  for (std::uint32_t i = walk.deepest_above(goal); i != kNone; i = walk.parent(i)) needed[i] = 1;
-  // `ends`: at this visit, or above it, the volumes are no closer than the distance.
-  std::vector<char> attached(events.size(), 0), ends(events.size(), 0);
-  std::uint64_t saved = 0;
-  for (const std::uint32_t i : walk.from_root()) {
-    const std::uint32_t up = walk.parent(i);
-    attached[i] = up == kNone ? walk.is_start(i) : attached[up];
-    if (!attached[i]) continue;
-    const bool repeated = walk.first_visit(i) != i;
-    if (needed[i] && !repeated) continue;
-    const bool below_needed = up == kNone || needed[up];
-    const bool ended_above = !below_needed && ends[up];
-    ends[i] = ended_above || gap(a, events[i].a, walk.query().poses[0], b, events[i].b,
-                                 walk.query().poses[1]) >= distance * (1 - kRounding);
-    if (below_needed && !repeated) continue;  // proof
-    // A visit of wide nodes follows a comparison of their own volumes.
-    saved += repeated || ended_above || (walk.wide() && ends[i]);
-  }
-  return saved;
+  if (!goal) return price_visits(walk, {}, false, std::nullopt, out);
+  const bool touching = distance == 0, with_distance = split && !touching;
+  price_visits(walk, {&*goal, 1}, touching, with_distance ? std::optional(distance) : std::nullopt, out);
+  if (touching) out.order = std::exchange(out.unsplit, 0);
+  if (with_distance) out.volumes = std::exchange(out.unsplit, 0);
 }
 
 void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair> goals, bool one_is_enough,
-                             Prices& out) {
+                             std::optional<double> distance, Prices& out) {
   constexpr std::uint32_t kNone = QueryWalk::kNone;
+  constexpr double kRounding = 1e-9;  // volumes this close to the distance count as no closer
   const std::vector<Event>& events = walk.query().events;
   // Needed: the visits above a pair of triangles, from the deepest upward until one that is marked already.
   std::vector<char> needed(events.size(), 0);
@@ -195,6 +168,8 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
   std::vector<std::uint32_t> owner(events.size(), kNone);  // the pair of proof at or above a visit
   std::vector<std::uint32_t> depth(events.size(), 0);
   std::vector<char> attached(events.size(), 0), wasted(events.size(), 0);
+  // With a distance: at this visit, or above it, the volumes are no closer.
+  std::vector<char> ends(distance ? events.size() : 0, 0);
   std::uint64_t known = 0;
   for (const std::uint32_t i : walk.from_root()) {
     const Event& e = events[i];
@@ -213,13 +188,20 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     }
     const bool below_needed = up == kNone || needed[up];
     owner[i] = below_needed ? first : owner[up];
+    const bool ended_above = distance && !below_needed && ends[up];
+    if (distance)
+      ends[i] = ended_above || gap(bodies_.volumes(walk.trees()[0]), e.a, walk.query().poses[0],
+                                   bodies_.volumes(walk.trees()[1]), e.b,
+                                   walk.query().poses[1]) >= *distance * (1 - kRounding);
     if (below_needed && !repeated && !one_is_enough) {
       ++out.proof;
       ++by_depth_[depth[i]].proof;
       continue;
     }
     wasted[i] = 1;
-    ++out.unsplit;
+    // A visit of wide nodes follows a comparison of their own volumes.
+    const bool by_order = distance && (repeated || ended_above || (walk.wide() && ends[i]));
+    ++(by_order ? out.order : out.unsplit);
     ++by_depth_[depth[i]].wasted;
     const std::uint32_t nodes[] = {e.a, e.b};
     for (std::size_t side = 0; side < 2; ++side) {

@@ -34,6 +34,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -98,12 +99,11 @@ class PriceBook {
   std::vector<double> waste_by_triangle(std::uint32_t tree);
 
  private:
-  /// `goals`: the pairs of triangles that the descent has to come to.
+  /// `goals`: the pairs of triangles that the descent has to come to. Waste is unsplit or, if it would be
+  /// saved by an engine that knows the `distance` from the start, of order.
   void price_visits(const QueryWalk& walk, std::span<const TrianglePair> goals, bool one_is_enough,
-                    Prices& out);
+                    std::optional<double> distance, Prices& out);
   void price_distance(const QueryWalk& walk, std::span<const TrianglePair> exact, bool split, Prices& out);
-  /// Returns the wasted visits of a query of distance that would be saved if the distance were known.
-  std::uint64_t saved_by_distance(const QueryWalk& walk, const TrianglePair& goal, double distance);
   void price_leaves(const QueryWalk& walk, Prices& out);
 
   CapturedBodies& bodies_;
