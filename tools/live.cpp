@@ -22,6 +22,7 @@
 #include "tools/import.hpp"
 #include "tools/loopback_server.hpp"
 #include "tools/terminal.hpp"
+#include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
