@@ -156,7 +156,7 @@ class Matrix:
         """Saves a kind's body in other forms; returns its files by door."""
         name = kind["name"]
         files = {ending: f"{name}.{ending}" for ending in kind["files"]}
-        codes = {True: (0,), False: (2,), None: (0, 2)}[kind["builds"]]
+        codes = (0,) if kind["builds"] else (2,)
         build = ["build", f"{name}.obj", "-o", f"{name}.levels.lrb", "--json"]
         self.run(build, lambda lines: expect(lines[0]["valid"], "invalid"), codes)
         save = [self.options.matrix_bodies, "--save", f"{name}.obj", f"{name}.lrb"]

@@ -89,7 +89,7 @@ void write_matrix(const std::filesystem::path& folder, int noisy) {
     kinds.push_back({{"name", k.name},
                      {"dim", k.mesh.dim},
                      {"solid", k.solid},
-                     {"builds", k.builds ? Json(*k.builds) : Json()},
+                     {"builds", k.builds},
                      {"simple", k.simple},
                      {"files", {"obj", k.format}}});
   }

@@ -313,8 +313,7 @@ void check_build(Report& report, const Kind& kind) {
   report.doing("check");
   CheckedMesh mesh = check(kind.mesh);
   mesh.find_self_intersections();
-  if (kind.builds && mesh.report().when_turned().buildable() != *kind.builds)
-    report.wrong("buildable, or not");
+  if (mesh.report().when_turned().buildable() != kind.builds) report.wrong("buildable, or not");
   if (mesh.report().bounds_solid != kind.solid) report.wrong("a solid, or none");
   if (kind.simple && mesh.report()[MeshFault::self_intersection].count > 0) report.wrong("intersects itself");
   report.doing("validate");
@@ -326,9 +325,9 @@ void check_build(Report& report, const Kind& kind) {
   try {
     mesh.turn_outward();
     build_lrb(mesh);
-    if (kind.builds && !*kind.builds) report.wrong("is not refused");
+    if (!kind.builds) report.wrong("is not refused");
   } catch (const InputError& e) {
-    if (kind.builds && *kind.builds) report.wrong(e.what());
+    if (kind.builds) report.wrong(e.what());
   }
 }
 
