@@ -83,7 +83,7 @@ void reject_folder_of_run(const std::string& folder) {
   for (const char* file : {"/trace.json", "/trace.json.gz"})
     if (std::filesystem::exists(folder + file, error))
       throw InputError(printable_name(folder) +
-                       ": contains a run, whose page would be overwritten; choose another folder with -o");
+                       ": contains a run, whose page would be overwritten; choose another folder");
 }
 
 ColourBy common_colours(const Runs& runs) {

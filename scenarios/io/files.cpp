@@ -38,7 +38,7 @@ void reject_links_in(const fs::path& folder) {
     if (fs::is_symlink(entry->symlink_status()) && is_written(entry->path().filename()))
       throw EnvironmentError(printable_name(entry->path().string()) +
                              ": expected a file of the run, found a symbolic link, which could lead out of "
-                             "the folder; remove it, or choose another folder with -o");
+                             "the folder; remove it, or choose another folder");
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ void reject_run_of_another(const std::string& folder, const std::string& scenari
   if (!other.empty() && other.back() == '\n') other.pop_back();
   if (fs::is_regular_file(other, error) && !fs::equivalent(other, scenario_file, error))
     throw InputError(printable_name(folder) + ": contains the run of another scenario of this name, " +
-                     printable_name(other) + "; rename one of them, or choose another folder with -o");
+                     printable_name(other) + "; rename one of them, or choose another folder");
 }
 
 void mark_run(const std::string& folder, const std::string& scenario_file) {
@@ -83,7 +83,7 @@ FolderLock::FolderLock(const std::string& path) : folder_(platform::lock_folder(
   if (folder_ == platform::kOthersLock)
     throw EnvironmentError(
         printable_name(path) +
-        ": another lrbscope process is writing to this folder; wait for it, or choose another folder with -o");
+        ": another lrbscope process is writing to this folder; wait for it, or choose another folder");
 }
 
 FolderLock::~FolderLock() {
