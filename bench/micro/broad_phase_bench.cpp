@@ -95,7 +95,7 @@ struct Incremental {
   SweepAndPrune sweep;
 };
 
-BodyPair ordered(std::uint32_t i, std::uint32_t j) {
+[[maybe_unused]] BodyPair ordered(std::uint32_t i, std::uint32_t j) {
   return {std::min(i, j), std::max(i, j)};
 }
 
