@@ -78,7 +78,8 @@ with_scripts "$work/tree/index.html" drive_tree.js >"$work/page.html"
 drive 1400 1000 page.html "${webgl[@]}"
 # Answers about one body: points beside a rock, and two copies of it that cross.
 awk 'BEGIN { srand(1); for (i = 0; i < 40; i++) print 3 * rand() - 1.5, 3 * rand() - 1.5, 3 * rand() - 1.5 }' >"$work/points.txt"
-"$lrbscope" --quiet export "$work/out/a.lrb" -o "$work/one.obj" >/dev/null
+"$lrbscope" --quiet run "$here/near.json" --frames none -o "$work/rock" >/dev/null
+"$lrbscope" --quiet export "$work/rock/a.lrb" -o "$work/one.obj" >/dev/null
 awk '$1 == "v" { n++; x[n] = $2; y[n] = $3; z[n] = $4 } $1 == "f" { m++; f[m] = $0 }
   END { for (c = 0; c < 2; c++) for (i = 1; i <= n; i++) print "v", x[i] + 0.7 * c, y[i], z[i]
     for (c = 0; c < 2; c++) for (i = 1; i <= m; i++) { k = split(f[i], w); printf "f"; for (j = 2; j <= k; j++) printf " %d", w[j] + n * c; print "" } }' \
