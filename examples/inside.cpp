@@ -15,7 +15,7 @@ int main(int argc, char** argv) try {
   options.regions = false;  // none are needed
   const lrb::Body body = lrb::Body::load(argv[1], options).value();
   const lrb::SelfIntersections found = lrb::self_intersections(body.rep());
-  std::vector<double> length(found.curves);  // of each connected curve
+  std::vector<double> length(found.curves);  // total length of each curve
   for (const lrb::SelfIntersection& pair : found.pairs)
     for (std::uint32_t i = pair.first_segment; i < pair.first_segment + pair.segments; ++i)
       length[pair.curve] += (found.segments[i][1] - found.segments[i][0]).norm();

@@ -169,7 +169,7 @@ render::Look sheet_look(const InspectOptions& o, int width, int height) {
 /// Prints a JSON line for each pair of faces that intersect.
 int list_self_intersections(const InspectOptions& o, const Globals& globals) {
   const render::Look look = sheet_look(o, run::kAnswerWidth, run::kAnswerHeight);
-  if (!o.page.empty()) compare::reject_folder_of_run(o.page);
+  if (!o.page.empty()) compare::reject_folder_of_run(o.page, "--page");
   std::vector<std::string> notes;
   SelfIntersections found;
   std::optional<LrbRep> body;  // to be drawn

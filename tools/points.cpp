@@ -42,7 +42,7 @@ std::string line_of(std::size_t point, const PointDistance& d) {
 
 int run_points(const PointsOptions& o, const Globals& globals) {
   const render::Look look = look_of(o.draw);
-  if (!o.page.empty()) compare::reject_folder_of_run(o.page);
+  if (!o.page.empty()) compare::reject_folder_of_run(o.page, "--page");
   const std::vector<Eigen::Vector3d> points = io::read_points(o.points);
   const bodies::LoadedBody body = bodies::load_faces(o.body, o.corners);
   note(globals, body.notes);

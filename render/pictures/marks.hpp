@@ -107,12 +107,12 @@ class ShownPoints {
   /// The points with the smallest and the largest distance; the first ones of several.
   const Shown& smallest() const { return smallest_; }
   const Shown& largest() const { return largest_; }
-
- private:
+  /// Numbers the sides as Where does; points without a side come last.
   static std::size_t index(std::optional<Where> side) {
     return side ? static_cast<std::size_t>(*side) : kEnumNames<Where>.size();
   }
 
+ private:
   std::size_t total_, every_, seen_ = 0;
   std::vector<Shown> shown_;
   std::array<std::uint64_t, kEnumNames<Where>.size() + 1> counts_{};

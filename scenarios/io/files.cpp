@@ -70,7 +70,7 @@ void reject_run_of_another(const std::string& folder, const std::string& scenari
   if (!other.empty() && other.back() == '\n') other.pop_back();
   if (fs::is_regular_file(other, error) && !fs::equivalent(other, scenario_file, error))
     throw InputError(printable_name(folder) + ": contains the run of another scenario of this name, " +
-                     printable_name(other) + "; rename one of them, or choose another folder");
+                     printable_name(other) + "; rename one of them, or choose another folder with -o");
 }
 
 void mark_run(const std::string& folder, const std::string& scenario_file) {

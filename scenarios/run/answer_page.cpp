@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -103,9 +102,6 @@ std::string length_text(const std::vector<Segment>& segments) {
 void write_page(const report::Folder& folder, const LrbRep& body, const ShownPoints& points,
                 const std::string& command) {
   Answers answers{body, "point", "", true, {}, {}};
-  const auto index = [](std::optional<Where> side) {
-    return side ? static_cast<std::uint32_t>(*side) : std::uint32_t{kEnumNames<Where>.size()};
-  };
   for (const auto& where : kEnumNames<Where>) answers.kinds.push_back(key_of_points(where.value));
   answers.kinds.push_back(key_of_points({}));
 
@@ -114,7 +110,7 @@ void write_page(const report::Folder& folder, const LrbRep& body, const ShownPoi
   for (const ShownPoints::Shown& p : points.shown()) {
     const PointDistance& d = p.distance;
     answers.numbers.push_back(static_cast<std::uint32_t>(p.number));
-    answers.kind.push_back(index(d.side));
+    answers.kind.push_back(static_cast<std::uint32_t>(ShownPoints::index(d.side)));
     answers.faces.push_back({d.closest.face, kNull});
     answers.segments.push_back({{p.point, d.closest.point}});
     const std::string number = std::to_string(p.number);

@@ -1,10 +1,7 @@
 // Operates a page of answers about one body, and prints "ok ..." or "FAIL ..." for each check, then "done".
-(async function () {
-  const lines = [],
+(function () {
+  const { check, equal, press } = driven,
     { answers, view, rows } = answersPage,
-    check = (is, what, found = "") => lines.push(`${is ? "ok" : "FAIL"} ${what}${is ? "" : `: ${found}`}`),
-    equal = (found, wanted, what) => check(found === wanted, what, `found ${found}, wanted ${wanted}`),
-    press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true })),
     current = () => document.querySelector("tr[aria-current]"),
     facts = () => [...document.querySelectorAll("#item-facts dd")].map((d) => d.textContent).join();
 
@@ -71,17 +68,5 @@
     equal(location.hash, `#group=${last}`, "and another the curve again");
   }
 
-  try {
-    opens();
-    keys();
-    clicks();
-    groups();
-    check(complaints.length === 0, "no messages in the console", complaints.join("; "));
-  } catch (e) {
-    lines.push(`FAIL ${e.stack}`);
-  }
-  const out = document.createElement("pre");
-  out.id = "driven";
-  out.textContent = [...lines, "done"].join("\n");
-  document.body.append(out);
+  driven.run(opens, keys, clicks, groups);
 })();

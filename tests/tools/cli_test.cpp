@@ -111,7 +111,7 @@ TEST_CASE("run: two scenario files of one name do not replace each other's run")
   REQUIRE(run(folder, {"run", "./one.json"}).code == 0);  // again, and changed, as often as one likes
   const Outcome o = check_rejected(folder, {"run", "two.json"});
   CHECK(o.err.find("out/twin: contains the run of another scenario of this name, ") != std::string::npos);
-  CHECK(o.err.find("one.json; rename one of them, or choose another folder") != std::string::npos);
+  CHECK(o.err.find("one.json; rename one of them, or choose another folder with -o") != std::string::npos);
   CHECK(run(folder, {"run", "two.json", "-o", "elsewhere"}).code == 0);
   fs::rename(folder / "one.json", folder / "three.json");  // the other is not there any more
   CHECK(run(folder, {"run", "two.json"}).code == 0);
