@@ -18,6 +18,11 @@ Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spe
 Eigen::Vector3d min_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
                            const Eigen::Vector3d& like);
 
+/// As min_hidden(), of directions across the line from A to B at the first step, so that both bodies and the
+/// gap between them are visible. `like` counts only if their centres coincide, and in 2D.
+Eigen::Vector3d min_hidden_across(const RecordedRun& recorded, const Eigen::Vector3d& up,
+                                  const Eigen::Vector3d& like);
+
 /// Shows both bodies completely in close-ups of the contacts that would magnify little and only cut off
 /// parts.
 void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views);
