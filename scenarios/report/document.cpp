@@ -353,15 +353,15 @@ Document& Document::view(const std::string& json, std::string_view html,
 Document& Document::scene(const std::string& json) {
   of_run_ = true;
   return view(json, io::embedded_file("scene.html"),
-              {"scene_run.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js", "scene_view.js",
-               "scene_controls.js", "scene_page.js", "scene.js"});
+              {"scene_run.js", "scene_attempts.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js",
+               "scene_view.js", "scene_controls.js", "scene_page.js", "scene.js"});
 }
 
 Document& Document::crowd_view(const std::string& json) {
   of_run_ = true;
   return view(json, io::embedded_file("crowd.html"),
-              {"scene_run.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js", "scene_view.js",
-               "scene_controls.js", "scene_page.js", "crowd.js"});
+              {"scene_run.js", "scene_attempts.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js",
+               "scene_view.js", "scene_controls.js", "scene_page.js", "crowd.js"});
 }
 
 Document& Document::tree_view(const std::string& json) {

@@ -186,6 +186,8 @@ class Events {
     /** Passes of a construction, which begins with the body itself: [{first, last, words}], ids of events;
         else null. */
     this.passes = json.passes;
+    /** What the builder tried where; null for other runs. */
+    this.attempts = json.attempts ? new Attempts(this, json.attempts) : null;
   }
 
   /** Replaces the events by others of the same run: all of them. */
@@ -193,6 +195,7 @@ class Events {
     const wrong = new Map([...this.stepNumbers].map((number, step) => [number, this.wrong[step]]));
     Object.assign(this, columns);
     this.wrong = [...this.stepNumbers].map((number) => wrong.get(number) || []);
+    if (this.attempts) this.attempts.take(columns.patches);
   }
 
   id(i) {
