@@ -93,7 +93,7 @@ Callout parse_callout(const std::string& text) {
 }
 
 Inset parse_inset(const std::string& text) {
-  constexpr double kLeast = 1.1, kMost = 200;
+  constexpr double kLeast = 1.1, kMax = 200;
   Inset out;
   out.option = "--inset " + printable_name(text);
   std::vector<std::string_view> parts = parts_of(text);
@@ -106,7 +106,7 @@ Inset parse_inset(const std::string& text) {
     const std::size_t last = contact ? 2 : 3;
     if (parts.size() == last + 1) {
       const std::optional<double> value = number_of<double>(parts[last]);
-      good = good && value && *value >= kLeast && *value <= kMost;
+      good = good && value && *value >= kLeast && *value <= kMax;
       out.magnification = value.value_or(0);
     }
     good = good && parts.size() <= last + 1;

@@ -46,8 +46,7 @@ struct Figure {
   std::string tex;      ///< text of the TeX file, if requested
   std::string caption;  ///< text for print below the figure
   std::size_t panels = 0;
-  std::vector<std::string>
-      notes;  ///< about states that are not shown, faces that are an image, unseen callouts
+  std::vector<std::string> notes;  ///< on omitted states, faces that are an image, unseen callouts
 };
 
 /// Draws the figure. `frames` defines the meaning of colours, the visible regions and the viewpoint. Throws

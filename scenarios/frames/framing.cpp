@@ -129,13 +129,13 @@ std::vector<Vector3d> directions(const Vector3d& up) {
 std::vector<Vector3d> directions_across(const Vector3d& axis, const Vector3d& up) {
   constexpr double kNearlyVertical = 0.97;  // cosine: from there on, an axis has no side
   constexpr int kTurns = 16;
-  constexpr double kAbove = 0.2;
+  constexpr double kAbove = 0.2, kOblique = 0.5;  // radians, so that boxes show two sides
   const Around around(up);
   const Vector3d along = axis.normalized();
   std::vector<Vector3d> out;
   if (std::abs(along.dot(around.up)) > kNearlyVertical) {
     for (int i = 0; i < kTurns; ++i) {
-      const Vector3d d = around.horizontal(2 * std::numbers::pi * i / kTurns);
+      const Vector3d d = around.horizontal(kOblique + 2 * std::numbers::pi * i / kTurns);
       out.push_back(((d - along * d.dot(along)).normalized() + kAbove * around.up).normalized());
     }
     return out;
