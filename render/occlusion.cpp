@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kDirections = 64;  ///< evenly spread over the sphere
-constexpr int kSide = 512;        ///< of the pictures in which visibility is looked up, pixels
+constexpr int kSide = 512;       ///< of the pictures in which visibility is looked up, pixels
 /// Smaller cosines count as 0: there the depth of a pixel varies by more than the bias.
 constexpr double kGrazing = 0.15;
 /// Bias towards the viewer at perpendicular incidence, in pixels.

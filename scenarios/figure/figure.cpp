@@ -270,7 +270,7 @@ class FigureJob {
   /// frame in the panel can be seen, and so that it is larger than in the panel.
   void add_inset(std::size_t b, std::size_t i, std::size_t panel, std::size_t k) {
     constexpr double kFaceRoom = 4, kRoom = 1.7;  // sides of the square, in sizes of the target
-    constexpr double kLeast = 1.5, kMost = 12;
+    constexpr double kLeast = 1.5, kMax = 12;
     const BlockLayout& block = layout_.blocks[b];
     const auto& [inset, target] = inset_boxes_[panel][k];
     Piece piece{panels_[b][i].view, panels_[b][i].moment, b, panel, {}, 0, inset};
@@ -278,7 +278,7 @@ class FigureJob {
     const double side = piece.place.box.sizes().x(),
                  room = inset->target.kind == Target::Kind::face ? kFaceRoom : kRoom,
                  fitted = side / (room * std::max(target.sizes().maxCoeff(), 1e-9 * kViewSide) * block.scale);
-    piece.magnification = inset->magnification > 0 ? inset->magnification : std::clamp(fitted, kLeast, kMost);
+    piece.magnification = inset->magnification > 0 ? inset->magnification : std::clamp(fitted, kLeast, kMax);
     piece.scale = piece.magnification * block.scale;
     const Vector2d half = 0.5 * piece.place.box.sizes() / piece.scale;
     piece.shown = {target.center() - half, target.center() + half};

@@ -55,7 +55,8 @@ class FrameState {
   bool in_contact() const { return now_.result != nullptr && !now_.result->regions.empty(); }
   /// Returns these contact regions.
   std::span<const ContactRegion> contacts() const {
-    return in_contact() ? std::span<const ContactRegion>(now_.result->regions) : std::span<const ContactRegion>();
+    return in_contact() ? std::span<const ContactRegion>(now_.result->regions)
+                        : std::span<const ContactRegion>();
   }
   std::uint32_t step() const { return cursor_.step()->index; }
   Pose pose(Side side) const { return cursor_.pose(side); }

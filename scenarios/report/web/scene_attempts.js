@@ -186,9 +186,9 @@ class AttemptPanel {
     byId("attempts").hidden = !picked || !this.attempts.body.complete;
     if (byId("attempts").hidden) return;
     const refused = here.filter((a) => a.refused).length,
-      stands = here.length - refused,
+      accepted = here.length - refused,
       more = events.ids ? " among the events of this page" : "";
-    byId("attempts-title").textContent = `Attempts here: ${refused} refused, ${stands} accepted${more}`;
+    byId("attempts-title").textContent = `Attempts here: ${refused} refused, ${accepted} accepted${more}`;
     byId("attempts-note").textContent = here.length
       ? ""
       : picked.vertex !== NONE || picked.face !== NONE

@@ -126,7 +126,7 @@ TEST_CASE("regions of two builds are matched by the real faces below them") {
       CHECK(p.below ==
             std::array{static_cast<std::uint32_t>(x.size()), static_cast<std::uint32_t>(y.size())});
     }
-    // What is left has no partner that is left, too.
+    // No unmatched region has an unmatched partner.
     for (const RegionId p : m.unmatched[0])
       for (const RegionId q : m.unmatched[1])
         CHECK_FALSE(overlap(below(few.rep, p), below(many.rep, q)) >= compare::kSamePlace);

@@ -17,9 +17,9 @@ struct Camera {
   bool orthographic = false;
   double fov_y = 0.6;      ///< perspective: full vertical angle, radians
   double half_height = 1;  ///< orthographic: from the centre to the top edge, world units
-  /// Offset of the picture's centre from the target, to the right and up, in the plane of the picture: in units
-  /// of the distance to it (perspective) or of the world (orthographic). Other than zero for a part of a
-  /// picture.
+  /// Offset of the picture's centre from the target, to the right and up, in the plane of the picture: in
+  /// units of the distance to it (perspective) or of the world (orthographic). Other than zero for a part of
+  /// a picture.
   Eigen::Vector2d shift{0, 0};
 };
 
