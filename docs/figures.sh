@@ -19,7 +19,7 @@ run figure figure2 --width 160mm --title --no-legend --font-size 10 --line-width
 run run collision --size 1000x562 -o "$work/collision"
 run crowd -o "$work/crowd"
 run figure figure2_mesh --width 85mm --dpi 300 -o "$work/figure.png"
-run figure figure2_mesh --panels 3 --inset b:region:40 --inset c:face:1200:6 --dpi 300 -o "$work/inset.png"
+run figure figure2_mesh --panels 3 --inset b:region:40 --inset c:face:2197:6 --dpi 300 -o "$work/inset.png"
 answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE OPTION...: a picture of one answer, for the bodies of `collision`
   echo "$4" >"$work/poses.txt"
   run "$2" "$work/collision/a.lrb" "$work/collision/b.lrb" "$3" "$work/poses.txt" --draw "$docs/$1.png" --size "$5" "${@:6}"

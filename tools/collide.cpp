@@ -48,25 +48,29 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   return m;
 }
 
-/// Chooses the axis that points up: without --up the one on which A is most stable, else B; noted if it is
-/// not z. An axis along --from is not chosen.
-void choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBody>& bodies, const Globals& globals) {
+/// Chooses the axis that points up: without --up the one on which A is most stable, else B. An axis along
+/// --from is not chosen. Returns a note if it is not z, else an empty text.
+std::string choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBody>& bodies,
+                      const Globals& globals) {
   if (bodies[0].rep.dim() == 2) {
     if (camera.up == "auto") camera.up.clear();
-    return;
+    return {};
   }
-  if (!camera.up.empty()) return resolve_up(camera, bodies[0].rep, globals);
+  if (!camera.up.empty()) {
+    resolve_up(camera, bodies[0].rep, globals);
+    return {};
+  }
   for (const bodies::LoadedBody& body : bodies) {
     const std::optional<int> guess = run::likely_up(body.rep);
     if (!guess) continue;
     const bool along_view =
         !camera.from.empty() &&
         io::parse_vector(camera.from, "--from").cross(Eigen::Vector3d::Unit(*guess)).isZero();
-    if (*guess == 2 || along_view) return;
+    if (*guess == 2 || along_view) return {};
     camera.up = {"xyz"[*guess]};
-    return note(globals, {"up is " + camera.up + ", on which " + body.rep.name() +
-                          " is most stable; --up sets another axis"});
+    return "up is " + camera.up + ", on which " + body.rep.name() + " is most stable; --up sets another axis";
   }
+  return {};
 }
 
 spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies,
@@ -126,7 +130,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
     throw InputError(o.a + " and " + o.b +
                      ": expected two bodies of the same dimension, found a 2D and a 3D body");
   PictureOptions picture = o.picture;
-  choose_up(picture.camera, bodies, globals);
+  const std::string up_note = choose_up(picture.camera, bodies, globals);
   spec::Scenario scenario = make_scenario(o, bodies, picture);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   run::Recording recording = run::record(scenario, std::move(bodies), progress);
@@ -134,6 +138,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   const run::RunOutcome outcome =
       run::write_run(scenario, recording, folder, globals.command_line, progress, o.live);
   animate_frames(o.picture, folder);
+  if (!up_note.empty()) note(globals, {up_note});
   return report_outcome(outcome, folder, o.json, globals);
 }
 

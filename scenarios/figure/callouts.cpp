@@ -68,6 +68,12 @@ bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector
   return turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
 }
 
+/// Returns true if a segment crosses a diagonal of a box.
+bool crosses(const Vector2d& a, const Vector2d& b, const AlignedBox2d& box) {
+  return cross(a, b, box.min(), box.max()) ||
+         cross(a, b, {box.min().x(), box.max().y()}, {box.max().x(), box.min().y()});
+}
+
 Vector2d nearest_point(const AlignedBox2d& box, const Vector2d& to) {
   return to.cwiseMax(box.min()).cwiseMin(box.max());
 }
@@ -206,9 +212,9 @@ std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const render::
                                          const std::vector<Vector2d>& anchors,
                                          const std::vector<Vector2d>& sizes) {
   constexpr double kStep = 1.5, kFree = 3;  // between candidates; from a text to any anchor: points
-  // Costs: of a text entirely over content; of a leader as long as the panel's diagonal; of an overlap with
-  // another text, leader or anchor.
-  constexpr double kCovering = 1, kLength = 0.8, kOverlap = 4;
+  // Costs: of a text entirely over content; of a leader as long as the panel's diagonal; of leaders that
+  // cross each other, or a text; of a text over an anchor; of a text over another.
+  constexpr double kCovering = 1, kLength = 0.8, kCrossing = 1, kOnAnchor = 4, kOnText = 20;
   // Step 1: the sums of covered pixels above and to the left, for the share of content under any box.
   const int w = content.width(), h = content.height();
   std::vector<int> sums(static_cast<std::size_t>(w + 1) * (h + 1), 0);
@@ -246,10 +252,12 @@ std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const render::
         const Vector2d end = nearest_point(text, anchors[i]);
         double cost = kCovering * covered(text) + kLength * (end - anchors[i]).norm() / length(box);
         for (const Vector2d& a : anchors)
-          if ((nearest_point(text, a) - a).norm() < kFree) cost += kOverlap;
+          if ((nearest_point(text, a) - a).norm() < kFree) cost += kOnAnchor;
         for (std::size_t k = 0; k < out.size(); ++k) {
-          if (texts[k].intersects(text)) cost += kOverlap;
-          if (cross(end, anchors[i], out[k].leader, anchors[k])) cost += kOverlap;
+          if (texts[k].intersects(text)) cost += kOnText;
+          if (cross(end, anchors[i], out[k].leader, anchors[k])) cost += kCrossing;
+          if (crosses(end, anchors[i], texts[k]) || crosses(out[k].leader, anchors[k], text))
+            cost += kCrossing;
         }
         if (cost < least) least = cost, best = {at, end}, best_text = text;
       }

@@ -211,7 +211,7 @@ class AttemptPanel {
         return td;
       };
     const [faces, covered] = [events.a[attempt.cap], events.b[attempt.cap]];
-    cell(digits(events.passes.indexOf(pass) + 1), true, pass ? pass.words : "");
+    cell(pass ? pass.words.split(":")[0].replace("pass ", "") : "", true, pass ? pass.words : "");
     cell(digits(events.b[attempt.patch]), true, "faces of the patch");
     cell(covered ? `${digits(faces)} for ${digits(covered)}` : "none", false, "faces of the cap, for the faces of the front that it replaces");
     const result = cell(outcomeText(events, attempt.cap), false, ""),

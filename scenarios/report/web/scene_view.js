@@ -585,7 +585,9 @@ class SceneView extends BodiesCanvas {
       faces = this.attemptFaces(attempt);
     this.marks.set("attempt", attempt ? `${i} ${faces.length}` : "", faces, {
       colour: covers ? colours.refining : colours.underTest,
+      opacity: 0.45,
       width: 3,
+      over: true,
     });
     this.marks.setPoint("start", attempt && !covers && !attempt.whole ? { side: 0, vertex: attempt.vertex } : null, colours.underTest);
   }
@@ -625,7 +627,7 @@ class SceneView extends BodiesCanvas {
   pickedFaces() {
     const p = this.selection.picked;
     if (!p || this.now.isolate || p.vertex !== NONE) return [];
-    // In a construction: faces of the current front.
+    // In a construction: its faces on the front now.
     if (this.events.attempts && p.face === NONE && !this.wrappers.included(p.side, p.region, false))
       return this.events.attempts.ofEvent.has(this.selection.event)
         ? []
