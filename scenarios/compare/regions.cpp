@@ -15,7 +15,7 @@ namespace {
 using render::group_digits;
 using render::short_number;
 
-/// The regions above each real face: from the body outward along parents, and those that are nobody's parent
+/// The regions above each real face: from the body outward along parents, and those without any along parents
 /// above the regions that they touch, so that every region has real faces below it.
 class RegionsAbove {
  public:

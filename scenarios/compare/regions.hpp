@@ -45,7 +45,7 @@ RegionMatching match_regions(const LrbRep& x, const LrbRep& y);
 /// Returns true if the real faces of both, with the positions of their vertices, are the same.
 bool same_real_faces(const LrbRep& x, const LrbRep& y);
 
-/// What is compared of a region.
+/// Compared properties of a region.
 struct RegionFacts {
   RegionId region{};
   std::uint32_t lids = 0, floor = 0;

@@ -212,6 +212,7 @@ std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render
                                        const ProgressReport& progress, const Framing* framing) {
   render::FrameSpec spec = given;
   to_pixels(spec);
+  if (const auto from = view_of_thin_body(recorded, spec)) spec.views.emplace_back().from = *from;
   std::vector<PaintedFrame> out;
   const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;
@@ -231,6 +232,7 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
                         const ProgressReport& progress) {
   render::FrameSpec spec = given;
   to_pixels(spec);
+  if (const auto from = view_of_thin_body(recorded, spec)) spec.views.emplace_back().from = *from;
   DrawnFrames out;
   make_folder(folder + "/frames");
   remove_old_frames(folder);

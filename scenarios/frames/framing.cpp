@@ -137,6 +137,19 @@ bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& cl
 
 }  // namespace
 
+std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& p, const render::Look& look) {
+  if (!look.views.empty() || p.reps.size() != 1 || p.reps[0]->dim() != 3 || p.trace->steps.empty()) return {};
+  constexpr double kThin = 0.25;
+  const Eigen::AlignedBox3d box = box_of(*p.reps[0], p.trace->steps[0].pose_a);
+  if (box.isEmpty()) return {};
+  const Eigen::Vector3d size = box.sizes(), up = render::Look::View{}.up;
+  int thinnest = 0, vertical = 0;
+  const double least = size.minCoeff(&thinnest);
+  up.cwiseAbs().maxCoeff(&vertical);
+  if (thinnest == vertical || !(least < kThin * size.maxCoeff())) return {};
+  return broadside(box, up);
+}
+
 Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
   const bool regions_alone = !(spec.isolate[0].empty() && spec.isolate[1].empty());
   Framing f;

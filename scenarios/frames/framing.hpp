@@ -1,6 +1,8 @@
 #pragma once
 /// The points that cameras show, and the directions that are chosen if none is given.
 
+#include <optional>
+
 #include <Eigen/Geometry>
 
 #include "render/pictures/panel.hpp"
@@ -11,6 +13,11 @@ namespace lrb::run {
 /// Collects the points that a sequence shows. If `spec` isolates regions, these regions, with a margin if the
 /// rest is shown as a ghost; if it explodes bodies, the displaced regions.
 Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spec);
+
+/// Returns the direction from which a single thin upright body fills its pictures: across its thinnest
+/// extent, if that is horizontal and less than a quarter of the largest. Returns nullopt for other bodies,
+/// and if the pictures have views.
+std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& recorded, const render::Look& look);
 
 /// Returns the direction, of many all around and from above, from which the bodies hide least of the contacts
 /// of the last step with contacts; of similar ones, the one closest to `like`. Returns `like` if there is no

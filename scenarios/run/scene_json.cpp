@@ -507,7 +507,7 @@ json passes_json(const trace::Trace& trace) {
   return out;
 }
 
-/// Returns what the page tells about attempts to cover the front: the vertices of each patch among the kept
+/// Returns the data of attempts to cover the front: the vertices of each patch among the kept
 /// events, and the meaning of verdicts; null for other runs than constructions.
 json attempts_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
   if (!trace.header.construction) return nullptr;

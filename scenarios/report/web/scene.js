@@ -197,6 +197,7 @@ function startScene() {
     leaveOut(".of-wrappers"); // another engine has none
     for (const part of document.querySelectorAll(".of-regions")) part.hidden = true;
     byId("scene").classList.add("of-engine");
+    document.querySelector(".row.head span:nth-child(6)").removeAttribute("title"); // levels, not shown
   }
   byId("scene").classList.toggle("building", Boolean(events.passes));
   const selection = new Selection(events),

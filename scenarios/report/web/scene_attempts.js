@@ -186,9 +186,9 @@ class AttemptPanel {
     byId("attempts").hidden = !picked || !this.attempts.body.complete;
     if (byId("attempts").hidden) return;
     const refused = here.filter((a) => a.refused).length,
-      stands = here.length - refused,
+      accepted = here.length - refused,
       more = events.ids ? " among the events of this page" : "";
-    byId("attempts-title").textContent = `Attempts here: ${refused} refused, ${stands} accepted${more}`;
+    byId("attempts-title").textContent = `Attempts here: ${refused} refused, ${accepted} accepted${more}`;
     byId("attempts-note").textContent = here.length
       ? ""
       : picked.vertex !== NONE || picked.face !== NONE
@@ -211,7 +211,7 @@ class AttemptPanel {
         return td;
       };
     const [faces, covered] = [events.a[attempt.cap], events.b[attempt.cap]];
-    cell(digits(events.passes.indexOf(pass) + 1), true, pass ? pass.words : "");
+    cell(pass ? pass.words.split(":")[0].replace("pass ", "") : "", true, pass ? pass.words : "");
     cell(digits(events.b[attempt.patch]), true, "faces of the patch");
     cell(covered ? `${digits(faces)} for ${digits(covered)}` : "none", false, "faces of the cap, for the faces of the front that it replaces");
     const result = cell(outcomeText(events, attempt.cap), false, ""),

@@ -567,7 +567,8 @@ class SceneView extends BodiesCanvas {
     this.marks.setBoxes("nodes", nodes.length ? i : -1, nodes, colours.underTest);
     const p = this.selection.picked;
     if (events.attempts) this.marks.setPoint("vertex", p && p.vertex !== NONE ? { side: p.side, vertex: p.vertex } : null, colours.selected);
-    this.marks.set("picked", p ? `${p.side} ${p.face} ${p.region}` : "", this.pickedFaces(), {
+    const picked = this.pickedFaces();
+    this.marks.set("picked", p ? `${p.side} ${p.face} ${p.region} ${events.attempts ? picked.map((f) => f.face) : ""}` : "", picked, {
       colour: colours.selected,
       opacity: 0.65,
       width: 2.5,
@@ -584,9 +585,9 @@ class SceneView extends BodiesCanvas {
       faces = this.attemptFaces(attempt);
     this.marks.set("attempt", attempt ? `${i} ${faces.length}` : "", faces, {
       colour: covers ? colours.refining : colours.underTest,
-      opacity: 0.6,
-      width: 4,
-      through: false,
+      opacity: 0.45,
+      width: 3,
+      over: true,
     });
     this.marks.setPoint("start", attempt && !covers && !attempt.whole ? { side: 0, vertex: attempt.vertex } : null, colours.underTest);
   }
@@ -626,6 +627,11 @@ class SceneView extends BodiesCanvas {
   pickedFaces() {
     const p = this.selection.picked;
     if (!p || this.now.isolate || p.vertex !== NONE) return [];
+    // In a construction: its faces on the front now.
+    if (this.events.attempts && p.face === NONE && !this.wrappers.included(p.side, p.region, false))
+      return this.events.attempts.ofEvent.has(this.selection.event)
+        ? []
+        : [...this.bodies[p.side].floor(p.region)].map((face) => ({ side: p.side, face })).filter((f) => this.wrappers.onBoundary(f.side, f.face));
     return p.face !== NONE
       ? [{ side: p.side, face: p.face }]
       : [...this.bodies[p.side].lids(p.region)].map((face) => ({ side: p.side, face }));

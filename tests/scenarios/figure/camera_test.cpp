@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "render/pictures/panel.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "scenarios/frames/animation.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -43,6 +44,28 @@ TEST_CASE("a long body is viewed from its long side, whatever the up direction")
   const Vector3d y_up = run::broadside(along_x, {0, 1, 0});
   CHECK(std::abs(y_up.z()) > 2 * std::abs(y_up.x()));
   CHECK(y_up.y() > 0);
+}
+
+TEST_CASE("a thin upright body is drawn from its broad side, unless a view is given") {
+  const auto view = [](const Vector3d& size, const render::Look& look = {}) {
+    Mesh mesh = shapes::box();
+    for (Vector3d& v : mesh.vertices) v = v.cwiseProduct(size);
+    const LrbRep rep = LrbRep::without_regions(mesh, true, false);
+    trace::Trace trace;
+    trace.steps.emplace_back();
+    run::RecordedRun recorded;
+    recorded.reps = {&rep};
+    recorded.trace = &trace;
+    return run::view_of_thin_body(recorded, look);
+  };
+  const auto plate = view({0.1, 2, 2}), rod = view({0.1, 2, 0.1});
+  REQUIRE((plate && rod));
+  for (const auto& from : {*plate, *rod}) CHECK(std::abs(from.x()) > 2 * std::abs(from.y()));
+  CHECK_FALSE(view({1, 2, 2}));
+  CHECK_FALSE(view({2, 2, 0.1}));  // lies flat: seen from above by default
+  render::Look given;
+  given.views.emplace_back();
+  CHECK_FALSE(view({0.1, 2, 2}, given));
 }
 
 TEST_CASE("render draws a trace as run does: view, projection, size") {
