@@ -400,11 +400,11 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
     for (int x = 30; x < 70; ++x) content.at(x, y) = render::kBlack;
   const std::vector<Vector2d> anchors = {{50, 60}, {52, 60}, {70, 80}}, sizes(3, Vector2d(25, 8));
   const std::vector<CalloutPlace> places = place_callouts(box, content, anchors, sizes);
-  const AlignedBox2d middle(Vector2d(40, 50), Vector2d(80, 90));
+  const AlignedBox2d centre(Vector2d(40, 50), Vector2d(80, 90));
   for (std::size_t i = 0; i < places.size(); ++i) {
     const AlignedBox2d text(places[i].text - sizes[i] / 2, places[i].text + sizes[i] / 2);
     CHECK(box.contains(text));
-    CHECK(middle.intersection(text).isEmpty());
+    CHECK(centre.intersection(text).isEmpty());
     CHECK(text.exteriorDistance(places[i].leader) < 1e-9);
     for (std::size_t k = 0; k < i; ++k)
       CHECK((places[i].text - places[k].text).cwiseAbs().cwiseQuotient(sizes[i]).maxCoeff() >= 1);
