@@ -1,6 +1,5 @@
 #include "render/occlusion.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -72,10 +71,7 @@ void add_ambient_occlusion(DrawList& list, Rasterizer& rasterizer) {
       const double cosine = r.normal.dot(direction);
       if (cosine < kGrazing) continue;
       r.all += cosine;
-      const Vector3d at = projection.to_screen(projection.to_eye(r.centre));
-      const int x = std::clamp(static_cast<int>(at.x()), 0, kSide - 1),
-                y = std::clamp(static_cast<int>(kSide - at.y()), 0, kSide - 1);
-      if (projection.nearer(at.z(), kBias / (cosine * kSide)) <= depths.at(x, y)) r.light += cosine;
+      if (depths.shows(projection, r.centre, kBias / (cosine * kSide))) r.light += cosine;
     }
   }
   // Step 3: the colours.

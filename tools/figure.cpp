@@ -202,7 +202,8 @@ std::string shell_options(const CLI::App& app) {
     if (option->count() == 0 || option->get_positional() || name == "--output" || name == "--artifact" ||
         name == "--bodies")
       continue;
-    if (name == "--callout" || name == "--inset") {
+    // Options without a delimiter have one value each time that they are given.
+    if (option->get_items_expected_max() > 0 && option->get_delimiter() == '\0') {
       for (const std::string& value : option->results()) out += " " + name + " " + shell_word(value);
       continue;
     }

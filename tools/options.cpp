@@ -344,7 +344,7 @@ void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Rec
   const Eigen::Vector3d up = views[0].up;
   // Directions are compared in drawn pictures, which a run without frames must not need.
   if (given.from.empty() && scenario.frames.at != render::FrameSpec::At::none) {
-    const Eigen::Vector3d from = run::min_hidden_across(recorded, up, views[0].from);
+    const Eigen::Vector3d from = run::min_hidden(recorded, up, views[0].from);
     for (render::FrameSpec::View& view : views) view.from = from;
   }
   run::widen_close_ups(recorded, views);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
+#include <span>
 #include <tuple>
-#include <utility>
+#include <unordered_map>
 
 #include "scenarios/bodies/region_figures.hpp"
 #include <lrbscope/render/overlay.hpp>
@@ -32,7 +34,7 @@ class RegionsAbove {
     }
   }
 
-  /// Returns those of a face, ascending; valid until the next call.
+  /// Returns those of a face; valid until the next call.
   const std::vector<RegionId>& of(FaceId face) {
     found_.clear();
     for (CellId c = rep_.outer_cell(face); is_region(c); c = rep_.parent(c.as_region()))
@@ -40,7 +42,6 @@ class RegionsAbove {
     for (std::size_t i = 0; i < found_.size(); ++i)
       for (const RegionId r : more_[found_[i]])
         if (std::find(found_.begin(), found_.end(), r) == found_.end()) found_.push_back(r);
-    std::sort(found_.begin(), found_.end());
     return found_;
   }
 
@@ -50,63 +51,36 @@ class RegionsAbove {
   std::vector<RegionId> found_;
 };
 
-/// Two regions with real faces in common.
-struct Candidate {
-  RegionId x, y;
-  std::uint32_t common = 0;
+/// The real faces below the regions of two bodies with the same real faces.
+struct Below {
+  std::array<std::vector<std::uint32_t>, 2> each;           ///< number, by region
+  std::unordered_map<std::uint64_t, std::uint32_t> common;  ///< number below both of two regions, by key()
+
+  static std::uint64_t key(RegionId x, RegionId y) { return std::uint64_t{x} << 32 | y; }
+  static RegionId first_of(std::uint64_t key) { return RegionId(static_cast<std::uint32_t>(key >> 32)); }
+  static RegionId second_of(std::uint64_t key) { return RegionId(static_cast<std::uint32_t>(key)); }
 };
 
-/// Returns all pairs of regions with common real faces, by number.
-std::vector<Candidate> candidates_of(const LrbRep& x, const LrbRep& y) {
-  std::vector<std::uint64_t> keys;
-  std::vector<Candidate> out;
-  // Collect in chunks: each real face contributes a key for each pair of regions above it.
-  constexpr std::size_t kChunk = std::size_t{1} << 22;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> counted;
-  const auto count_keys = [&] {
-    std::sort(keys.begin(), keys.end());
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> merged;
-    auto old = counted.begin();
-    for (std::size_t i = 0, end = 0; i < keys.size(); i = end) {
-      while (end < keys.size() && keys[end] == keys[i]) ++end;
-      while (old != counted.end() && old->first < keys[i]) merged.push_back(*old++);
-      const std::uint32_t before = old != counted.end() && old->first == keys[i] ? (old++)->second : 0;
-      merged.emplace_back(keys[i], before + static_cast<std::uint32_t>(end - i));
-    }
-    merged.insert(merged.end(), old, counted.end());
-    counted = std::move(merged);
-    keys.clear();
-  };
+Below below_regions(const LrbRep& x, const LrbRep& y) {
+  Below out{{std::vector<std::uint32_t>(x.region_count()), std::vector<std::uint32_t>(y.region_count())}, {}};
   RegionsAbove above_x(x), above_y(y);
   for (FaceId f(0); f < x.real_face_count(); ++f) {
-    const std::vector<RegionId>& of_y = above_y.of(f);
-    for (const RegionId r : above_x.of(f))
-      for (const RegionId s : of_y) keys.push_back(std::uint64_t{r} << 32 | s);
-    if (keys.size() > kChunk) count_keys();
+    const std::vector<RegionId>&of_x = above_x.of(f), &of_y = above_y.of(f);
+    for (const RegionId s : of_y) ++out.each[1][s];
+    for (const RegionId r : of_x) {
+      ++out.each[0][r];
+      for (const RegionId s : of_y) ++out.common[Below::key(r, s)];
+    }
   }
-  count_keys();
-  for (const auto& [key, common] : counted)
-    out.push_back({RegionId(static_cast<std::uint32_t>(key >> 32)),
-                   RegionId(static_cast<std::uint32_t>(key & 0xffffffffu)), common});
   return out;
 }
 
-std::vector<std::uint32_t> faces_below(const LrbRep& rep) {
-  std::vector<std::uint32_t> out(rep.region_count(), 0);
-  RegionsAbove above(rep);
-  for (FaceId f(0); f < rep.real_face_count(); ++f)
-    for (const RegionId r : above.of(f)) ++out[r];
-  return out;
-}
-
-std::vector<RegionFacts> facts_of(const run::Recording& run) {
+std::vector<RegionFacts> facts_of(const run::Recording& run, std::span<const run::Attempt> attempts) {
   const LrbRep& rep = run.bodies[0].rep;
   std::vector<RegionFacts> out(rep.region_count());
-  const std::vector<run::Attempt> attempts = run::attempts_of(run.trace);
   const auto of_region = run::attempts_by_region(run.trace, rep, attempts);
   for (const bodies::RegionFigures& f : bodies::region_figures(rep, bodies::RegionOrder::waste, 1))
-    out[f.region] = {f.region,
-                     f.lids,
+    out[f.region] = {f.lids,
                      f.floor,
                      f.thickness,
                      f.volume,
@@ -123,23 +97,14 @@ std::string both(std::uint32_t x, std::uint32_t y) {
   return both(group_digits(x), group_digits(y));
 }
 
-std::string percent_of(double share) {
-  return render::percent(share);
-}
-
 std::string difference_line(const RegionComparison& c, const MatchedRegions& m) {
   const RegionFacts &x = c.facts[0][m.of[0]], &y = c.facts[1][m.of[1]];
   std::string out = "  region " + group_digits(m.of[0]) + " | " + group_digits(m.of[1]) + ", " +
-                    percent_of(m.overlap()) + " of " + group_digits(m.either()) + " real faces: lids " +
+                    render::percent(m.overlap()) + " of " + group_digits(m.either()) + " real faces: lids " +
                     both(x.lids, y.lids) + ", floor " + both(x.floor, y.floor) + ", bound " +
                     both(short_number(x.bound), short_number(y.bound));
   if (c.has_attempts) out += ", refused " + both(run::refused(x.verdicts), run::refused(y.verdicts));
   return out + "\n";
-}
-
-/// Returns the number of refusals at regions of a run, each attempt counted once for each region.
-std::string reasons(const RegionFacts& f) {
-  return trace::rejection_text(f.verdicts);
 }
 
 report::Table different_table(const RegionComparison& c, const Runs& runs) {
@@ -153,12 +118,12 @@ report::Table different_table(const RegionComparison& c, const Runs& runs) {
     if (t.rows.size() == kMaxRows) break;
     const MatchedRegions& m = c.matching.pairs[i];
     const RegionFacts &x = c.facts[0][m.of[0]], &y = c.facts[1][m.of[1]];
-    t.rows.push_back({group_digits(m.of[0]), group_digits(m.of[1]), percent_of(m.overlap()),
+    t.rows.push_back({group_digits(m.of[0]), group_digits(m.of[1]), render::percent(m.overlap()),
                       both(m.below[0], m.below[1]), both(x.lids, y.lids), both(x.floor, y.floor),
                       both(short_number(x.bound), short_number(y.bound)),
                       both(short_number(x.volume), short_number(y.volume))});
     if (c.has_attempts)
-      for (const RegionFacts* f : {&x, &y}) t.rows.back().push_back(reasons(*f));
+      for (const RegionFacts* f : {&x, &y}) t.rows.back().push_back(trace::rejection_text(f->verdicts));
     t.targets.push_back("regions " + std::to_string(m.of[0]) + " " + std::to_string(m.of[1]));
   }
   t.note =
@@ -183,7 +148,7 @@ report::Table unmatched_table(const RegionComparison& c, const Runs& runs) {
                         short_number(f.bound), short_number(f.volume)});
       if (c.has_attempts) {
         t.rows.back().push_back(group_digits(run::refused(f.verdicts)));
-        t.rows.back().push_back(reasons(f));
+        t.rows.back().push_back(trace::rejection_text(f.verdicts));
       }
       t.targets.push_back(i == 0 ? "regions " + std::to_string(r) + " -" : "regions - " + std::to_string(r));
     }
@@ -206,10 +171,11 @@ bool same_real_faces(const LrbRep& x, const LrbRep& y) {
 }
 
 RegionMatching match_regions(const LrbRep& x, const LrbRep& y) {
-  const std::array<std::vector<std::uint32_t>, 2> below = {faces_below(x), faces_below(y)};
+  const Below below = below_regions(x, y);
   std::vector<MatchedRegions> found;
-  for (const Candidate& c : candidates_of(x, y)) {
-    const MatchedRegions m{{c.x, c.y}, c.common, {below[0][c.x], below[1][c.y]}};
+  for (const auto& [key, common] : below.common) {
+    const RegionId r = Below::first_of(key), s = Below::second_of(key);
+    const MatchedRegions m{{r, s}, common, {below.each[0][r], below.each[1][s]}};
     if (m.overlap() >= kSamePlace) found.push_back(m);
   }
   // A region and the one above it may have the same real faces below them: then depths decide.
@@ -240,14 +206,14 @@ std::optional<RegionComparison> compare_regions(const Runs& runs) {
   if (x.region_count() + y.region_count() == 0 || !same_real_faces(x, y)) return std::nullopt;
   RegionComparison out;
   out.matching = match_regions(x, y);
-  out.facts = {facts_of(*runs.of[0]), facts_of(*runs.of[1])};
-  for (std::size_t i = 0; i < 2; ++i)
-    for (const run::Attempt& a : run::attempts_of(runs.of[i]->trace)) out.refused[i] += a.refused();
-  const auto is_built = [](const run::Recording* r) {
-    return std::any_of(r->trace.events.begin(), r->trace.events.end(),
-                       [](const trace::Event& e) { return e.kind == EventKind::cap; });
-  };
-  out.has_attempts = is_built(runs.of[0]) && is_built(runs.of[1]);
+  out.has_attempts = true;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::vector<run::Attempt> attempts = run::attempts_of(runs.of[i]->trace);
+    out.facts[i] = facts_of(*runs.of[i], attempts);
+    out.refused[i] = static_cast<std::uint32_t>(
+        std::count_if(attempts.begin(), attempts.end(), std::mem_fn(&run::Attempt::refused)));
+    out.has_attempts = out.has_attempts && !attempts.empty();
+  }
   const auto& pairs = out.matching.pairs;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (!(out.facts[0][pairs[i].of[0]] == out.facts[1][pairs[i].of[1]])) out.different.push_back(i);

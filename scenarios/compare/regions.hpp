@@ -47,17 +47,13 @@ bool same_real_faces(const LrbRep& x, const LrbRep& y);
 
 /// Compared properties of a region.
 struct RegionFacts {
-  RegionId region{};
   std::uint32_t lids = 0, floor = 0;
   double bound = 0;   ///< proven maximum deviation of its lids from the body, mesh units
   double volume = 0;  ///< 2D: area
   std::uint32_t attempts = 0;
   run::VerdictCounts verdicts{};  ///< of the attempts
 
-  bool operator==(const RegionFacts& o) const {
-    return lids == o.lids && floor == o.floor && bound == o.bound && volume == o.volume &&
-           attempts == o.attempts && verdicts == o.verdicts;
-  }
+  bool operator==(const RegionFacts&) const = default;
 };
 
 /// Two LRB-reps of one body compared by region.

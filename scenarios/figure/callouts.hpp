@@ -9,9 +9,8 @@
 #include <Eigen/Geometry>
 
 #include <lrbscope/lrb_rep.hpp>
-#include <lrbscope/render/draw_list.hpp>
+#include <lrbscope/pose.hpp>
 #include <lrbscope/render/image.hpp>
-#include <lrbscope/render/style.hpp>
 
 namespace lrb::figure {
 

@@ -517,9 +517,9 @@ class FigureJob {
       } else if (runs_over(blocks_[piece.block])) {
         canvas.stroke(render::corners(piece.place.box), true, {style().faint, kHairline, 0});
       }
-      for (std::size_t k = i + 1; k < pieces_.size() && pieces_[k].inset != nullptr && piece.inset == nullptr;
-           ++k)
-        paint_frame(canvas, piece, pieces_[k]);
+      if (piece.inset == nullptr)
+        for (std::size_t k = i + 1; k < pieces_.size() && pieces_[k].inset != nullptr; ++k)
+          paint_frame(canvas, piece, pieces_[k]);
       paint_callouts(canvas, piece, shown.list, callouts);
       paint_title(canvas, piece.place);
     }

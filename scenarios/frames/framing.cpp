@@ -94,16 +94,11 @@ double seen_share(const std::vector<Vector3d>& points, const render::Projection&
   constexpr double kLift =
       2.0 / kHeight;  // a curve lies on faces: it counts as visible up to two pixels behind them
   std::size_t seen = 0;
-  for (const Vector3d& p : points) {
-    const Vector3d at = projection.to_screen(projection.to_eye(p));
-    const int x = std::clamp(static_cast<int>(at.x()), 0, kWidth - 1);
-    const int y = std::clamp(static_cast<int>(kHeight - at.y()), 0, kHeight - 1);
-    seen += projection.nearer(at.z(), kLift) <= depths.at(x, y) ? 1 : 0;
-  }
+  for (const Vector3d& p : points) seen += depths.shows(projection, p, kLift) ? 1 : 0;
   return static_cast<double>(seen) / static_cast<double>(points.size());
 }
 
-/// Returns horizontal axes and the vertical one of a camera's directions.
+/// The vertical axis of a camera's directions, and two horizontal ones.
 struct Around {
   Vector3d up, side, third;
 
@@ -224,17 +219,14 @@ Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
 }
 
 Vector3d min_hidden(const RecordedRun& recorded, const Vector3d& up, const Vector3d& like) {
-  return min_hidden_of(recorded, directions(up), up, like);
-}
-
-Vector3d min_hidden_across(const RecordedRun& recorded, const Vector3d& up, const Vector3d& like) {
   if (recorded.reps[0]->dim() != 3 || recorded.trace->steps.empty()) return like;
   const trace::Step& first = recorded.trace->steps.front();
   const Eigen::AlignedBox3d a = box_of(*recorded.reps[0], first.pose_a),
                             b = box_of(*recorded.reps[1], first.pose_b);
   const Vector3d axis = b.center() - a.center();
   constexpr double kApart = 1e-3;  // of the bodies' size: closer centres give no direction
-  if (!(axis.norm() > kApart * a.merged(b).diagonal().norm())) return min_hidden(recorded, up, like);
+  if (!(axis.norm() > kApart * a.merged(b).diagonal().norm()))
+    return min_hidden_of(recorded, directions(up), up, like);
   const std::vector<Vector3d> candidates = directions_across(axis, up);
   return min_hidden_of(recorded, candidates, up, candidates.front());
 }

@@ -19,16 +19,12 @@ Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spe
 /// bodies, and if the pictures have views.
 std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& recorded, const render::Look& look);
 
-/// Returns the direction, of many all around and from above, from which the bodies hide least of the contacts
-/// of the last step with contacts; of similar ones, the one closest to `like`. Returns `like` if there is no
-/// contact.
+/// Returns the direction, of those across the line from A to B at the first step, from which the bodies hide
+/// least of the contacts of the last step with contacts: both bodies and the gap between them are visible. If
+/// their centres coincide: of directions all around and from above; of similar ones, the one closest to
+/// `like`, which is returned without a contact. Returns `like` in 2D.
 Eigen::Vector3d min_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
                            const Eigen::Vector3d& like);
-
-/// As min_hidden(), of directions across the line from A to B at the first step, so that both bodies and the
-/// gap between them are visible. `like` counts only if their centres coincide, and in 2D.
-Eigen::Vector3d min_hidden_across(const RecordedRun& recorded, const Eigen::Vector3d& up,
-                                  const Eigen::Vector3d& like);
 
 /// Shows both bodies completely in close-ups of the contacts that would magnify little and only cut off
 /// parts.

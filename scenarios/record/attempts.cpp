@@ -52,7 +52,7 @@ std::vector<std::vector<std::uint32_t>> attempts_by_region(const trace::Trace& t
   for (std::uint32_t i = 0; i < attempts.size(); ++i) {
     const Attempt& a = attempts[i];
     // A patch without interior vertices is a whole component: it is not at any place.
-    const bool whole = a.vertices.empty() && trace.events[a.patch].patch().interior == 0;
+    const bool whole = trace.events[a.patch].patch().interior == 0;
     const std::span<const VertexId> start(&a.vertex, whole ? 0 : 1);
     for (const VertexId v : a.vertices.empty() ? start : a.vertices)
       for (auto at = std::lower_bound(covered.begin(), covered.end(), std::pair(v, RegionId(0)));

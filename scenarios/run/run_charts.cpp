@@ -117,20 +117,20 @@ report::Table region_table(const RecordedRun& p) {
   const LrbRep& rep = *p.reps[0];
   const std::vector<Attempt> attempts = attempts_of(*p.trace);
   const auto of_region = attempts_by_region(*p.trace, rep, attempts);
-  std::vector<std::uint32_t> refusals(rep.region_count(), 0);
+  std::vector<VerdictCounts> verdicts;
   std::vector<RegionId> order;
   for (RegionId r(0); r < rep.region_count(); ++r) {
-    refusals[r] = refused(verdicts_of(attempts, of_region[r]));
+    verdicts.push_back(verdicts_of(attempts, of_region[r]));
     order.push_back(r);
   }
   std::stable_sort(order.begin(), order.end(),
-                   [&](RegionId x, RegionId y) { return refusals[x] > refusals[y]; });
+                   [&](RegionId x, RegionId y) { return refused(verdicts[x]) > refused(verdicts[y]); });
   report::Table t{"Regions, by the caps refused there",
                   {"region", "pass", "lids", "floor", "attempts", "refused", "reasons"}};
   for (const RegionId r : std::span(order).first(std::min(order.size(), kMaxRows))) {
     t.rows.push_back({group_digits(r), std::to_string(rep.layer(r) + 1), group_digits(rep.lids(r).size()),
                       group_digits(rep.floor(r).size()), group_digits(of_region[r].size()),
-                      group_digits(refusals[r]), trace::rejection_text(verdicts_of(attempts, of_region[r]))});
+                      group_digits(refused(verdicts[r])), trace::rejection_text(verdicts[r])});
     t.targets.push_back("region 0 " + std::to_string(r));
   }
   t.note =

@@ -401,11 +401,8 @@ json work_json(const trace::Trace& trace, const trace::WorkChart& chart) {
   constexpr double kMicros = 1e6;
   json out = json::array();
   for (const trace::WorkOutcome& o : chart.outcomes)
-    // Another engine compares the boxes of leaves, and no planes.
     out.push_back({{"phase", o.phase},
-                   {"outcome", !trace.header.engine.empty() && o.outcome == "boxes and planes of faces"
-                                   ? "boxes of leaves"
-                                   : o.outcome},
+                   {"outcome", o.outcome},
                    {"events", o.events},
                    {"operations", o.operations},
                    {"micros", kMicros * o.seconds}});

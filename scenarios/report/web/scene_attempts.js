@@ -50,7 +50,7 @@ class Attempts {
     this.atVertex = new Map();
     for (const attempt of this.list)
       for (const v of this.placesOf(attempt)) this.atVertex.set(v, [...(this.atVertex.get(v) || []), attempt]);
-    this.cache = { key: "", list: [] };
+    this.cache = { key: "", list: [], events: new Set() };
   }
 
   /** Returns the vertices that an attempt could cover; its start vertex if they are not known. */
@@ -82,12 +82,20 @@ class Attempts {
     return [...new Set(regions)].find((r) => r < this.body.regionCount && this.coveredBy(r).includes(vertex)) ?? NONE;
   }
 
-  /** Returns the attempts at a selected vertex, face or region, in order. */
+  /** Returns the attempts at a selected vertex, face or region, in order, and the set of their events: {list, events}. */
+  there(picked) {
+    const key = picked && this.body.complete ? `${picked.vertex} ${picked.face} ${picked.region}` : "";
+    if (this.cache.key !== key) {
+      const list = key ? this.find(picked) : [];
+      this.cache = { key, list, events: new Set(list.flatMap((a) => [a.patch, a.cap, ...a.regions.map((r) => r.event)])) };
+    }
+    return this.cache;
+  }
   at(picked) {
-    if (!picked || !this.body.complete) return [];
-    const key = `${picked.vertex} ${picked.face} ${picked.region} ${this.list.length}`;
-    if (this.cache.key !== key) this.cache = { key, list: this.find(picked) };
-    return this.cache.list;
+    return this.there(picked).list;
+  }
+  eventsAt(picked) {
+    return this.there(picked).events;
   }
 
   find({ vertex, face, region }) {
@@ -105,11 +113,6 @@ class Attempts {
     }
     const maker = this.ofEvent.get(this.made.get(region));
     return inOrder(new Set([...among(this.coveredBy(region)), ...(maker ? [maker] : [])]));
-  }
-
-  /** Returns the events of the attempts at a selected vertex, face or region. */
-  eventsAt(picked) {
-    return new Set(this.at(picked).flatMap((a) => [a.patch, a.cap, ...a.regions.map((r) => r.event)]));
   }
 
   /** Returns the faces of an attempt's patch that are on the front after the current event: [{side, face}]. */

@@ -54,11 +54,8 @@ class Marks {
     this.clear(name);
     if (!at) return;
     const view = this.views[at.side],
-      geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(view.point(at.vertex)), 3));
-    const disc = new THREE.Points(geometry, discMaterial(colour, mixed(colour, this.colours.ink, 0.75), 14 * Math.min(2, window.devicePixelRatio || 1)));
+      disc = roundPoints(view.point(at.vertex), colour, 14 * Math.min(2, window.devicePixelRatio || 1), mixed(colour, this.colours.ink, 0.75));
     disc.renderOrder = 8;
-    disc.frustumCulled = false;
     view.group.add(disc);
     this.shown.set(name, { key, parts: [{ group: view.group, object: disc }] });
   }

@@ -37,18 +37,6 @@ function oncePerFrame(action) {
   return soon;
 }
 
-/** Makes a row of a table lead somewhere: by a click, or by Enter. */
-function linkRow(row, follow) {
-  row.className = "leads";
-  row.tabIndex = 0;
-  row.addEventListener("click", follow);
-  row.addEventListener("keydown", (e) => {
-    if (e.key !== "Enter") return;
-    e.preventDefault();
-    follow();
-  });
-}
-
 /** Returns the largest index whose value is at most `value`, in an ascending array; -1: none. */
 function lastAtMost(ascending, value) {
   let low = 0,

@@ -2,8 +2,7 @@
 const views = [...document.querySelectorAll(".views iframe")];
 window.addEventListener("message", (e) => {
   if (!e.data.lrbscope) return;
-  for (const view of views)
-    if (view.contentWindow !== e.source) view.contentWindow.postMessage(e.data, "*");
+  for (const view of views) if (view.contentWindow !== e.source) view.contentWindow.postMessage(e.data, "*");
 });
 // A row "regions 3 5" of a table selects region 3 in the first view and 5 in the second; "-": none.
 for (const row of document.querySelectorAll('tr[data-to^="regions "]')) {
@@ -14,12 +13,5 @@ for (const row of document.querySelectorAll('tr[data-to^="regions "]')) {
     numbers.forEach((n, i) => views[i].contentWindow.postMessage({ lrbscope: { region: n === "-" ? null : Number(n) } }, "*"));
     views[0].scrollIntoView({ block: "nearest" });
   };
-  row.className = "leads";
-  row.tabIndex = 0;
-  row.addEventListener("click", follow);
-  row.addEventListener("keydown", (e) => {
-    if (e.key !== "Enter") return;
-    e.preventDefault();
-    follow();
-  });
+  linkRow(row, follow);
 }
