@@ -238,7 +238,7 @@ TEST_CASE("an approximate answer deviates by at most its bound, and an intersect
   const auto entries = methods::registered_methods();
   std::vector<bench::Record> records;
   std::vector<methods::MethodInfo> infos;
-  for (const char* name : {"ours-tolerance", "ours-one-pair"}) {
+  for (const std::string name : {"ours-tolerance", "ours-one-pair"}) {
     const methods::MethodEntry& entry = methods::find_method(entries, name);
     infos.push_back(entry.info);
     bench::BenchRunner runner(entry, entry.info.parameter.empty() ? std::nullopt : std::optional(0.1), set,

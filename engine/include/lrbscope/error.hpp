@@ -32,6 +32,14 @@ struct Error {
   friend bool operator==(const Error&, const Error&) = default;
 };
 
+// gcc warns of references that functions of a temporary return. Those of an Expected<T&> refer to an object
+// elsewhere.
+#if __has_cpp_attribute(gnu::no_dangling)
+#define LRB_REFERS_ELSEWHERE [[gnu::no_dangling]]
+#else
+#define LRB_REFERS_ELSEWHERE
+#endif
+
 /// Either a value of type T, which may be a reference, or an error (Error).
 template <class T>
 class [[nodiscard]] Expected {
@@ -57,14 +65,16 @@ class [[nodiscard]] Expected {
   Value* operator->() requires(!std::is_reference_v<T>) { return &**this; }
   const Value* operator->() const requires(!std::is_reference_v<T>) { return &**this; }
   // If T is a reference, constness and value category of the Expected do not affect the referenced object.
-  Value& operator*() const& requires std::is_reference_v<T> { return *std::get_if<0>(&kept_); }
+  LRB_REFERS_ELSEWHERE Value& operator*() const& requires std::is_reference_v<T> {
+    return *std::get_if<0>(&kept_);
+  }
   Value* operator->() const requires std::is_reference_v<T> { return &**this; }
 
   /// Return the value. Throw InputError with the reason if there is none.
   Value& value() & requires(!std::is_reference_v<T>) { return check(), **this; }
   const Value& value() const& requires(!std::is_reference_v<T>) { return check(), **this; }
   Value&& value() && requires(!std::is_reference_v<T>) { return check(), std::move(**this); }
-  Value& value() const& requires std::is_reference_v<T> { return check(), **this; }
+  LRB_REFERS_ELSEWHERE Value& value() const& requires std::is_reference_v<T> { return check(), **this; }
 
   /// Returns the error. Precondition: !has_value().
   const Error& error() const { return *std::get_if<1>(&kept_); }
@@ -78,5 +88,7 @@ class [[nodiscard]] Expected {
 
   std::variant<Kept, Error> kept_;
 };
+
+#undef LRB_REFERS_ELSEWHERE
 
 }  // namespace lrb
