@@ -61,7 +61,7 @@ struct RegionComparison {
   RegionMatching matching;
   std::array<std::vector<RegionFacts>, 2> facts;  ///< by region
   std::vector<std::size_t> different;      ///< pairs whose facts differ, by descending real faces in common
-  std::array<std::uint32_t, 2> refused{};  ///< caps in all
+  std::array<std::uint32_t, 2> rejected{};  ///< caps in all
   bool has_attempts = false;               ///< both runs are constructions by the builder
 };
 
