@@ -358,12 +358,27 @@
       check(top >= 0 && bottom <= innerHeight + 1 && height > 30, `${part.id || part.className} is in the window`, [top, bottom]);
     }
     check(box(byId("view-canvas")).height > 0.25 * innerHeight, "the view has a quarter of it", box(byId("view-canvas")).height);
+    nothingIsCovered();
     const widest = run.tabs.names.find((name) => {
       run.tabs.show(name);
       return page.scrollHeight > innerHeight || page.scrollWidth > innerWidth;
     });
     equal(widest, undefined, "whichever tab is shown");
     run.tabs.show(run.tabs.names[0]);
+  }
+
+  /** No body is under the legend or the caption. */
+  function nothingIsCovered() {
+    const { view } = run,
+      canvas = byId("view-canvas").getBoundingClientRect(),
+      labels = ["legend", "view-caption"].map((name) => byId(name).getBoundingClientRect());
+    const covered = view.extremes().filter((p) => {
+      const at = p.project(view.camera.camera),
+        x = canvas.left + (canvas.width * (1 + at.x)) / 2,
+        y = canvas.top + (canvas.height * (1 - at.y)) / 2;
+      return labels.some((l) => x > l.left && x < l.right && y > l.top && y < l.bottom);
+    });
+    equal(covered.length, 0, "no body is under the legend or the caption");
   }
 
   /** One thing is selected everywhere: view, panel, table of events, tables, charts, picture at the top. */
@@ -670,6 +685,7 @@
       }
     };
     check(events.engine, "another engine was recorded");
+    check([...document.querySelectorAll(".tab-panel")].every((tab) => tab.textContent.trim()), "no tab is empty");
     look();
     selection.goTo(events.kind.indexOf(events.CONTACT));
     selection.pickFace(0, events.faces(selection.event)[0].face);
@@ -700,16 +716,16 @@
     equal(shown(), capsAt(busiest).map((c) => c.event).join(" "), "the panel lists the attempts at a vertex, in order");
     const words = rows().map((r) => r.cells[3].textContent);
     check(capsAt(busiest).every((c, i) => words[i].startsWith(c.verdict) && words[i].length > c.verdict.length + 12), "with the reasons in words", words.join("; "));
-    // A refused attempt: the patch on the front, which stays as it is.
-    const refused = capsAt(busiest).findIndex((c) => c.verdict !== "stands");
-    rows()[refused].click();
+    // A rejected attempt: the patch on the front, which stays as it is.
+    const rejected = capsAt(busiest).findIndex((c) => c.verdict !== "stands");
+    rows()[rejected].click();
     await frame();
-    equal(events.id(selection.event), capsAt(busiest)[refused].event, "a click on a row goes to its cap");
-    const patch = patches.get(capsAt(busiest)[refused].cause);
+    equal(events.id(selection.event), capsAt(busiest)[rejected].event, "a click on a row goes to its cap");
+    const patch = patches.get(capsAt(busiest)[rejected].cause);
     equal(view.attemptFaces(events.attempts.ofEvent.get(selection.event)).length, patch.faces, "the view shows the patch with all its faces");
     check(view.marks.shown.get("start") && view.marks.shown.get("vertex") && view.marks.shown.get("attempt").parts.length, "with its start vertex and the selected one");
     check(byId("attempt-after").disabled && byId("attempt-kept").textContent, "and says that the front stays as it is");
-    equal(rows()[refused].getAttribute("aria-current"), "true", "the row is marked");
+    equal(rows()[rejected].getAttribute("aria-current"), "true", "the row is marked");
     // An accepted one: before and after.
     const region = events.bodies[0].regionCount >> 1,
       made = slices.find((e) => e.name === "region" && e.args.region === region).args;
@@ -900,8 +916,8 @@
     measured: [measures, fitsTheWidth],
     open: [opensAtFirstContact, showsTheOpenBody, looksAsFramesDo, fitsTheWidth],
     plane: [opensAtFirstContact, replaysAsRecorded, liesFlat, fitsTheWidth],
-    build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, listsAttempts, fitsTheWidth],
-    engine: [namesOnlyItsOwn, fitsTheWidth],
+    build: [opensAtTheBody, nothingIsCovered, replaysAsRecorded, buildsPassByPass, listsAttempts, fitsTheWidth],
+    engine: [namesOnlyItsOwn, nothingIsCovered, fitsTheWidth],
     reload: [opensAtItsAddress],
     screen: [fitsOneScreen],
     all: [
