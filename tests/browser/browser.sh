@@ -68,7 +68,7 @@ drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-
 page "$here/build.json"
 drive 1400 1000 'page.html?drive=build' "${webgl[@]}"
 # Two constructions of a body; its page frames those of the runs, in which the driver reads what is selected.
-sed 's/"frequency": 8 }/& , "build": { "patch_interior": 6 }/' "$here/build.json" >"$work/other.json"
+sed 's/"frequency": 8 }/&, "build": { "patch_interior": 6 }/' "$here/build.json" >"$work/other.json"
 "$lrbscope" --quiet run "$work/other.json" -o "$work/other" --frames none >/dev/null
 "$lrbscope" --quiet compare "$work/out" "$work/other" -o "$work/compare" >/dev/null || [ $? = 1 ]
 with_scripts "$work/compare/index.html" drive_compare.js >"$work/compare/page.html"
