@@ -100,6 +100,9 @@ class FigureJob {
       if (!called_out_.contains(i))
         out.notes.push_back(figure_.callouts[i].option + ": is outside of " +
                             (figure_.callouts[i].panel.empty() ? "all panels" : "its panel"));
+    for (const std::string& letter : covered_)
+      out.notes.push_back("callouts cover the bodies in panel (" + letter +
+                          "); give it more room: fewer --columns, a larger --width, a shorter =TEXT");
     return out;
   }
 
@@ -296,6 +299,8 @@ class FigureJob {
     pieces_.push_back(std::move(piece));
   }
 
+  static constexpr double kCoveringText = 0.5;  ///< share of a callout's text over content that is reported
+
   double callout_radius() const { return std::max(1.0, 3 * figure_.line_width); }
 
   /// Adds the marks of a piece to its scene: the outline of an inset's target, outlines and points of
@@ -383,6 +388,8 @@ class FigureJob {
       canvas.stroke({places[i].leader, end}, false, {style().paper, 3 * width, 0});
       canvas.stroke({places[i].leader, end}, false, {style().ink, width, 0});
     }
+    for (const CalloutPlace& p : places)
+      if (p.covered > kCoveringText) covered_.insert(letter_of(piece.panel));
     for (std::size_t i = 0; i < places.size(); ++i)
       canvas.text({places[i].text, texts[i], layout_.text_height, false, style().ink, render::Align::centre,
                    style().paper});
@@ -666,6 +673,7 @@ class FigureJob {
   std::vector<std::vector<std::uint32_t>>
       visible_;                       ///< (pieces) faces to draw as vector graphics; empty: image
   std::set<std::size_t> called_out_;  ///< callouts that were drawn
+  std::set<std::string> covered_;     ///< letters of panels with texts of callouts over the bodies
 };
 
 }  // namespace
