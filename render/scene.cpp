@@ -171,9 +171,10 @@ void add_pair_under_test(std::span<const SceneBody> bodies, const SceneHighlight
     std::array<VertexId, 3> ids{};
     body.rep->simplex(simplex, ids.data());
     const CellId behind = body.rep->inner_cell(body.rep->face_of_simplex(simplex));
-    const Eigen::Vector3d moved = options.explode > 0 && is_region(behind)
-                                      ? exploded_way(*body.rep, body.pose, behind.as_region(), options.explode)
-                                      : Eigen::Vector3d::Zero();
+    const Eigen::Vector3d moved =
+        options.explode > 0 && is_region(behind)
+            ? exploded_way(*body.rep, body.pose, behind.as_region(), options.explode)
+            : Eigen::Vector3d::Zero();
     const auto corner = [&](int k) -> Eigen::Vector3d {
       return body.pose.apply(body.rep->vertices()[ids[static_cast<std::size_t>(k)]]) + moved;
     };

@@ -772,8 +772,8 @@
         const p = points.map((v) => view.views[0].toWorld(view.views[0].point(v)).project(view.camera.camera));
         return [0, 1].map((k) => p.reduce((s, q) => s + q.getComponent(k), 0) / p.length).map((c, k) => (k ? box.top + ((1 - c) / 2) * box.height : box.left + ((1 + c) / 2) * box.width));
       };
-    const middle = view.reach().centre.project(view.camera.camera),
-      [x, y] = [box.left + ((1 + middle.x) * box.width) / 2, box.top + ((1 - middle.y) * box.height) / 2],
+    const centroid = view.reach().centre.project(view.camera.camera),
+      [x, y] = [box.left + ((1 + centroid.x) * box.width) / 2, box.top + ((1 - centroid.y) * box.height) / 2],
       face = view.picker.under(x, y).face,
       clickAt = ([cx, cy]) => {
         for (const type of ["pointerdown", "pointerup", "click"]) view.canvas.dispatchEvent(new PointerEvent(type, { clientX: cx, clientY: cy, bubbles: true, button: 0 }));

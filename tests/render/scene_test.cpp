@@ -275,9 +275,9 @@ TEST_CASE("exploded regions keep their shape and move outward") {
   const render::Scene later =
       render::build_scene(std::vector<render::SceneBody>{{&rep, &refined, {}, {}, ""}}, highlight, options);
   CHECK(later.list.lines.empty());
-  const auto green = std::count_if(later.list.triangles.begin(), later.list.triangles.end(), [&](const auto& t) {
-    return t.colour == render::style_of(options.style).refining;
-  });
+  const auto green =
+      std::count_if(later.list.triangles.begin(), later.list.triangles.end(),
+                    [&](const auto& t) { return t.colour == render::style_of(options.style).refining; });
   CHECK(static_cast<std::size_t>(green) == rep.collector(3).size());
 }
 
