@@ -101,7 +101,7 @@ class SceneCamera {
     ).normalize();
     const right = this.up.clone().cross(out).normalize(),
       up = out.clone().cross(right);
-    // The bodies fit beside, below or above a covered part: take the largest picture that none of them covers.
+    // The bodies fit beside, below or above a covered part: take a large and central picture that none of them covers.
     let windows = [{ left: 0, top: 0, bottom: 1 }];
     for (const c of covered)
       windows = windows.flatMap((w) => [
@@ -111,7 +111,7 @@ class SceneCamera {
       ]);
     const fits = windows
       .map((window) => this.fitIn(window, points, right, up, out))
-      .sort((p, q) => p.depth - q.depth || p.window.left - q.window.left);
+      .sort((p, q) => p.depth * (1 + p.window.left / 2) - q.depth * (1 + q.window.left / 2));
     const clear = (f) => covered.every((c) => f.left >= c.right || (c.top + c.bottom < 1 ? f.top >= c.bottom : f.bottom <= c.top));
     const best = fits.find(clear) || fits[0];
     this.shift(best.window);
