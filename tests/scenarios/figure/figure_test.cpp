@@ -411,7 +411,8 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
       CHECK((places[i].text - places[k].text).cwiseAbs().cwiseQuotient(sizes[i]).maxCoeff() >= 1);
   }
   const render::Image full(100, 100, render::kBlack);
-  CHECK(place_callouts(box, full, {anchors[0]}, {sizes[0]}).at(0).covered == 1);
+  const std::vector<CalloutPlace> over = place_callouts(box, full, anchors, sizes);
+  CHECK(over[0].covered == 1);
 }
 
 TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in the panel as well") {
