@@ -167,10 +167,16 @@ void add_pair_under_test(std::span<const SceneBody> bodies, const SceneHighlight
   const Style& style = style_of(options.style);
   for (std::size_t i = 0; i < 2; ++i) {
     const SceneBody& body = bodies[i];
+    const SimplexId simplex = (*highlight.under_test)[i];
     std::array<VertexId, 3> ids{};
-    body.rep->simplex((*highlight.under_test)[i], ids.data());
-    const auto corner = [&](int k) {
-      return body.pose.apply(body.rep->vertices()[ids[static_cast<std::size_t>(k)]]);
+    body.rep->simplex(simplex, ids.data());
+    const CellId behind = body.rep->inner_cell(body.rep->face_of_simplex(simplex));
+    const Eigen::Vector3d moved =
+        options.explode > 0 && is_region(behind)
+            ? exploded_way(*body.rep, body.pose, behind.as_region(), options.explode)
+            : Eigen::Vector3d::Zero();
+    const auto corner = [&](int k) -> Eigen::Vector3d {
+      return body.pose.apply(body.rep->vertices()[ids[static_cast<std::size_t>(k)]]) + moved;
     };
     // The outline with a halo marks the simplex even if it is tiny on the screen.
     DrawLine outline;

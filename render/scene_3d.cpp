@@ -48,16 +48,20 @@ class Scene3dBuilder {
     }
     if (c_.isolating()) {
       isolate();
-    } else if (c_.options.explode > 0) {
+    } else if (exploded()) {
       explode();
     } else {
       wrapper();
     }
-    for (const RegionId r : c_.refining()) refining(r);
+    if (!exploded())
+      for (const RegionId r : c_.refining()) refining(r);
     if (c_.options.contact_rims && !c_.isolating()) contact_rims();
   }
 
  private:
+  /// Whether regions are drawn away from their places. Nothing then marks these.
+  bool exploded() const { return c_.options.explode > 0 && !c_.isolating(); }
+
   // ---- the standard picture
 
   void wrapper() {
@@ -128,7 +132,7 @@ class Scene3dBuilder {
 
   void contact_rims() {
     std::vector<FaceId> faces;
-    if (c_.body.wrapper != nullptr) faces = c_.pseudo_in_contact();
+    if (c_.body.wrapper != nullptr && !exploded()) faces = c_.pseudo_in_contact();
     for (FaceId f = 0; f < rep_.real_face_count(); ++f)
       if (c_.in_contact(f)) faces.push_back(f);
     add_outlines(faces, {style_.contact, 2 * c_.options.scale}, Edges::rim_on_top);
@@ -214,7 +218,7 @@ class Scene3dBuilder {
     real_faces();
     bool any = false;
     for (RegionId r = 0; r < rep_.region_count(); ++r) {
-      if (c_.body.wrapper != nullptr && !c_.included(r)) continue;
+      if (c_.body.wrapper != nullptr && !c_.included(r) && !c_.refining(r)) continue;
       region(r, exploded_way(rep_, c_.body.pose, r, c_.options.explode), false);
       any = true;
     }
@@ -229,6 +233,7 @@ class Scene3dBuilder {
   void region(RegionId r, const Vector3d& moved, bool open) {
     Rgba colour = c_.region_colour(r);
     if (c_.options.colour_by == ColourBy::kind) colour = style_.pale(colour, 0.5);
+    if (exploded() && c_.refining(r)) colour = style_.refining;
     // A face of the collector is a lid if the region is on its inner side, else floor.
     for (const FaceId f : rep_.collector(r)) {
       const bool lid = rep_.inner_cell(f) == r;

@@ -145,7 +145,7 @@ std::string text_of(const std::vector<profile::Check>& checks) {
 void write_page(const std::vector<profile::Check>& checks, const std::string& path, const Globals& globals) {
   const report::Folder folder(path);
   report::Document page("Answers and visits of " + std::string(checks.size() == 1 ? "an engine" : "engines"),
-                        "The exact query checks each answer. The price of a visit is what it was good for.");
+                        "An exact query checks each answer. Prices of visits: needed, proof, or waste.");
   const bool wrong =
       std::any_of(checks.begin(), checks.end(), [](const profile::Check& c) { return c.is_wrong(); });
   page.verdict(wrong ? "wrong answers" : "no wrong answers", !wrong).command(globals.command_line);

@@ -67,7 +67,7 @@ void add_events_option(CLI::App& app, std::optional<EventLevel>& level) {
   add_choice<EventLevel>(
       app, "--events", level,
       "Events to record. faces: face tests, refinements, contacts; nodes: also tree-node pairs and phases; "
-      "all: also face pairs rejected by a separating plane");
+      "all: also face pairs rejected by a separating plane [faces, or as in the scenario]");
 }
 
 void add_clock_option(CLI::App& app, std::optional<trace::Clock>& clock) {

@@ -408,7 +408,7 @@ Chart chart_over_passes(const Trace& trace) {
   Chart chart{"pass, including those without effect", {}, {}};
   for (const std::size_t v : shown)
     chart.series.push_back(
-        {name_of(static_cast<CapVerdict>(v)), "", "patches by the verdict on their caps", {}});
+        {text_of(static_cast<CapVerdict>(v)), "", "patches by the verdict on their caps", {}});
   for (std::size_t i = 0; i < passes.size(); ++i) {
     chart.x.push_back(static_cast<double>(i + 1));
     for (std::size_t s = 0; s < shown.size(); ++s) chart.series[s].values.push_back(passes[i].caps[shown[s]]);
@@ -416,11 +416,24 @@ Chart chart_over_passes(const Trace& trace) {
   return chart;
 }
 
+std::string_view text_of(CapVerdict verdict) {
+  switch (verdict) {
+    case CapVerdict::accepted:
+      return "accepted";
+    case CapVerdict::meets_front:
+      return "met the front";
+    case CapVerdict::leaves_out:
+      return "left some of the front out";
+    default:
+      return name_of(verdict);
+  }
+}
+
 std::string rejection_text(const Caps& caps) {
   std::string out;
   for (const std::size_t v : by_frequency(caps))
     out += (out.empty() ? "" : ", ") + std::to_string(caps[v]) + " " +
-           std::string(name_of(static_cast<CapVerdict>(v)));
+           std::string(text_of(static_cast<CapVerdict>(v)));
   return out;
 }
 

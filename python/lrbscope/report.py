@@ -53,7 +53,8 @@ class Report:
         self.rows, self.bodies = rows, bodies
 
     def __repr__(self) -> str:
-        return f"<lrbscope.Report of {self.bodies} bodies: {len(self.rows)} pairs in contact>"
+        pairs = f"{len(self.rows)} pair" + ("" if len(self.rows) == 1 else "s")
+        return f"<lrbscope.Report of {self.bodies} bodies: {pairs} in contact>"
 
     def __len__(self) -> int:
         return len(self.rows)

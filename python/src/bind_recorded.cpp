@@ -199,7 +199,8 @@ void bind_trace(py::module_& m) {
   c.def("__len__", [](const Recorded& r) { return r.trace.events.size(); });
   c.def("__repr__", [](const Recorded& r) {
     return printable("<lrbscope.Trace of " + r.title + ": " + std::to_string(r.trace.steps.size()) +
-                     " steps, " + std::to_string(r.trace.events.size()) + " events>");
+                     (r.trace.steps.size() == 1 ? " step, " : " steps, ") +
+                     std::to_string(r.trace.events.size()) + " events>");
   });
   with_picture_arguments([&](auto&&... names) {
     c.def(

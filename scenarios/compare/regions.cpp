@@ -103,7 +103,7 @@ std::string difference_line(const RegionComparison& c, const MatchedRegions& m) 
                     render::percent(m.overlap()) + " of " + group_digits(m.either()) + " real faces: lids " +
                     both(x.lids, y.lids) + ", floor " + both(x.floor, y.floor) + ", bound " +
                     both(short_number(x.bound), short_number(y.bound));
-  if (c.has_attempts) out += ", refused " + both(run::refused(x.verdicts), run::refused(y.verdicts));
+  if (c.has_attempts) out += ", rejected " + both(run::rejected(x.verdicts), run::rejected(y.verdicts));
   return out + "\n";
 }
 
@@ -113,7 +113,7 @@ report::Table different_table(const RegionComparison& c, const Runs& runs) {
                   {"region, " + runs.names[0], "region, " + runs.names[1], "overlap", "real faces", "lids",
                    "floor", "bound", "volume"}};
   if (c.has_attempts)
-    for (const std::string& name : runs.names) t.columns.push_back("refused, " + name);
+    for (const std::string& name : runs.names) t.columns.push_back("rejected, " + name);
   for (const std::size_t i : c.different) {
     if (t.rows.size() == kMaxRows) break;
     const MatchedRegions& m = c.matching.pairs[i];
@@ -138,7 +138,7 @@ report::Table different_table(const RegionComparison& c, const Runs& runs) {
 report::Table unmatched_table(const RegionComparison& c, const Runs& runs) {
   constexpr std::size_t kMaxRows = 300;
   report::Table t{"Regions without a counterpart", {"in", "region", "lids", "floor", "bound", "volume"}};
-  if (c.has_attempts) t.columns.insert(t.columns.end(), {"refused", "reasons"});
+  if (c.has_attempts) t.columns.insert(t.columns.end(), {"rejected", "reasons"});
   for (std::size_t i = 0; i < 2; ++i) {
     std::size_t rows = 0;
     for (const RegionId r : c.matching.unmatched[i]) {
@@ -147,7 +147,7 @@ report::Table unmatched_table(const RegionComparison& c, const Runs& runs) {
       t.rows.push_back({runs.names[i], group_digits(r), group_digits(f.lids), group_digits(f.floor),
                         short_number(f.bound), short_number(f.volume)});
       if (c.has_attempts) {
-        t.rows.back().push_back(group_digits(run::refused(f.verdicts)));
+        t.rows.back().push_back(group_digits(run::rejected(f.verdicts)));
         t.rows.back().push_back(trace::rejection_text(f.verdicts));
       }
       t.targets.push_back(i == 0 ? "regions " + std::to_string(r) + " -" : "regions - " + std::to_string(r));
@@ -210,8 +210,8 @@ std::optional<RegionComparison> compare_regions(const Runs& runs) {
   for (std::size_t i = 0; i < 2; ++i) {
     const std::vector<run::Attempt> attempts = run::attempts_of(runs.of[i]->trace);
     out.facts[i] = facts_of(*runs.of[i], attempts);
-    out.refused[i] = static_cast<std::uint32_t>(
-        std::count_if(attempts.begin(), attempts.end(), std::mem_fn(&run::Attempt::refused)));
+    out.rejected[i] = static_cast<std::uint32_t>(
+        std::count_if(attempts.begin(), attempts.end(), std::mem_fn(&run::Attempt::rejected)));
     out.has_attempts = out.has_attempts && !attempts.empty();
   }
   const auto& pairs = out.matching.pairs;
@@ -232,9 +232,9 @@ std::string regions_sentence(const RegionComparison& c, const Runs& runs) {
                     group_digits(unmatched[0].size()) + " only in " + runs.names[0] + ", " +
                     group_digits(unmatched[1].size()) + " only in " + runs.names[1] + ".";
   if (!c.has_attempts) return out;
-  out += " Refused caps:";
+  out += " Rejected caps:";
   for (std::size_t i = 0; i < 2; ++i)
-    out += " " + group_digits(c.refused[i]) + " in " + runs.names[i] + (i == 0 ? "," : ".");
+    out += " " + group_digits(c.rejected[i]) + " in " + runs.names[i] + (i == 0 ? "," : ".");
   return out;
 }
 

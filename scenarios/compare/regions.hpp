@@ -60,9 +60,9 @@ struct RegionFacts {
 struct RegionComparison {
   RegionMatching matching;
   std::array<std::vector<RegionFacts>, 2> facts;  ///< by region
-  std::vector<std::size_t> different;      ///< pairs whose facts differ, by descending real faces in common
-  std::array<std::uint32_t, 2> refused{};  ///< caps in all
-  bool has_attempts = false;               ///< both runs are constructions by the builder
+  std::vector<std::size_t> different;       ///< pairs whose facts differ, by descending real faces in common
+  std::array<std::uint32_t, 2> rejected{};  ///< caps in all
+  bool has_attempts = false;                ///< both runs are constructions by the builder
 };
 
 /// Compares the regions of two runs of one body; nullopt if the bodies have different real faces, or none of

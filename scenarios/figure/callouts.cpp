@@ -250,7 +250,8 @@ std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const render::
         const Vector2d at = low + room.cwiseProduct(share);
         const AlignedBox2d text(at - half, at + half);
         const Vector2d end = nearest_point(text, anchors[i]);
-        double cost = kCovering * covered(text) + kLength * (end - anchors[i]).norm() / length(box);
+        const double share_covered = covered(text);
+        double cost = kCovering * share_covered + kLength * (end - anchors[i]).norm() / length(box);
         for (const Vector2d& a : anchors)
           if ((nearest_point(text, a) - a).norm() < kFree) cost += kOnAnchor;
         for (std::size_t k = 0; k < out.size(); ++k) {
@@ -259,7 +260,7 @@ std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const render::
           if (crosses(end, anchors[i], texts[k]) || crosses(out[k].leader, anchors[k], text))
             cost += kCrossing;
         }
-        if (cost < least) least = cost, best = {at, end}, best_text = text;
+        if (cost < least) least = cost, best = {at, end, share_covered}, best_text = text;
       }
     out.push_back(best);
     texts.push_back(best_text);

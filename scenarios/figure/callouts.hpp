@@ -59,6 +59,7 @@ Eigen::Vector3d anchor(const Target& target, const LrbRep& rep, const Pose& pose
 struct CalloutPlace {
   Eigen::Vector2d text{0, 0};    ///< centre
   Eigen::Vector2d leader{0, 0};  ///< end of the leader at the text; the other end is the anchor
+  double covered = 0;            ///< share of the text that is over content
 };
 
 /// Chooses places for texts inside a panel: over little of the content, close to their anchors, without

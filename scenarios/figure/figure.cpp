@@ -19,6 +19,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
 #include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/scene.hpp>
 
 namespace lrb::figure {
 namespace {
@@ -99,6 +100,9 @@ class FigureJob {
       if (!called_out_.contains(i))
         out.notes.push_back(figure_.callouts[i].option + ": is outside of " +
                             (figure_.callouts[i].panel.empty() ? "all panels" : "its panel"));
+    for (const std::string& letter : covered_)
+      out.notes.push_back("callouts cover the bodies in panel (" + letter +
+                          "); give it more room: fewer --columns, a larger --width, a shorter =TEXT");
     return out;
   }
 
@@ -209,7 +213,17 @@ class FigureJob {
   }
 
   const LrbRep& rep_of(const Target& target) const { return *recorded_.reps[target.body]; }
-  Pose pose_of(const Target& target) const { return state_.pose(static_cast<Side>(target.body)); }
+  /// Returns the pose of a target as drawn: exploded bodies show regions, with their lids, away from their
+  /// places.
+  Pose pose_of(const Target& target) const {
+    const Pose pose = state_.pose(static_cast<Side>(target.body));
+    if (!(frames_.explode > 0) || target.kind == Target::Kind::contact) return pose;
+    const LrbRep& rep = rep_of(target);
+    const CellId cell = target.kind == Target::Kind::face ? rep.inner_cell(FaceId(target.number))
+                                                          : CellId(RegionId(target.number));
+    if (!is_region(cell)) return pose;
+    return {pose.r, pose.t + render::exploded_way(rep, pose, cell.as_region(), frames_.explode)};
+  }
 
   /// Returns a target's box in a view of the current state.
   AlignedBox2d box_of(const Inset& inset, const render::DrawList& list, const render::Camera& camera) const {
@@ -285,6 +299,8 @@ class FigureJob {
     piece.place.seen_from = piece.shown.min() + Vector2d::Constant(options().margin / piece.scale);
     pieces_.push_back(std::move(piece));
   }
+
+  static constexpr double kCoveringText = 0.5;  ///< share of a callout's text over content that is reported
 
   double callout_radius() const { return std::max(1.0, 3 * figure_.line_width); }
 
@@ -373,6 +389,8 @@ class FigureJob {
       canvas.stroke({places[i].leader, end}, false, {style().paper, 3 * width, 0});
       canvas.stroke({places[i].leader, end}, false, {style().ink, width, 0});
     }
+    for (const CalloutPlace& p : places)
+      if (p.covered > kCoveringText) covered_.insert(letter_of(piece.panel));
     for (std::size_t i = 0; i < places.size(); ++i)
       canvas.text({places[i].text, texts[i], layout_.text_height, false, style().ink, render::Align::centre,
                    style().paper});
@@ -656,6 +674,7 @@ class FigureJob {
   std::vector<std::vector<std::uint32_t>>
       visible_;                       ///< (pieces) faces to draw as vector graphics; empty: image
   std::set<std::size_t> called_out_;  ///< callouts that were drawn
+  std::set<std::string> covered_;     ///< letters of panels with texts of callouts over the bodies
 };
 
 }  // namespace

@@ -50,7 +50,7 @@ std::string cap_text(const trace::Event& e) {
   const std::string size = cap.covered == 0 ? "no cap, because no vertex could be removed"
                                             : "cap of " + render::counted(cap.faces, "face", "faces") +
                                                   " over " + render::group_digits(cap.covered);
-  std::string out = size + ": " + std::string(name_of(cap.verdict));
+  std::string out = size + ": " + std::string(trace::text_of(cap.verdict));
   if (std::isfinite(cap.off)) out += ", deviation " + render::short_number(cap.off);
   return out;
 }

@@ -240,7 +240,7 @@ std::string moved_text(const std::string& expected, const std::string& actual) {
     first = std::min(first, i);
   }
   return "the camera moved: expected " + x[first] + ", found " + y[first] +
-         (more > 0 ? ", and " + std::to_string(more) + " more changes" : "");
+         (more > 0 ? ", and in " + std::to_string(more) + (more == 1 ? " more value" : " more values") : "");
 }
 
 /// Describes a picture's difference: another event, another camera, or other colours or shapes.

@@ -69,7 +69,7 @@ VerdictCounts verdicts_of(std::span<const Attempt> attempts, std::span<const std
   return out;
 }
 
-std::uint32_t refused(const VerdictCounts& verdicts) {
+std::uint32_t rejected(const VerdictCounts& verdicts) {
   return std::accumulate(verdicts.begin() + 1, verdicts.end(), 0u);
 }
 

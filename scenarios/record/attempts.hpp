@@ -22,7 +22,7 @@ struct Attempt {
   CapVerdict verdict = CapVerdict::accepted;
   std::vector<RegionId> regions;  ///< that it made
 
-  bool refused() const { return verdict != CapVerdict::accepted; }
+  bool rejected() const { return verdict != CapVerdict::accepted; }
 };
 
 /// Returns the attempts of a construction in order; empty for other traces. Refers to the trace.
@@ -40,7 +40,7 @@ using VerdictCounts = std::array<std::uint32_t, kEnumNames<CapVerdict>.size()>;
 /// Counts the attempts with these indices by verdict.
 VerdictCounts verdicts_of(std::span<const Attempt> attempts, std::span<const std::uint32_t> indices);
 
-/// Returns how many of them are refused.
-std::uint32_t refused(const VerdictCounts& verdicts);
+/// Returns how many of them are rejected.
+std::uint32_t rejected(const VerdictCounts& verdicts);
 
 }  // namespace lrb::run

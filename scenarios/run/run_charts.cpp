@@ -102,7 +102,7 @@ report::Table rejection_table(const Passes& passes) {
                    [&](std::size_t x, std::size_t y) { return caps[x] > caps[y]; });
   report::Table t{"Caps by verdict", {"verdict", "caps", "share", "meaning"}};
   for (const std::size_t v : order)
-    t.rows.push_back({std::string(name_of(static_cast<CapVerdict>(v))), group_digits(caps[v]),
+    t.rows.push_back({std::string(trace::text_of(static_cast<CapVerdict>(v))), group_digits(caps[v]),
                       percent(static_cast<double>(caps[v]) / static_cast<double>(all)),
                       std::string(kMeanings[v])});
   t.note =
@@ -111,7 +111,7 @@ report::Table rejection_table(const Passes& passes) {
   return t;
 }
 
-/// Returns the regions where most caps were refused first, and how each was made.
+/// Returns the regions where most caps were rejected first, and how each was made.
 report::Table region_table(const RecordedRun& p) {
   constexpr std::size_t kMaxRows = 200;
   const LrbRep& rep = *p.reps[0];
@@ -124,13 +124,13 @@ report::Table region_table(const RecordedRun& p) {
     order.push_back(r);
   }
   std::stable_sort(order.begin(), order.end(),
-                   [&](RegionId x, RegionId y) { return refused(verdicts[x]) > refused(verdicts[y]); });
-  report::Table t{"Regions, by the caps refused there",
-                  {"region", "pass", "lids", "floor", "attempts", "refused", "reasons"}};
+                   [&](RegionId x, RegionId y) { return rejected(verdicts[x]) > rejected(verdicts[y]); });
+  report::Table t{"Regions, by the caps rejected there",
+                  {"region", "pass", "lids", "floor", "attempts", "rejected", "reasons"}};
   for (const RegionId r : std::span(order).first(std::min(order.size(), kMaxRows))) {
     t.rows.push_back({group_digits(r), std::to_string(rep.layer(r) + 1), group_digits(rep.lids(r).size()),
                       group_digits(rep.floor(r).size()), group_digits(of_region[r].size()),
-                      group_digits(refused(verdicts[r])), trace::rejection_text(verdicts[r])});
+                      group_digits(rejected(verdicts[r])), trace::rejection_text(verdicts[r])});
     t.targets.push_back("region 0 " + std::to_string(r));
   }
   t.note =

@@ -196,7 +196,7 @@ std::string sentence_of(const RecordedRun& p) {
   const LrbRep& rep = *p.reps[0];
   std::string name = body_text(p, 0);
   if (rep.region_count() == 0) return name + " has no wrapper.";
-  return name + ", has " + counted(rep.region_count(), "region", "regions") + " in " +
+  return name + " has " + counted(rep.region_count(), "region", "regions") + " in " +
          counted(rep.layer_count(), "layer", "layers") + ": " +
          (p.trace->header.construction ? "passes of caps replace its surface until the outermost wrapper has "
                                        : "refined one by one, they lead from the outermost wrapper of ") +

@@ -318,7 +318,7 @@ std::string_view outcome_of(const trace::Event& e) {
     case EventKind::point:
       return name_of(e.where());
     case EventKind::cap:
-      return name_of(e.verdict());
+      return trace::text_of(e.verdict());
     case EventKind::pass:
       return name_of(e.stage());
     default:
@@ -517,7 +517,7 @@ json attempts_json(const trace::Trace& trace, const std::vector<trace::EventId>&
   }
   json verdicts = json::object();
   for (const auto& [verdict, name] : kEnumNames<CapVerdict>)
-    verdicts[std::string(name)] = meaning_of(verdict);
+    verdicts[std::string(trace::text_of(verdict))] = meaning_of(verdict);
   return {{"counts", packed(counts)}, {"vertices", packed(vertices)}, {"verdicts", std::move(verdicts)}};
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # browser.sh LRBSCOPE: makes pages of runs, of a tree, of answers and of a crowd, opens them in headless Chromium, and drives them (drive.js,
-# drive_tree.js, drive_answers.js, drive_crowd.js) with clicks, filters, sliders and keys. Fails if a page disagrees with the trace or the tree, and on any error in the
+# drive_tree.js, drive_answers.js, drive_crowd.js, drive_compare.js) with clicks, filters, sliders and keys. Fails if a page disagrees with the trace or the tree, and on any error in the
 # browser's console. Skipped (77) without Chromium.
 set -euo pipefail
 lrbscope=$(realpath "$1")
@@ -67,7 +67,20 @@ for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${web
 drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-software-rasterizer
 page "$here/build.json"
 drive 1400 1000 'page.html?drive=build' "${webgl[@]}"
-# Another engine's run, if its recording program is built.
+# Two constructions of a body; its page frames those of the runs, in which the driver reads what is selected.
+sed 's/"frequency": 8 }/&, "build": { "patch_interior": 6 }/' "$here/build.json" >"$work/other.json"
+"$lrbscope" --quiet run "$work/other.json" -o "$work/other" --frames none >/dev/null
+"$lrbscope" --quiet compare "$work/out" "$work/other" -o "$work/compare" >/dev/null || [ $? = 1 ]
+with_scripts "$work/compare/index.html" drive_compare.js >"$work/compare/page.html"
+drive 1400 1000 compare/page.html "${webgl[@]}" --allow-file-access-from-files
+# Another engine's run: of the sample engine, and of engines whose recording programs are built.
+if cc -O1 -DLRBCAP_ENABLE -I"$here/../../trace/include" "$here/../../examples/capture/aabb.c" -o "$work/aabb" -lm 2>/dev/null; then
+  printf '1 0 0 %s  0 1 0 %s  0 0 1 %s\n' 0.7 0.1 -0.1 3 0 0 >"$work/poses.txt"
+  LRBCAP_OUT="$work/run.lrbcap" "$work/aabb" "$here/../data/gear.obj" "$here/../data/l_block.obj" "$work/poses.txt" >/dev/null
+  "$lrbscope" --quiet import "$work/run.lrbcap" -o "$work/import" >/dev/null
+  with_scripts "$work/import/index.html" drive.js >"$work/page.html"
+  drive 1400 900 'page.html?drive=engine' "${webgl[@]}"
+fi
 echo '1 0 0 0.7  0 1 0 0  0 0 1 0' >"$work/poses.txt"
 for method in fcl cgal; do
   if "$lrbscope" --quiet xray "$work/out/a.lrb" "$work/out/a.lrb" --method "$method" --poses "$work/poses.txt" -o "$work/xray" >/dev/null 2>&1; then

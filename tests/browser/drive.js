@@ -358,12 +358,27 @@
       check(top >= 0 && bottom <= innerHeight + 1 && height > 30, `${part.id || part.className} is in the window`, [top, bottom]);
     }
     check(box(byId("view-canvas")).height > 0.25 * innerHeight, "the view has a quarter of it", box(byId("view-canvas")).height);
+    nothingIsCovered();
     const widest = run.tabs.names.find((name) => {
       run.tabs.show(name);
       return page.scrollHeight > innerHeight || page.scrollWidth > innerWidth;
     });
     equal(widest, undefined, "whichever tab is shown");
     run.tabs.show(run.tabs.names[0]);
+  }
+
+  /** No body is under the legend or the caption. */
+  function nothingIsCovered() {
+    const { view } = run,
+      canvas = byId("view-canvas").getBoundingClientRect(),
+      labels = ["legend", "view-caption"].map((name) => byId(name).getBoundingClientRect());
+    const covered = view.extremes().filter((p) => {
+      const at = p.project(view.camera.camera),
+        x = canvas.left + (canvas.width * (1 + at.x)) / 2,
+        y = canvas.top + (canvas.height * (1 - at.y)) / 2;
+      return labels.some((l) => x > l.left && x < l.right && y > l.top && y < l.bottom);
+    });
+    equal(covered.length, 0, "no body is under the legend or the caption");
   }
 
   /** One thing is selected everywhere: view, panel, table of events, tables, charts, picture at the top. */
@@ -670,6 +685,7 @@
       }
     };
     check(events.engine, "another engine was recorded");
+    check([...document.querySelectorAll(".tab-panel")].every((tab) => tab.textContent.trim()), "no tab is empty");
     look();
     selection.goTo(events.kind.indexOf(events.CONTACT));
     selection.pickFace(0, events.faces(selection.event)[0].face);
@@ -699,17 +715,18 @@
     selection.pickVertex(0, busiest);
     equal(shown(), capsAt(busiest).map((c) => c.event).join(" "), "the panel lists the attempts at a vertex, in order");
     const words = rows().map((r) => r.cells[3].textContent);
-    check(capsAt(busiest).every((c, i) => words[i].startsWith(c.verdict) && words[i].length > c.verdict.length + 12), "with the reasons in words", words.join("; "));
-    // A refused attempt: the patch on the front, which stays as it is.
-    const refused = capsAt(busiest).findIndex((c) => c.verdict !== "stands");
-    rows()[refused].click();
+    const named = (verdict) => (verdict === "stands" ? "accepted" : verdict);
+    check(capsAt(busiest).every((c, i) => words[i].startsWith(named(c.verdict)) && words[i].length > c.verdict.length + 12), "with the reasons in words", words.join("; "));
+    // A rejected attempt: the patch on the front, which stays as it is.
+    const rejected = capsAt(busiest).findIndex((c) => c.verdict !== "stands");
+    rows()[rejected].click();
     await frame();
-    equal(events.id(selection.event), capsAt(busiest)[refused].event, "a click on a row goes to its cap");
-    const patch = patches.get(capsAt(busiest)[refused].cause);
+    equal(events.id(selection.event), capsAt(busiest)[rejected].event, "a click on a row goes to its cap");
+    const patch = patches.get(capsAt(busiest)[rejected].cause);
     equal(view.attemptFaces(events.attempts.ofEvent.get(selection.event)).length, patch.faces, "the view shows the patch with all its faces");
     check(view.marks.shown.get("start") && view.marks.shown.get("vertex") && view.marks.shown.get("attempt").parts.length, "with its start vertex and the selected one");
     check(byId("attempt-after").disabled && byId("attempt-kept").textContent, "and says that the front stays as it is");
-    equal(rows()[refused].getAttribute("aria-current"), "true", "the row is marked");
+    equal(rows()[rejected].getAttribute("aria-current"), "true", "the row is marked");
     // An accepted one: before and after.
     const region = events.bodies[0].regionCount >> 1,
       made = slices.find((e) => e.name === "region" && e.args.region === region).args;
@@ -755,7 +772,8 @@
         const p = points.map((v) => view.views[0].toWorld(view.views[0].point(v)).project(view.camera.camera));
         return [0, 1].map((k) => p.reduce((s, q) => s + q.getComponent(k), 0) / p.length).map((c, k) => (k ? box.top + ((1 - c) / 2) * box.height : box.left + ((1 + c) / 2) * box.width));
       };
-    const [x, y] = [box.left + box.width / 2, box.top + box.height / 2],
+    const centroid = view.reach().centre.project(view.camera.camera),
+      [x, y] = [box.left + ((1 + centroid.x) * box.width) / 2, box.top + ((1 - centroid.y) * box.height) / 2],
       face = view.picker.under(x, y).face,
       clickAt = ([cx, cy]) => {
         for (const type of ["pointerdown", "pointerup", "click"]) view.canvas.dispatchEvent(new PointerEvent(type, { clientX: cx, clientY: cy, bubbles: true, button: 0 }));
@@ -900,8 +918,8 @@
     measured: [measures, fitsTheWidth],
     open: [opensAtFirstContact, showsTheOpenBody, looksAsFramesDo, fitsTheWidth],
     plane: [opensAtFirstContact, replaysAsRecorded, liesFlat, fitsTheWidth],
-    build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, listsAttempts, fitsTheWidth],
-    engine: [namesOnlyItsOwn, fitsTheWidth],
+    build: [opensAtTheBody, nothingIsCovered, replaysAsRecorded, buildsPassByPass, listsAttempts, fitsTheWidth],
+    engine: [namesOnlyItsOwn, nothingIsCovered, fitsTheWidth],
     reload: [opensAtItsAddress],
     screen: [fitsOneScreen],
     all: [

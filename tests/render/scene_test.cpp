@@ -267,6 +267,18 @@ TEST_CASE("exploded regions keep their shape and move outward") {
     CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
     if (moved.norm() > 0) CHECK(moved.dot(before) > 0);
   }
+  // A region that was just refined has moved as well, in its colour; no outline stays at its place.
+  Wrapper refined(rep);
+  refined.refine(3);
+  render::SceneHighlight highlight;
+  highlight.refining[0] = {3};
+  const render::Scene later =
+      render::build_scene(std::vector<render::SceneBody>{{&rep, &refined, {}, {}, ""}}, highlight, options);
+  CHECK(later.list.lines.empty());
+  const auto green =
+      std::count_if(later.list.triangles.begin(), later.list.triangles.end(),
+                    [&](const auto& t) { return t.colour == render::style_of(options.style).refining; });
+  CHECK(static_cast<std::size_t>(green) == rep.collector(3).size());
 }
 
 TEST_CASE("bodies of many regions can be exploded by region") {

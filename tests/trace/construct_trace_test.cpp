@@ -231,7 +231,7 @@ TEST_CASE("reasons of rejection as text, most frequent first") {
   caps[static_cast<std::size_t>(CapVerdict::accepted)] = 7;
   caps[static_cast<std::size_t>(CapVerdict::too_thick)] = 3;
   caps[static_cast<std::size_t>(CapVerdict::meets_front)] = 9;
-  CHECK(rejection_text(caps) == "9 met the hull, 3 too thick");
+  CHECK(rejection_text(caps) == "9 met the front, 3 too thick");
 }
 
 TEST_CASE("two different constructions: the first different event and field") {

@@ -195,6 +195,7 @@ function startScene() {
   leaveOut(events.passes ? ".of-query" : ".of-build");
   if (events.engine) {
     leaveOut(".of-wrappers"); // another engine has none
+    leaveOut(".about"); // nor the terms that the tab Words explains
     for (const part of document.querySelectorAll(".of-regions")) part.hidden = true;
     byId("scene").classList.add("of-engine");
     document.querySelector(".row.head span:nth-child(6)").removeAttribute("title"); // levels, not shown

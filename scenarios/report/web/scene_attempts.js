@@ -1,6 +1,6 @@
 // ---- the attempts of a builder to cover parts of the front with caps, and the places where they were made, as in
 // scenarios/record/attempts.hpp
-const ACCEPTED = "stands"; // the verdict
+const ACCEPTED = "accepted"; // the verdict
 class Attempts {
   /** `json`: {counts, vertices, verdicts}: the interior vertices of each patch on the page, and what verdicts mean. */
   constructor(events, json) {
@@ -14,7 +14,7 @@ class Attempts {
   take({ counts, vertices }) {
     const { events } = this,
       vertexCount = this.body.complete ? this.body.vertices.length / 3 : 0;
-    this.list = []; // {patch, cap, regions: [{event, region}], vertex, vertices, refused}, events by index
+    this.list = []; // {patch, cap, regions: [{event, region}], vertex, vertices, rejected}, events by index
     this.ofEvent = new Map(); // by index of a patch, a cap or a region
     this.made = new Map(); // by region: the event that made it
     const ofPatch = new Map();
@@ -34,7 +34,7 @@ class Attempts {
           vertex: events.a[cause],
           vertices: ofPatch.get(cause),
           whole: events.depthA[cause] === 0, // a whole component, at no place in particular
-          refused: outcomeText(events, i) !== ACCEPTED,
+          rejected: outcomeText(events, i) !== ACCEPTED,
         };
         this.list.push(attempt);
         this.ofEvent.set(i, attempt);
@@ -130,7 +130,7 @@ class Attempts {
     return regions.length ? regions[regions.length - 1].event : cap;
   }
 
-  /** Returns why an attempt was refused, or that it was not, in plain words. */
+  /** Returns why an attempt was rejected, or that it was not, in plain words. */
   reason(attempt) {
     const verdict = outcomeText(this.events, attempt.cap),
       pass = this.events.pass(attempt.cap),
@@ -188,10 +188,10 @@ class AttemptPanel {
       { events, here } = this;
     byId("attempts").hidden = !picked || !this.attempts.body.complete;
     if (byId("attempts").hidden) return;
-    const refused = here.filter((a) => a.refused).length,
-      accepted = here.length - refused,
+    const rejected = here.filter((a) => a.rejected).length,
+      accepted = here.length - rejected,
       more = events.ids ? " among the events of this page" : "";
-    byId("attempts-title").textContent = `Attempts here: ${refused} refused, ${accepted} accepted${more}`;
+    byId("attempts-title").textContent = `Attempts here: ${rejected} rejected, ${accepted} accepted${more}`;
     byId("attempts-note").textContent = here.length
       ? ""
       : picked.vertex !== NONE || picked.face !== NONE
@@ -233,14 +233,14 @@ class AttemptPanel {
       if (row.attempt === current) row.setAttribute("aria-current", "true");
       else row.removeAttribute("aria-current");
     }
-    const after = current && this.selection.event === this.attempts.after(current) && !current.refused;
+    const after = current && this.selection.event === this.attempts.after(current) && !current.rejected;
     byId("attempt-parts").hidden = !current;
     if (!current) return;
     byId("attempt-before").setAttribute("aria-pressed", !after);
     byId("attempt-after").setAttribute("aria-pressed", Boolean(after));
     byId("attempt-after").disabled = !current.regions.length;
-    byId("attempt-kept").textContent = !current.refused
+    byId("attempt-kept").textContent = !current.rejected
       ? ""
-      : "Refused: the front stays as it is. The trace has the patch and the sizes of the cap, not its shape.";
+      : "Rejected: the front stays as it is. The trace has the patch and the sizes of the cap, not its shape.";
   }
 }

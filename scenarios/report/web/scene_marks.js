@@ -350,11 +350,12 @@ class Legend {
       items = [];
     bodies.forEach((b) => {
       const name = bodies.length > 1 ? `${SIDES[b.side]} ${b.name}` : b.name,
-        colour = colours.bodies[b.side];
+        colour = colours.bodies[b.side],
+        pale = ["layer", "region"].includes(now.by) ? colours.shares.ground : key ? colours.shares.noValue : 0;
       items.push([
-        css(key ? mixed(colour, WHITE, colours.shares.noValue) : colour),
+        css(mixed(colour, WHITE, pale)),
         `${name}${this.view.events?.engine ? "" : ", real faces"}${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
-        key ? css(colours.edge(b.side)) : "",
+        pale ? css(colours.edge(b.side)) : "",
       ]);
       if (!key && now.by === "kind" && b.regionCount && !this.view.events?.engine)
         items.push([css(colours.lid(b.side)), `${name}, pseudo faces`, css(colours.edge(b.side))]);

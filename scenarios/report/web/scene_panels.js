@@ -445,7 +445,7 @@ class Panel {
     ];
     if (outcomeText(events, i)) rows.push(["result", outcomeText(events, i)]);
     const attempt = events.attempts && events.attempts.ofEvent.get(i);
-    if (attempt && i === attempt.cap) rows.push([attempt.refused ? "refused" : "accepted", events.attempts.reason(attempt)]);
+    if (attempt && i === attempt.cap) rows.push([attempt.rejected ? "rejected" : "accepted", events.attempts.reason(attempt)]);
     if (level >= 0 && !events.engine) rows.push(["level", level, "number of regions between it and the outside"]);
     if (cause >= 0)
       rows.push([

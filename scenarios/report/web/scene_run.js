@@ -544,6 +544,6 @@ function eventSentence(events, wrappers, i) {
   const result = meet ? ` (${meet})` : "";
   const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventText(events, i)}${result}.`;
   if (!wrappers || events.engine) return about;
-  if (events.passes) return `${about} Hull: ${digits(wrappers.sizes[0])} faces.`;
+  if (events.passes) return `${about} Front: ${digits(wrappers.sizes[0])} faces.`;
   return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizeText(events.bodies, wrappers.sizes)}.`;
 }

@@ -46,6 +46,7 @@ class SceneCamera {
       { passive: true, capture: true },
     );
     this.controls.addEventListener("change", changed);
+    this.window = { left: 0, top: 0, bottom: 1 }; // part of the view whose centre is the picture's
     this.fitted = false; // true after fit(): the view is refitted to a resized window
     this.controls.addEventListener("start", () => {
       this.fitted = false;
@@ -64,6 +65,7 @@ class SceneCamera {
     this.perspective.aspect = this.aspect;
     this.flat.left = -this.aspect;
     this.flat.right = this.aspect;
+    this.shift(this.window);
   }
 
   /** Called before drawing: updates the range of depths to the distance. */
@@ -90,30 +92,47 @@ class SceneCamera {
   }
 
   /** Shows all points as large as possible, from the current or a given direction; as in
-      render/include/lrbscope/render/camera.hpp. */
-  fit(points, from) {
+      render/include/lrbscope/render/camera.hpp. `covered`: parts of the view, from its left, that hide what is
+      under them: {right, top, bottom}, in shares of its width and height. */
+  fit(points, from, covered = []) {
     this.fitted = true;
     const out = (
       from ? new THREE.Vector3(...from) : this.camera.position.clone().sub(this.controls.target)
     ).normalize();
     const right = this.up.clone().cross(out).normalize(),
       up = out.clone().cross(right);
-    const share = 0.92,
-      slopeY = Math.tan(FIELD / 2) * share,
-      slopeX = slopeY * this.aspect; // the other axis is free
-    const most = {
-      right: -Infinity,
-      left: -Infinity,
-      top: -Infinity,
-      bottom: -Infinity,
-      near: -Infinity,
-      far: Infinity,
-    };
-    for (const p of points) {
+    // The bodies fit beside, below or above a covered part: take a large and central picture that none of them covers.
+    let windows = [{ left: 0, top: 0, bottom: 1 }];
+    for (const c of covered)
+      windows = windows.flatMap((w) => [
+        w,
+        { ...w, left: Math.max(w.left, c.right) },
+        c.top + c.bottom < 1 ? { ...w, top: Math.max(w.top, c.bottom) } : { ...w, bottom: Math.min(w.bottom, c.top) },
+      ]);
+    const fits = windows
+      .map((window) => this.fitIn(window, points, right, up, out))
+      .sort((p, q) => p.depth * (1 + p.window.left / 2) - q.depth * (1 + q.window.left / 2));
+    const clear = (f) => covered.every((c) => f.left >= c.right || (c.top + c.bottom < 1 ? f.top >= c.bottom : f.bottom <= c.top));
+    const best = fits.find(clear) || fits[0];
+    this.shift(best.window);
+    this.controls.target.copy(best.centre).addScaledVector(out, best.midpoint);
+    this.camera.position.copy(best.centre).addScaledVector(out, best.depth);
+    this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));
+    this.controls.update();
+  }
+
+  /** Returns the centre, depth and midpoint in depth of the camera that shows all points in a window of the
+      view, and the left, top and bottom ends of their picture, in shares of the view. */
+  fitIn(window, points, right, up, out) {
+    const width = 1 - window.left,
+      height = window.bottom - window.top,
+      share = 0.92,
+      slopeY = Math.tan(FIELD / 2) * share * height,
+      slopeX = Math.tan(FIELD / 2) * share * width * this.aspect; // the other axis is free
+    const most = { right: -Infinity, left: -Infinity, top: -Infinity, bottom: -Infinity, near: -Infinity, far: Infinity };
+    const seen = points.map((p) => [p.dot(right), p.dot(up), p.dot(out)]);
+    for (const [x, y, z] of seen) {
       // moving towards the eye moves a point away from the centre
-      const x = p.dot(right),
-        y = p.dot(up),
-        z = p.dot(out);
       most.right = Math.max(most.right, x + slopeX * z);
       most.left = Math.max(most.left, -x + slopeX * z);
       most.top = Math.max(most.top, y + slopeY * z);
@@ -121,16 +140,30 @@ class SceneCamera {
       most.near = Math.max(most.near, z);
       most.far = Math.min(most.far, z);
     }
-    const depth = Math.max((most.right + most.left) / 2 / slopeX, (most.top + most.bottom) / 2 / slopeY),
-      midpoint = (most.near + most.far) / 2;
-    const centre = right
-      .clone()
-      .multiplyScalar((most.right - most.left) / 2)
-      .addScaledVector(up, (most.top - most.bottom) / 2);
-    this.controls.target.copy(centre).addScaledVector(out, midpoint);
-    this.camera.position.copy(centre).addScaledVector(out, Math.max(depth, most.near + 1e-6));
-    this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));
-    this.controls.update();
+    const depth = Math.max(
+        (most.right + most.left) / 2 / slopeX,
+        (most.top + most.bottom) / 2 / slopeY,
+        most.near + 1e-6,
+      ),
+      x = (most.right - most.left) / 2,
+      y = (most.top - most.bottom) / 2,
+      ends = { left: Infinity, top: Infinity, bottom: -Infinity };
+    for (const p of seen) {
+      const scale = share / 2 / (depth - p[2]),
+        down = window.top + height / 2 - ((p[1] - y) * scale * height) / slopeY;
+      ends.left = Math.min(ends.left, window.left + width / 2 + ((p[0] - x) * scale * width) / slopeX);
+      ends.top = Math.min(ends.top, down);
+      ends.bottom = Math.max(ends.bottom, down);
+    }
+    const centre = right.clone().multiplyScalar(x).addScaledVector(up, y);
+    return { window, centre, depth, midpoint: (most.near + most.far) / 2, ...ends };
+  }
+
+  /** Moves the picture's centre to that of a window of the view. */
+  shift(window) {
+    const { left, top, bottom } = (this.window = window);
+    for (const camera of [this.perspective, this.flat])
+      camera.setViewOffset(this.aspect, 1, (-left / 2) * this.aspect, (1 - top - bottom) / 2, this.aspect, 1);
   }
 
   /** Zooms by a factor; above 1: closer. */
@@ -310,7 +343,7 @@ class BodiesCanvas {
     this.size.set(width, height);
     this.renderer.setSize(width, height, false);
     this.camera.resize(width, height);
-    if (this.camera.fitted) this.camera.fit(this.extremes());
+    if (this.camera.fitted) this.camera.fit(this.extremes(), null, this.covered());
     this.redraw();
   }
 
@@ -339,8 +372,21 @@ class BodiesCanvas {
     return ball;
   }
 
+  /** Returns the parts of the view under the legend and the caption, where these are drawn over it. */
+  covered() {
+    const box = this.canvas.getBoundingClientRect();
+    return ["legend", "view-caption"]
+      .map((name) => byId(name)?.getBoundingClientRect())
+      .filter((r) => r?.width && r.bottom > box.top + 1 && r.top < box.bottom - 1)
+      .map((r) => ({
+        right: (r.right - box.left) / box.width,
+        top: (r.top - box.top) / box.height,
+        bottom: (r.bottom - box.top) / box.height,
+      }));
+  }
+
   frameAll(from) {
-    this.camera.fit(this.extremes(), from);
+    this.camera.fit(this.extremes(), from, this.covered());
     this.redraw();
   }
 

@@ -406,9 +406,13 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
     CHECK(box.contains(text));
     CHECK(centre.intersection(text).isEmpty());
     CHECK(text.exteriorDistance(places[i].leader) < 1e-9);
+    CHECK(places[i].covered == 0);
     for (std::size_t k = 0; k < i; ++k)
       CHECK((places[i].text - places[k].text).cwiseAbs().cwiseQuotient(sizes[i]).maxCoeff() >= 1);
   }
+  const render::Image full(100, 100, render::kBlack);
+  const std::vector<CalloutPlace> over = place_callouts(box, full, anchors, sizes);
+  CHECK(over[0].covered == 1);
 }
 
 TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in the panel as well") {

@@ -83,12 +83,12 @@ TEST_CASE("attempts by region: those that could have covered what it covers, and
     REQUIRE(attempts.size() > 20);
     const auto of_region = run::attempts_by_region(built.trace, built.rep, attempts);
     REQUIRE(of_region.size() == built.rep.region_count());
-    std::size_t refused = 0, accepted = 0;
-    for (const run::Attempt& a : attempts) (a.refused() ? refused : accepted) += 1;
+    std::size_t rejected = 0, accepted = 0;
+    for (const run::Attempt& a : attempts) (a.rejected() ? rejected : accepted) += 1;
     std::size_t caps = 0;
     for (const auto& pass : trace::passes_of(built.trace)) caps += pass.caps[0];
     CHECK(accepted == caps);
-    CHECK(refused > 0);
+    CHECK(rejected > 0);
     for (RegionId r(0); r < built.rep.region_count(); ++r) {
       const auto kept = vertices_of(built.rep, built.rep.lids(r));
       std::set<std::uint32_t> covered = vertices_of(built.rep, built.rep.floor(r));
@@ -104,7 +104,7 @@ TEST_CASE("attempts by region: those that could have covered what it covers, and
       }
       CHECK(of_region[r] == expected);
       // Nothing is tried at a place after it was covered, except that in 2D chains whose part is covered are
-      // refused.
+      // rejected.
       bool made = false;
       for (const std::uint32_t i : of_region[r]) {
         if (made) CHECK((attempts[i].vertices.empty() && attempts[i].verdict == CapVerdict::overlaps));

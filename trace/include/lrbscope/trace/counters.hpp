@@ -137,7 +137,10 @@ Chart chart_over_construction(const Trace& trace);
 /// reasons.
 Chart chart_over_passes(const Trace& trace);
 
-/// Returns the reasons for rejection, most frequent first: "9 met the hull, 3 too thick".
+/// Returns a verdict in the words of pages and pictures: "accepted", "met the front". The names in files are
+/// older.
+std::string_view text_of(CapVerdict verdict);
+/// Returns the reasons for rejection, most frequent first: "9 met the front, 3 too thick".
 std::string rejection_text(const std::array<std::uint32_t, kEnumNames<CapVerdict>.size()>& caps);
 
 /// Returns the number of caps by verdict, over all given passes.
