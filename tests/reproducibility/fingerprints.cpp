@@ -1,6 +1,6 @@
 // fingerprints [THREADS]: hashes of the engine's results, one per line: bodies, .lrb files, queries of
-// every class of the torture suite, traces. reproducibility.sh compares what it prints over compilers,
-// optimisation and threads.
+// every class of the torture suite, distances, first contacts, clashes, traces. reproducibility.sh compares
+// its output over compilers, optimisation and threads.
 
 #include <atomic>
 #include <cstdio>
@@ -14,10 +14,14 @@
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include <lrbscope/build.hpp>
+#include <lrbscope/clash.hpp>
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>
+#include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/first_contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/motion.hpp>
 #include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 
@@ -82,6 +86,49 @@ std::uint64_t ask(const cases::Case& c, QueryContext& context) {
   return h.value();
 }
 
+constexpr std::size_t kEachNth = 11;  // of the cases, for queries that take longer: one of every difficulty
+
+/// Distances, times of first contact and clashes, to the last bit.
+void print_numbers(const std::string& name, const std::vector<cases::Case>& cases) {
+  Fnv64 distances, contacts, clashes;
+  const auto add = [](Fnv64& h, const auto& question) {
+    try {
+      question();
+    } catch (const InputError& e) {  // refused: the same words everywhere
+      h.add_value(hash_of_bytes(e.what()));
+    }
+  };
+  for (std::size_t i = 0; i < cases.size(); i += kEachNth) {
+    const cases::Case& c = cases[i];
+    add(distances, [&] {
+      const DistanceResult r = distance(*c.a, c.pose_a, *c.b, c.pose_b);
+      for (const double x : {r.lower, r.upper}) distances.add_value(x);
+      for (const Witness& w : r.witness) add_vector(distances, w.point);
+    });
+    add(contacts, [&] {
+      Pose end = c.pose_b;
+      end.t = 2 * c.pose_a.t - end.t;  // to the other side of A
+      const FirstContactResult r =
+          first_contact(*c.a, Motion::still(c.pose_a), *c.b, Motion::screw(c.pose_b, end));
+      contacts.add_value(r.outcome);
+      for (const double t : {r.t0, r.t1}) contacts.add_value(t);
+      add_vector(contacts, r.normal);
+    });
+    add(clashes, [&] {
+      const ClashResult r = clash(*c.a, c.pose_a, *c.b, c.pose_b);
+      clashes.add_value(r.kind);
+      for (const auto& interval : {r.depth, r.volume})
+        for (const double x :
+             {interval.value_or(ProvedInterval{}).lower, interval.value_or(ProvedInterval{}).upper})
+          clashes.add_value(x);
+      add_vector(clashes, r.translation);
+    });
+  }
+  print("distances " + name, distances.value());
+  print("first contacts " + name, contacts.value());
+  print("clashes " + name, clashes.value());
+}
+
 /// All cases at once, each thread with a context of its own; bodies are shared.
 std::uint64_t ask_all(const std::vector<cases::Case>& cases, unsigned threads) {
   std::vector<std::uint64_t> answers(cases.size());
@@ -100,7 +147,8 @@ std::uint64_t ask_all(const std::vector<cases::Case>& cases, unsigned threads) {
 }
 
 std::vector<cases::Body> generated_bodies() {
-  const std::string file = std::filesystem::temp_directory_path() / ("lrb-" + std::to_string(std::rand()));
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("lrb-" + std::to_string(std::rand()))).string();
   std::vector<cases::Body> bodies;
   for (const generators::Generator& g : generators::generators()) {
     bodies.push_back(std::make_shared<const LrbRep>(build_lrb(generators::generate(g.name))));
@@ -150,8 +198,11 @@ int main(int argc, char** argv) {
   const auto bodies = generated_bodies();
   const auto pairs = cases_of(bodies);
   print("generated bodies", ask_all(pairs, threads));
-  for (const cases::Family& family : cases::all_families())
-    print(std::string("class ") + family.name, ask_all(cases_of(family), threads));
+  for (const cases::Family& family : cases::all_families()) {
+    const auto cases = cases_of(family);
+    print(std::string("class ") + family.name, ask_all(cases, threads));
+    print_numbers(family.name, cases);
+  }
   for (const Recursion recursion : {Recursion::complete, Recursion::paper})
     print_trace(pairs.front(), recursion);
 }
