@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # docs/figures.sh [LRBSCOPE]: makes the pictures of bodies in README and docs: figure2.png, collision.png, crowd.png,
-# figure.png, distance.png, near.png, manifold.png, first_contact.png and clash.png. (xray.png is a measurement: docs/profiling.md.)
+# figure.png, distance.png, near.png, points.png, manifold.png, first_contact.png and clash.png. (xray.png is a measurement: docs/profiling.md.)
 # docs/figures.sh chart [LRBSCOPE [OPTION...]]: measures and makes only chart.png, with these options of lrbscope chart.
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -25,6 +25,8 @@ answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE OPTION...: a picture of one 
 }
 answer distance distance --poses "0.8 0 0.6 3.1  0 1 0 0.9  -0.6 0 0.8 0.5" 640x400
 answer near near --poses "0.8 0 0.6 2.2  0 1 0 0.6  -0.6 0 0.8 0.25" 640x400 --within 0.25
+awk 'BEGIN { for (i = -4; i <= 4; i++) for (j = -4; j <= 4; j++) print 0.4 * i, 0.4 * j, 0 }' >"$work/points.txt"
+run points "$work/collision/b.lrb" "$work/points.txt" --draw "$docs/points.png" --size 640x400
 answer clash clash --poses "0.8 0 0.6 1.5  0 1 0 0.2  -0.6 0 0.8 0.3" 760x475
 answer first_contact sweep --motions "1 0 0 7  0 1 0 0.6  0 0 1 0.5   0 0 1 -3  0 1 0 -0.3  -1 0 0 0.1" 760x475
 mkdir "$work/rest"

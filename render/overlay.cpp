@@ -357,4 +357,8 @@ std::string short_number(double value) {
   return text;
 }
 
+std::string percent(double share) {
+  return short_number(100 * share) + " %";
+}
+
 }  // namespace lrb::render

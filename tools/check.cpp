@@ -1,12 +1,12 @@
 #include "scenarios/profile/check.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 
 #include "scenarios/profile/captured.hpp"
 #include "tools/commands.hpp"
+#include "tools/import.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
@@ -25,31 +25,12 @@ struct CheckOptions {
   bool split = false, json = false;
 };
 
-/// Parses "40-60" or "40". Throws InputError for anything else.
-std::array<std::uint32_t, 2> query_range(const std::string& text) {
-  std::array<std::uint32_t, 2> out{1, kNull};
-  if (text.empty()) return out;
-  const char *at = text.data(), *const end = at + text.size();
-  const auto number = [&](std::uint32_t& n) {
-    const auto [next, error] = std::from_chars(at, end, n);
-    at = next;
-    return error == std::errc();
-  };
-  bool good = number(out[0]);
-  out[1] = out[0];
-  if (good && at != end && *at == '-') ++at, good = number(out[1]);
-  if (!good || at != end || out[0] == 0 || out[1] < out[0])
-    throw InputError("--queries: expected FIRST-LAST, found '" + text + "'; queries are numbered from 1");
-  return out;
-}
-
 /// Returns a capture, read from a file or converted from a recorded run of lrbscope.
-capture::Capture open_capture(const std::string& path, const std::array<std::uint32_t, 2>& range) {
+capture::Capture open_capture(const std::string& path, const QueryRange& range) {
   const bool is_run = std::filesystem::is_directory(path) || path.ends_with(".json");
-  if (!is_run) return capture::read_capture(path, range[0], range[1]);
+  if (!is_run) return capture::read_capture(path, range.first, range.last);
   capture::Capture out = profile::captured(run::open_run(path));
-  std::erase_if(out.queries,
-                [&](const capture::Query& q) { return q.number < range[0] || q.number > range[1]; });
+  std::erase_if(out.queries, [&](const capture::Query& q) { return !range.contains(q.number); });
   return out;
 }
 
@@ -173,7 +154,7 @@ void write_page(const std::vector<profile::Check>& checks, const std::string& pa
 }
 
 int run_check(const CheckOptions& o, const Globals& globals) {
-  const std::array<std::uint32_t, 2> range = query_range(o.queries);
+  const QueryRange range = parse_queries(o.queries);
   profile::CheckSettings settings{o.precision, std::nullopt};
   if (o.split) settings.split = true;
   std::vector<profile::Check> checks;
@@ -208,7 +189,8 @@ Command add_check(CLI::App& root, const Globals& globals) {
          "Captures, written by lrbscope_capture.h, or runs of lrbscope recorded with --events nodes; "
          "several are compared")
       ->required();
-  app->add_option("--queries", o->queries, "Only these queries, by number")->type_name("FIRST-LAST");
+  app->add_option("--queries", o->queries, "Only these queries, by number from 1: 40-60, 40- or 40")
+      ->type_name("FIRST-LAST");
   add_choice<profile::Precision>(*app, "--precision", o->precision,
                                  "Number format of the engine, which decides how close to contact its tests "
                                  "may err [float if all volumes are floats, else double]");

@@ -94,6 +94,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   if (!o.poses.empty()) io::open_poses(o.poses);  // check the file before an expensive build
   if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
   if (o.more.near) check_request(NearPairsRequest{.within = *o.more.near});
+  if (!o.more.points.empty()) io::read_points(o.more.points);
   if (o.more.manifold) check_request(ManifoldRequest{.margin = *o.more.manifold});
   const run::ProgressReport progress = progress_report(globals.quiet);
   auto both = bodies::load_two_bodies(o.a, o.b, with_progress({}, globals.quiet), o.corners);
@@ -140,6 +141,10 @@ Command add_collide(CLI::App& root, const Globals& globals) {
                   "Also find the contact manifolds at each step, with speculative contacts up to this "
                   "distance, in mesh units")
       ->type_name("D");
+  app->add_option("--points", o->more.points,
+                  "Also compute the signed distances of points to A at each step: lines of 3 numbers, x y z, "
+                  "in B's frame")
+      ->type_name("FILE");
   add_events_option(*app, o->events);
   add_clock_option(*app, o->clock);
   add_picture_options(*app, o->picture);

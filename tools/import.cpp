@@ -26,35 +26,6 @@ struct ImportOptions {
   PictureOptions picture;
 };
 
-/// A range of queries by number, both included.
-struct QueryRange {
-  std::uint32_t first = 1, last = kNull;
-};
-
-/// Reads "40-60", "40" or "40-". Throws InputError.
-QueryRange range_of(const std::string& text) {
-  QueryRange out;
-  if (text.empty()) return out;
-  const char *at = text.data(), *const end = text.data() + text.size();
-  const auto number = [&](std::uint32_t& value) {
-    const auto [after, error] = std::from_chars(at, end, value);
-    if (error != std::errc()) return false;
-    at = after;
-    return true;
-  };
-  bool ok = number(out.first);
-  if (ok && at == end) {
-    out.last = out.first;
-  } else if (ok && *at == '-') {
-    ++at;
-    ok = at == end || number(out.last);
-  }
-  if (!ok || at != end || out.first == 0 || out.last < out.first)
-    throw InputError("--queries: expected numbers from 1 as 40-60, 40- or 40, found '" +
-                     printable_name(text) + "'");
-  return out;
-}
-
 /// Returns the name of a tree's mesh; of one that is named after its file, the file's name alone.
 std::string mesh_name(const capture::Capture& c, std::uint32_t tree) {
   const std::filesystem::path name = c.meshes[c.trees[tree].mesh].name;
@@ -171,7 +142,7 @@ void write_list(const std::string& folder, const Globals& globals, const capture
 }
 
 int run_import(const ImportOptions& o, const Globals& globals) {
-  const QueryRange range = range_of(o.queries);
+  const QueryRange range = parse_queries(o.queries);
   capture::Capture c = capture::read_capture(o.file, range.first, range.last);
   if (c.engine.empty()) c.engine = "another engine";
   profile::TreePairs found = profile::tree_pairs(c);
@@ -220,6 +191,29 @@ int run_import(const ImportOptions& o, const Globals& globals) {
 }
 
 }  // namespace
+
+QueryRange parse_queries(const std::string& text) {
+  QueryRange out;
+  if (text.empty()) return out;
+  const char *at = text.data(), *const end = text.data() + text.size();
+  const auto number = [&](std::uint32_t& value) {
+    const auto [after, error] = std::from_chars(at, end, value);
+    if (error != std::errc()) return false;
+    at = after;
+    return true;
+  };
+  bool ok = number(out.first);
+  if (ok && at == end) {
+    out.last = out.first;
+  } else if (ok && *at == '-') {
+    ++at;
+    ok = at == end || number(out.last);
+  }
+  if (!ok || at != end || out.first == 0 || out.last < out.first)
+    throw InputError("--queries: expected numbers from 1 as 40-60, 40- or 40, found '" +
+                     printable_name(text) + "'");
+  return out;
+}
 
 void write_query_page(const capture::Capture& capture, const std::string& source, const std::string& folder,
                       const Globals& globals) {

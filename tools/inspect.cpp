@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <memory>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <string>
@@ -11,15 +12,18 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "render/pictures/answer_picture.hpp"
 #include "render/pictures/body_picture.hpp"
 #include "render/pictures/findings_picture.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/region_figures.hpp"
+#include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/run/answer_page.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
@@ -128,7 +132,7 @@ std::string region_caption(const bodies::RegionFigures& r) {
 
 struct InspectOptions {
   bodies::Corners corners = bodies::Corners::joined;
-  std::string file, picture, drawing;
+  std::string file, picture, drawing, page;
   PictureOptions pictures;
   bool validate = false, render = false, json = false;
   bool regions = false, tried = false, self_intersections = false;
@@ -136,13 +140,48 @@ struct InspectOptions {
   unsigned threads = 0;
 };
 
+/// Returns the drawing options, with this size unless one is given. Height 0: to be computed.
+render::Look sheet_look(const InspectOptions& o, int width, int height) {
+  if (!o.render && o.drawing.empty()) {
+    const CameraOptions& camera = o.pictures.camera;
+    const std::pair<bool, const char*> of_pictures[] = {{!o.pictures.size.empty(), "--size"},
+                                                        {o.pictures.dpi.has_value(), "--dpi"},
+                                                        {o.pictures.style.has_value(), "--style"},
+                                                        {!camera.from.empty(), "--from"},
+                                                        {!camera.look_at.empty(), "--look-at"},
+                                                        {camera.zoom.has_value(), "--zoom"},
+                                                        {camera.orthographic.has_value(), "--projection"},
+                                                        {!camera.up.empty(), "--up"}};
+    for (const auto& [given, name] : of_pictures)
+      if (given)
+        throw InputError(std::string(name) + ": needs --render or --draw; add one, or leave " + name +
+                         " out");
+  }
+  render::FrameSpec frames;
+  frames.width = width;
+  frames.height = height;
+  apply(o.pictures, frames);
+  if (frames.height > 0) run::check_frame_size(frames);
+  run::to_pixels(frames);
+  return frames;
+}
+
 /// Prints a JSON line for each pair of faces that intersect.
 int list_self_intersections(const InspectOptions& o, const Globals& globals) {
+  const render::Look look = sheet_look(o, run::kAnswerWidth, run::kAnswerHeight);
+  if (!o.page.empty()) compare::reject_folder_of_run(o.page, "--page");
   std::vector<std::string> notes;
-  const SelfIntersections found =
-      bodies::is_lrb_file(o.file)
-          ? self_intersections(load_lrb(o.file))
-          : self_intersections(check(bodies::read_body(o.file, o.corners, notes), MeshFinding::kShown));
+  SelfIntersections found;
+  std::optional<LrbRep> body;  // to be drawn
+  if (bodies::is_lrb_file(o.file)) {
+    body.emplace(load_lrb(o.file));
+    found = self_intersections(*body);
+  } else {
+    const CheckedMesh mesh = check(bodies::read_body(o.file, o.corners, notes), MeshFinding::kShown);
+    found = self_intersections(mesh);
+    if (!o.drawing.empty() || !o.page.empty()) body.emplace(bodies::faces_of_mesh(mesh.mesh()).rep);
+  }
+  if (!o.drawing.empty()) run::check_views(look.views, body->dim());
   note(globals, notes);
   std::string lines;
   for (const SelfIntersection& pair : found.pairs) {
@@ -164,6 +203,8 @@ int list_self_intersections(const InspectOptions& o, const Globals& globals) {
   print(lines);
   note(globals, {render::counted(found.pairs.size(), "pair", "pairs") + " of faces, " +
                  render::counted(found.curves, "curve", "curves")});
+  if (!o.drawing.empty()) run::write_picture(run::picture_of(found, *body, look), o.drawing, look.dpi);
+  if (!o.page.empty()) run::write_page(o.page, *body, found, globals.command_line);
   return found.pairs.empty() ? kOk : kMismatch;
 }
 
@@ -262,36 +303,10 @@ Json layers_json(const LrbRep& rep) {
   return out;
 }
 
-/// Returns the drawing options. For findings (`drawing`), the height is computed unless a size is given.
-render::Look sheet_look(const InspectOptions& o, bool drawing) {
-  if (!o.render && o.drawing.empty()) {
-    const CameraOptions& camera = o.pictures.camera;
-    const std::pair<bool, const char*> of_pictures[] = {{!o.pictures.size.empty(), "--size"},
-                                                        {o.pictures.dpi.has_value(), "--dpi"},
-                                                        {o.pictures.style.has_value(), "--style"},
-                                                        {!camera.from.empty(), "--from"},
-                                                        {!camera.look_at.empty(), "--look-at"},
-                                                        {camera.zoom.has_value(), "--zoom"},
-                                                        {camera.orthographic.has_value(), "--projection"},
-                                                        {!camera.up.empty(), "--up"}};
-    for (const auto& [given, name] : of_pictures)
-      if (given)
-        throw InputError(std::string(name) + ": needs --render or --draw; add one, or leave " + name +
-                         " out");
-  }
-  render::FrameSpec frames;
-  frames.width = drawing ? run::kFindingsSheetWidth : run::kBodySheetWidth;
-  frames.height = drawing ? 0 : run::kBodySheetHeight;
-  apply(o.pictures, frames);
-  if (frames.height > 0) run::check_frame_size(frames);
-  run::to_pixels(frames);
-  return frames;
-}
-
 void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json& j,
                    std::vector<std::string>& notes) {
   const std::string& path = o.drawing;
-  const render::Look look = sheet_look(o, true);
+  const render::Look look = sheet_look(o, run::kFindingsSheetWidth, 0);
   run::check_views(look.views, faulty.mesh.dim);
   j["drawing"] = nullptr;
   if (const auto picture = run::picture_of(faulty, look)) {
@@ -361,7 +376,7 @@ std::string as_text(const Json& j) {
 
 int run_inspect(const InspectOptions& o, const Globals& globals) {
   if (o.self_intersections) return list_self_intersections(o, globals);
-  render::Look look = sheet_look(o, false);
+  render::Look look = sheet_look(o, run::kBodySheetWidth, run::kBodySheetHeight);
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
@@ -436,7 +451,8 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
       ->needs(regions);
   app->get_option("--sort")->needs(regions);
   app->add_option("--draw", o->drawing,
-                  "Draw the mesh's defects to this PNG, with the first defective elements marked")
+                  "Draw the mesh's defects to this PNG, with the first defective elements marked; with "
+                  "--self-intersections, the pairs and the segments in which they intersect")
       ->type_name("FILE.png");
   app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
   add_size_options(*app, o->pictures);
@@ -447,8 +463,11 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
                     "Only list the pairs of faces that intersect, one JSON line each, with kind, segments "
                     "and curve; exit code 1 if there are any");
   for (CLI::Option* other : {json, regions, app->get_option("--validate"), app->get_option("--render"),
-                             app->get_option("--draw"), app->get_option("--output")})
+                             app->get_option("--output")})
     pairs->excludes(other);
+  app->add_option("--page", o->page, "Write a page with a 3D view of the pairs and their curves")
+      ->type_name("DIR")
+      ->needs(pairs);
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
 }

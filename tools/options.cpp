@@ -343,7 +343,8 @@ void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Rec
   const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
   std::vector<render::FrameSpec::View>& views = scenario.frames.views;
   const Eigen::Vector3d up = views[0].up;
-  if (given.from.empty()) {
+  // Directions are compared in drawn pictures, which a run without frames must not need.
+  if (given.from.empty() && scenario.frames.at != render::FrameSpec::At::none) {
     const Eigen::Vector3d from = run::min_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
     for (render::FrameSpec::View& view : views) view.from = from;
   }

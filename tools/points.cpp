@@ -3,8 +3,12 @@
 #include <memory>
 #include <span>
 
+#include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/io/poses.hpp"
+#include "scenarios/run/answer_page.hpp"
+#include "tools/bounds_chart.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/pose_lines.hpp"
@@ -17,9 +21,10 @@ namespace {
 
 struct PointsOptions {
   bodies::Corners corners = bodies::Corners::joined;
-  std::string body, points;
+  std::string body, points, page;
   PointDistanceRequest request;
   unsigned threads = 0;
+  DrawOptions draw;
 };
 
 std::string line_of(std::size_t point, const PointDistance& d) {
@@ -36,6 +41,8 @@ std::string line_of(std::size_t point, const PointDistance& d) {
 }
 
 int run_points(const PointsOptions& o, const Globals& globals) {
+  const render::Look look = look_of(o.draw);
+  if (!o.page.empty()) compare::reject_folder_of_run(o.page, "--page");
   const std::vector<Eigen::Vector3d> points = io::read_points(o.points);
   const bodies::LoadedBody body = bodies::load_faces(o.body, o.corners);
   note(globals, body.notes);
@@ -44,6 +51,7 @@ int run_points(const PointsOptions& o, const Globals& globals) {
     note(globals, {"the body is not closed: it has no inside, and distances have no sign"});
   // Batches bound the memory, show progress and print the first answers early.
   constexpr std::size_t kBatch = 4096;
+  run::ShownPoints shown(points.size());
   Progress progress("points", points.size(), globals.quiet);
   for (std::size_t i = 0; i < points.size(); i += kBatch) {
     const auto batch = std::span(points).subspan(i, std::min(kBatch, points.size() - i));
@@ -51,8 +59,12 @@ int run_points(const PointsOptions& o, const Globals& globals) {
     std::string lines;
     for (std::size_t k = 0; k < found.size(); ++k) lines += line_of(i + k, found[k]);
     print(lines);
+    shown.add(batch, found);
     progress.set(i + batch.size());
   }
+  progress.finish();
+  if (!o.draw.picture.empty()) run::write_picture(run::picture_of(shown, body.rep, look), o.draw.picture);
+  if (!o.page.empty()) run::write_page(o.page, body.rep, shown, globals.command_line);
   return kOk;
 }
 
@@ -74,6 +86,11 @@ Command add_points(CLI::App& root, const Globals& globals) {
       ->type_name("E");
   app->add_option("--threads", o->threads, "Number of threads [all cores]; the result does not depend on it")
       ->type_name("N");
+  add_picture_options(*app, o->draw,
+                      "Draw the body with the points in the colours of their sides, and segments to the "
+                      "closest points");
+  app->add_option("--page", o->page, "Write a page with a 3D view of the body and the points")
+      ->type_name("DIR");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_points(*o, globals); }};
 }

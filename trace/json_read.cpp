@@ -308,6 +308,22 @@ void read_value(const TraceNode& node, MeasuredManifolds& m) {
   });
 }
 
+void read_value(const TraceNode& node, MeasuredPoints& m) {
+  m.count = node.at("count").integer<std::uint64_t>();
+  m.inside = node.at("inside").integer<std::uint64_t>();
+  m.on_surface = node.at("on_surface").integer<std::uint64_t>();
+  m.has_sides = node.at("has_sides").boolean();
+  read_rows(node.at("smallest"), 10, [&](const TraceNode& row) {
+    MeasuredPoints::Point& p = m.smallest.emplace_back();
+    p.number = row.at(std::size_t{0}).integer<std::uint32_t>();
+    p.face = FaceId(row.at(std::size_t{1}).integer<std::uint32_t>(kMaxId));
+    p.lower = row.at(std::size_t{2}).number();
+    p.upper = row.at(std::size_t{3}).number();
+    read_columns(row, 4, p.points[0]);
+    read_columns(row, 7, p.points[1]);
+  });
+}
+
 void read_marks(const TraceNode& node, std::vector<EngineReport::Mark>& marks, bool with_value) {
   const std::size_t count = node.array_size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -355,6 +371,7 @@ void read_field(const TraceNode& node, const Field<Record, Value>& field, Value&
                      std::is_same_v<Value, std::optional<MeasuredClash>> ||
                      std::is_same_v<Value, std::optional<MeasuredNearPairs>> ||
                      std::is_same_v<Value, std::optional<MeasuredManifolds>> ||
+                     std::is_same_v<Value, std::optional<MeasuredPoints>> ||
                      std::is_same_v<Value, std::optional<EngineReport>>)
     read_value(node, value.emplace());
   else if constexpr (std::is_same_v<Value, Counters>)

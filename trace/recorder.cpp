@@ -252,6 +252,10 @@ void Recorder::add(MeasuredManifolds manifold) {
   step_to_add_to().result.manifold = std::move(manifold);
 }
 
+void Recorder::add(MeasuredPoints points) {
+  step_to_add_to().result.points = std::move(points);
+}
+
 void Recorder::add(EngineReport report) {
   step_to_add_to().result.engine = std::move(report);
 }

@@ -2,6 +2,7 @@
 #include <bit>
 #include <charconv>
 #include <initializer_list>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -77,6 +78,33 @@ MeasuredManifolds measured(const ManifoldResult& result, double margin) {
   return out;
 }
 
+MeasuredPoints measured(std::span<const PointDistance> distances, std::span<const Eigen::Vector3d> points,
+                        bool has_sides) {
+  MeasuredPoints out;
+  out.count = points.size();
+  out.has_sides = has_sides;
+  std::vector<std::uint32_t> order(distances.size());
+  std::iota(order.begin(), order.end(), 0U);
+  for (const PointDistance& d : distances) {
+    out.inside += d.side == Where::inside;
+    out.on_surface += d.side == Where::on_surface;
+  }
+  std::vector<std::uint32_t> smallest(std::min(MeasuredPoints::kMaxListed, order.size()));
+  std::partial_sort_copy(
+      order.begin(), order.end(), smallest.begin(), smallest.end(), [&](std::uint32_t x, std::uint32_t y) {
+        return std::tuple(distances[x].signed_lower(), x) < std::tuple(distances[y].signed_lower(), y);
+      });
+  for (const std::uint32_t i : smallest) {
+    const PointDistance& d = distances[i];
+    out.smallest.push_back({i,
+                            d.closest.face,
+                            d.signed_lower(),
+                            d.signed_upper(),
+                            {array_of(points[i]), array_of(d.closest.point)}});
+  }
+  return out;
+}
+
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> history) {
   return {result.outcome, result.t0, result.t1, std::nullopt, std::nullopt, std::move(history)};
 }
@@ -102,6 +130,14 @@ std::string to_text(const MeasuredNearPairs& m) {
 std::string to_text(const MeasuredManifolds& m) {
   std::string out = std::to_string(m.manifolds) + " manifolds, " + std::to_string(m.found) + " points";
   if (!m.contacts.empty()) out += ", the first at depth " + digits(m.contacts[0].depth);
+  return out;
+}
+
+std::string to_text(const MeasuredPoints& m) {
+  std::string out = std::to_string(m.inside) + " of " + std::to_string(m.count) + " points inside, " +
+                    std::to_string(m.on_surface) + " on the surface";
+  if (!m.smallest.empty())
+    out += ", smallest distance [" + digits(m.smallest[0].lower) + ", " + digits(m.smallest[0].upper) + "]";
   return out;
 }
 

@@ -32,6 +32,7 @@ void write_value(JsonWriter& w, const T& value, Form form) {
                      std::is_same_v<T, std::optional<MeasuredClash>> ||
                      std::is_same_v<T, std::optional<MeasuredNearPairs>> ||
                      std::is_same_v<T, std::optional<MeasuredManifolds>> ||
+                     std::is_same_v<T, std::optional<MeasuredPoints>> ||
                      std::is_same_v<T, std::optional<EngineReport>>)
     write_json(w, value.value());
   else if constexpr (std::is_same_v<T, Counters>)
@@ -141,6 +142,18 @@ void write_json(JsonWriter& w, const MeasuredManifolds& m) {
     w.begin_array().value(p.id).value(p.manifold).value(p.depth);
     for (const std::array<double, 3>& vector : {p.normal, p.points[0], p.points[1]})
       for (const double x : vector) w.value(x);
+    w.end_array();
+  }
+  w.end_array().end_object();
+}
+
+void write_json(JsonWriter& w, const MeasuredPoints& m) {
+  w.begin_object().member("count", m.count).member("inside", m.inside).member("on_surface", m.on_surface);
+  w.member("has_sides", m.has_sides).key("smallest").begin_array();
+  for (const MeasuredPoints::Point& p : m.smallest) {
+    w.begin_array().value(p.number).value(p.face.value()).value(p.lower).value(p.upper);
+    for (const std::array<double, 3>& point : p.points)
+      for (const double x : point) w.value(x);
     w.end_array();
   }
   w.end_array().end_object();

@@ -22,6 +22,7 @@ void write_json(JsonWriter& w, const MeasuredDistance& m);
 void write_json(JsonWriter& w, const MeasuredClash& m);
 void write_json(JsonWriter& w, const MeasuredNearPairs& m);
 void write_json(JsonWriter& w, const MeasuredManifolds& m);
+void write_json(JsonWriter& w, const MeasuredPoints& m);
 /// Writes the members of a first contact except its bound history, without brackets.
 void write_answer(JsonWriter& w, const MeasuredApproach& m);
 void write_json(JsonWriter& w, const MeasuredApproach& m);

@@ -686,6 +686,7 @@ class TraceWriter {
     if (r.clash) write_history("depth", i, 0.5, r.clash->history);
     if (r.near) write_count("near pairs", i, "pairs", r.near->pairs);
     if (r.manifold) write_count("manifold points", i, "points", r.manifold->found);
+    if (r.points) write_count("points inside", i, "points", r.points->inside);
   }
 
   /// Writes the search for the first contact, which precedes all steps, within the first event.

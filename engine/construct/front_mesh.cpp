@@ -13,18 +13,19 @@
 namespace lrb::construct {
 namespace {
 
-/// Triangulates a polygon: if planar, without degenerate triangles, otherwise into its fan, which defines its
-/// shape.
+/// Triangulates a polygon: if planar and convex, without degenerate triangles, otherwise into its fan, which
+/// defines its shape.
 void triangulate(const Mesh& mesh, std::span<const VertexId> corners,
                  std::vector<std::array<VertexId, 3>>& triangles) {
   triangles.clear();
   if (corners.size() > 3) {
     const auto plane = spanning_corners(mesh, corners);
-    // Planar: a triangulation without degenerate triangles exists, and all triangulations have the same
-    // shape.
-    if (plane && is_planar(mesh, corners, *plane)) return triangulate_convex(mesh, corners, triangles);
+    // Planar and convex: a triangulation without degenerate triangles exists, and all triangulations have the
+    // same shape.
+    if (plane && is_planar(mesh, corners, *plane) && is_convex(mesh, corners))
+      return triangulate_convex(mesh, corners, triangles);
   }
-  // Not planar: the fan from the first corner is the polygon's shape by definition (see Mesh).
+  // Otherwise the fan from the first corner is the polygon's shape by definition (see Mesh).
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
     triangles.push_back({corners[0], corners[i], corners[i + 1]});
 }

@@ -224,10 +224,9 @@ Help help_for(MeshFault fault, int dim) {
     case MeshFault::zero_area_face:
       return {ElementKind::face, "collapse or remove it"};
     case MeshFault::non_planar_face:
+    case MeshFault::non_convex_face:
       return {ElementKind::face,
               "it is read as a fan of triangles from its first corner; triangulate it to choose others"};
-    case MeshFault::non_convex_face:
-      return {ElementKind::face, "triangulate it"};
     case MeshFault::duplicate_face:
       return {ElementKind::two_faces, "remove one of them"};
     case MeshFault::open_edge:

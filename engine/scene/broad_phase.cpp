@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/Geometry>
@@ -103,25 +105,91 @@ const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
   choose_axis(boxes);
   sort(boxes);
   pairs_.clear();
+  sweep(boxes);
+  // Ascending: counting sorts by the second and then the first body, faster than comparisons.
+  sort_by(&BodyPair::j, boxes.size());
+  sort_by(&BodyPair::i, boxes.size());
+  return pairs_;
+}
+
+/// Sorts the pairs by one of their bodies, stably.
+void SweepAndPrune::sort_by(std::uint32_t BodyPair::*body, std::size_t bodies) {
+  ends_.assign(bodies + 1, 0);
+  for (const BodyPair& p : pairs_) ++ends_[p.*body + 1];
+  std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+  found_.resize(pairs_.size());
+  for (const BodyPair& p : pairs_) found_[ends_[p.*body]++] = p;
+  pairs_.swap(found_);
+}
+
+namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+constexpr std::size_t kLanes = 4;
+
+// The nearest floats that are at most, and at least, a number.
+float float_below(double x) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto f = static_cast<float>(x);
+  return f > x ? std::nextafter(f, -kInfinity) : f;
+}
+
+float float_above(double x) {
+  return -float_below(-x);
+}
+
+Float4 load(const float* from) {
+  Float4 out;
+  std::memcpy(&out, from, sizeof out);
+  return out;
+}
+
+}  // namespace
+
+/// Finds all pairs. The ends of the boxes are copied in the order of the sweep, so that they are read in
+/// sequence. On the other two axes they are rounded outward to floats, and compared four boxes at a time; the
+/// few that overlap there are compared again in doubles.
+void SweepAndPrune::sweep(Boxes boxes) {
   const int u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const std::uint32_t i = order_[k];
+  swept_.clear();
+  from_.clear();
+  for (auto* ends : {&low_u_, &high_u_, &low_v_, &high_v_}) ends->clear();
+  for (const std::uint32_t i : order_) {
+    const Box& b = boxes[i];
+    if (b.isEmpty()) continue;
+    longest_ = std::max(longest_, b.max()[axis_] - b.min()[axis_]);
+    swept_.push_back(i);
+    from_.push_back(b.min()[axis_]);
+    low_u_.push_back(float_below(b.min()[u]));
+    high_u_.push_back(float_above(b.max()[u]));
+    low_v_.push_back(float_below(b.min()[v]));
+    high_v_.push_back(float_above(b.max()[v]));
+  }
+  // Fill the last group of lanes. The fill is never reported: its lanes are beyond the end of every range.
+  for (auto* ends : {&low_u_, &high_u_, &low_v_, &high_v_}) ends->resize(swept_.size() + kLanes, 0);
+  for (std::size_t k = 0, end = 0; k < swept_.size(); ++k) {
+    const std::uint32_t i = swept_[k];
     const Box& a = boxes[i];
-    if (a.isEmpty()) continue;
-    longest_ = std::max(longest_, a.max()[axis_] - a.min()[axis_]);
-    // All boxes that begin before `a` ends overlap it on this axis.
-    for (std::size_t l = k + 1; l < order_.size(); ++l) {
-      const std::uint32_t j = order_[l];
-      const Box& b = boxes[j];
-      // The following boxes begin even later.
-      if (b.min()[axis_] > a.max()[axis_]) break;
-      if (b.isEmpty()) continue;
-      ++work_.box_tests;
-      if (overlap(a, b, u, v)) pairs_.push_back({std::min(i, j), std::max(i, j)});
+    // All boxes that begin before `a` ends overlap it on the axis.
+    const double to = a.max()[axis_];
+    end = std::max(end, k + 1);
+    while (end < swept_.size() && from_[end] <= to) ++end;
+    while (from_[end - 1] > to) --end;
+    work_.box_tests += end - k - 1;
+    const float low_u = low_u_[k], high_u = high_u_[k], low_v = low_v_[k], high_v = high_v_[k];
+    for (std::size_t l = k + 1; l < end; l += kLanes) {
+      const Int4 hit = (load(&low_u_[l]) <= high_u) & (low_u <= load(&high_u_[l])) &
+                       (load(&low_v_[l]) <= high_v) & (low_v <= load(&high_v_[l]));
+      std::uint64_t halves[2];
+      std::memcpy(halves, &hit, sizeof halves);
+      if ((halves[0] | halves[1]) == 0) continue;
+      for (std::size_t lane = 0; lane < std::min(kLanes, end - l); ++lane) {
+        const std::uint32_t j = swept_[l + lane];
+        if (hit[lane] != 0 && overlap(a, boxes[j], u, v)) pairs_.push_back({std::min(i, j), std::max(i, j)});
+      }
     }
   }
-  std::sort(pairs_.begin(), pairs_.end());
-  return pairs_;
 }
 
 const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes,

@@ -53,6 +53,22 @@ struct AnswerPicture {
     add_points(posed.b, posed.pose_b);
   }
 
+  /// Of one body.
+  AnswerPicture(const LrbRep& body, SceneBody drawn, const Look& look)
+      : bodies{body, {}, body, {}}, alone(true) {
+    drawn.rep = &body;
+    drawn.name = "body";
+    SceneOptions options;
+    options.style = look.style;
+    options.contact_rims = true;
+    scene = build_scene({&drawn, 1}, {}, options);
+    make_translucent(scene.list, 140);
+    overlay.title = body.name();
+    overlay.style = look.style;
+    overlay.event_colour = palette::kContact;
+    add_points(body, {});
+  }
+
   void add_points(const LrbRep& rep, const Pose& pose) {
     for (const Vector3d& x : real_corners(rep, pose)) whole.push_back(x);
   }
@@ -107,7 +123,15 @@ struct AnswerPicture {
     FitOptions fit;
     fit.view = view_beside(across.norm() > 0 ? across : up.unitOrthogonal(), up);
     overlay.key = scene.key;
-    std::vector<Panel> panels = {{scene.list, fit_points(whole, bodies.dim(), fit), ""}};
+    CameraFit camera = fit_points(whole, bodies.dim(), fit);
+    if (alone) {
+      const Framing framing{whole, {}, bodies.dim()};
+      fit.view = {look.first_view().from, up};
+      camera = [view = look.first_view(), framing](double width, double height) {
+        return camera_for(view, framing, width, height);
+      };
+    }
+    std::vector<Panel> panels = {{scene.list, camera, ""}};
     const double size = bounds(whole).diagonal().norm();
     if (!detail.empty() && bounds(detail).diagonal().norm() < kSmall * size)
       panels.push_back({scene.list, close_up(fit), "from nearby"});
@@ -115,6 +139,7 @@ struct AnswerPicture {
   }
 
   PosedBodies bodies;
+  bool alone = false;  ///< one body: both are the same, which is seen from the look's view
   Scene scene;
   Overlay overlay;
   std::vector<Vector3d> whole;         ///< all points that the picture shows
@@ -264,6 +289,51 @@ Image picture_of(const ManifoldResult& result, double margin, const PosedBodies&
   p.overlay.event = group_digits(manifolds) + (manifolds == 1 ? " manifold, " : " manifolds, ") +
                     group_digits(count) + (count == 1 ? " point" : " points");
   p.overlay.counters.push_back({"pairs of triangles", group_digits(result.pairs.size())});
+  return p.draw(look);
+}
+
+namespace {
+
+std::string signed_text(const PointDistance& d) {
+  return interval_text(d.signed_lower(), d.signed_upper());
+}
+
+}  // namespace
+
+Image picture_of(const ShownPoints& points, const LrbRep& body, const Look& look) {
+  AnswerPicture p(body, SceneBody(), look);
+  for (const ShownPoints::Shown& shown : points.shown()) p.whole.push_back(shown.point);
+  add_point_distances(p.scene, points.marks(), style_of(look.style));
+  p.overlay.event_colour = kGapColour;
+  p.overlay.event = (points.all() ? "" : group_digits(points.shown().size()) + " of ") +
+                    counted(points.total(), "point", "points") + (points.all() ? "" : ", evenly chosen") +
+                    (body.closed() ? "" : "; the body is not closed: distances have no sign");
+  for (const Where side : {Where::inside, Where::outside, Where::on_surface})
+    if (points.count(side) > 0)
+      p.overlay.counters.push_back({std::string(name_of(side)), group_digits(points.count(side))});
+  p.overlay.counters.push_back({"smallest distance", signed_text(points.smallest().distance)});
+  p.overlay.counters.push_back({"largest", signed_text(points.largest().distance)});
+  return p.draw(look);
+}
+
+Image picture_of(const SelfIntersections& found, const LrbRep& body, const Look& look) {
+  std::vector<std::uint8_t> crossing(body.real_face_count());
+  std::array<std::uint64_t, kEnumNames<SelfContact>.size()> counts{};
+  for (const SelfIntersection& pair : found.pairs) {
+    crossing[pair.a] = crossing[pair.b] = 1;
+    ++counts[static_cast<std::size_t>(pair.kind)];
+  }
+  SceneBody drawn;
+  drawn.in_contact = crossing;
+  drawn.contact_name = "faces that intersect";
+  AnswerPicture p(body, drawn, look);
+  add_self_intersections(p.scene, found, style_of(look.style));
+  for (const auto& segment : found.segments) p.detail.insert(p.detail.end(), segment.begin(), segment.end());
+  p.overlay.event = counted(found.pairs.size(), "pair", "pairs") + " of faces in " +
+                    counted(found.curves, "curve", "curves");
+  for (const SelfContact kind : {SelfContact::cross, SelfContact::touch, SelfContact::overlap})
+    if (const std::uint64_t n = counts[static_cast<std::size_t>(kind)]; n > 0)
+      p.overlay.counters.push_back({std::string(name_of(kind)), group_digits(n)});
   return p.draw(look);
 }
 

@@ -1,7 +1,8 @@
 #pragma once
-/// Pictures of answers: distance, near pairs, first contact, clash, contact manifolds, intersecting faces,
-/// separating plane, separation.
+/// Pictures of answers: distance, near pairs, first contact, clash, contact manifolds, distances of points,
+/// self-intersections, intersecting faces, separating plane, separation.
 
+#include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
@@ -10,6 +11,7 @@
 #include <lrbscope/explain.hpp>
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/near_pairs.hpp>
+#include <lrbscope/self_intersections.hpp>
 
 namespace lrb::run {
 
@@ -38,6 +40,13 @@ render::Image picture_of(const ClashResult& result, const PosedBodies& bodies, c
 render::Image picture_of(const ManifoldResult& result, double margin, const PosedBodies& bodies,
                          const render::Look& look);
 
+/// Draws a body, translucent, with points in the colours of their sides and segments to their closest points.
+render::Image picture_of(const ShownPoints& points, const LrbRep& body, const render::Look& look);
+
+/// Draws a body, translucent, with its faces that intersect in the colour of contacts, and the segments in
+/// which they do.
+render::Image picture_of(const SelfIntersections& found, const LrbRep& body, const render::Look& look);
+
 /// Draws two faces and the bodies around them: their intersection, or the segment between their closest
 /// points and a separating plane perpendicular to it.
 render::Image picture_of(const PairExplanation& pair, const PosedBodies& bodies);
@@ -49,7 +58,7 @@ render::Image picture_of(const WalkExplanation& walk, const PosedBodies& bodies)
 /// far as needed in panel (b).
 render::Image picture_of(const Separation& separation, const PosedBodies& bodies);
 
-/// The size of the first three pictures, unless `look` sets another.
+/// The size of all but the last three pictures, unless `look` sets another.
 inline constexpr int kAnswerWidth = 1200, kAnswerHeight = 750;
 
 }  // namespace lrb::run

@@ -185,9 +185,23 @@ void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style
   scene.key.push_back({render::LegendItem::Mark::line, colour, "nearest points"});
 }
 
+namespace {
+
+/// Adds a segment, by default a thin one, that is visible through all faces.
+void add_line(render::DrawList& list, const Vector3d& from, const Vector3d& to, render::Rgba colour,
+              float width = 0.8F) {
+  render::DrawLine segment;
+  segment.points = {from, to};
+  segment.colour = colour;
+  segment.width = width;
+  segment.layer = render::Layer::on_top;
+  list.lines.push_back(segment);
+}
+
+}  // namespace
+
 void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, bool all,
                     const render::Style& style) {
-  constexpr float kThin = 0.8F;
   const render::Rgba colour = style.of(kGapColour);
   bool has_segments = false;
   for (const NearMark& pair : pairs) {
@@ -196,16 +210,107 @@ void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, bool 
       continue;
     }
     has_segments = true;
-    render::DrawLine segment;
-    segment.points = {pair.points[0], pair.points[1]};
-    segment.colour = colour;
-    segment.width = kThin;
-    segment.layer = render::Layer::on_top;
-    scene.list.lines.push_back(segment);
+    add_line(scene.list, pair.points[0], pair.points[1], colour);
   }
   if (has_segments)
     scene.key.push_back({render::LegendItem::Mark::line, colour,
                          all ? "closest points" : "closest points of the nearest pairs"});
+}
+
+void ShownPoints::add(std::span<const Vector3d> points, std::span<const PointDistance> distances) {
+  for (std::size_t i = 0; i < points.size(); ++i, ++seen_) {
+    const PointDistance& d = distances[i];
+    ++counts_[index(d.side)];
+    if (seen_ == 0 || d.signed_lower() < smallest_.distance.signed_lower()) smallest_ = {seen_, points[i], d};
+    if (seen_ == 0 || d.signed_lower() > largest_.distance.signed_lower()) largest_ = {seen_, points[i], d};
+    if (seen_ % every_ == 0) shown_.push_back({seen_, points[i], d});
+  }
+}
+
+render::LegendItem key_of_points(std::optional<Where> side) {
+  using render::LegendItem;
+  if (!side) return {LegendItem::Mark::point, kGapColour, "points without a side"};
+  switch (*side) {
+    case Where::inside:
+      return {LegendItem::Mark::point, render::palette::kContact, "points inside"};
+    case Where::outside:
+      return {LegendItem::Mark::point, kGapColour, "points outside"};
+    case Where::on_surface:
+      break;
+  }
+  return {LegendItem::Mark::point, render::palette::kGreen, "points on the surface"};
+}
+
+std::vector<PointMark> ShownPoints::marks() const {
+  std::vector<PointMark> out;
+  for (const Shown& p : shown_) out.push_back({p.point, p.distance.closest.point, p.distance.side});
+  return out;
+}
+
+void add_point_distances(render::Scene& scene, std::span<const PointMark> points,
+                         const render::Style& style) {
+  constexpr float kLarge = 3.5F, kSmall = 2;
+  constexpr std::size_t kMany = 300;
+  const float radius = points.size() > kMany ? kSmall : kLarge;
+  bool has_segments = false;
+  // Points inside are drawn last, on top of the others.
+  for (const std::optional<Where> side : {std::optional<Where>(), std::optional(Where::outside),
+                                          std::optional(Where::on_surface), std::optional(Where::inside)}) {
+    render::LegendItem key = key_of_points(side);
+    key.colour = style.of(key.colour);
+    bool any = false;
+    for (const PointMark& p : points) {
+      if (p.side != side) continue;
+      any = true;
+      has_segments |= side != Where::on_surface;
+      if (side != Where::on_surface) add_line(scene.list, p.point, p.closest, key.colour);
+      add_mark(scene.list, p.point, key.colour, radius, style.paper);
+    }
+    if (any) scene.key.push_back(key);
+  }
+  if (has_segments)
+    scene.key.push_back({render::LegendItem::Mark::line, style.of(kGapColour), "to the closest points"});
+}
+
+render::LegendItem key_of(SelfContact kind) {
+  using render::LegendItem;
+  switch (kind) {
+    case SelfContact::touch:
+      return {LegendItem::Mark::line, render::palette::kGreen, "where faces touch"};
+    case SelfContact::cross:
+      return {LegendItem::Mark::line, kGapColour, "where faces cross"};
+    case SelfContact::overlap:
+      break;
+  }
+  return {LegendItem::Mark::line, render::palette::kYellow, "around areas where faces overlap"};
+}
+
+void add_self_intersections(render::Scene& scene, const SelfIntersections& found,
+                            const render::Style& style) {
+  constexpr float kWidth = 2;
+  const auto add = [&](const SelfIntersection& pair, render::Rgba colour, float width) {
+    for (std::uint32_t i = 0; i < pair.segments; ++i) {
+      const auto& [from, to] = found.segments[pair.first_segment + i];
+      if (from == to)
+        add_mark(scene.list, from, colour, width, style.paper);
+      else
+        add_line(scene.list, from, to, colour, width);
+    }
+  };
+  // The ground of all segments comes first: halos of single ones would interrupt the curve.
+  for (const SelfIntersection& pair : found.pairs) add(pair, style.paper, kWidth + 2 * kHalo);
+  // Crossings last, on top of the others.
+  for (const SelfContact kind : {SelfContact::touch, SelfContact::overlap, SelfContact::cross}) {
+    render::LegendItem key = key_of(kind);
+    key.colour = style.of(key.colour);
+    bool any = false;
+    for (const SelfIntersection& pair : found.pairs) {
+      if (pair.kind != kind) continue;
+      any = true;
+      add(pair, key.colour, kWidth);
+    }
+    if (any) scene.key.push_back(key);
+  }
 }
 
 double normal_length(std::span<const ContactMark> contacts, double size) {

@@ -1,6 +1,7 @@
 #pragma once
 /// Marks of answers in a scene: closest points, separation vector, separating plane, faces, tree boxes.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,10 +19,13 @@
 #include <lrbscope/ids.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/obb_tree.hpp>
+#include <lrbscope/observe.hpp>
+#include <lrbscope/point_distance.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/render/draw_list.hpp>
 #include <lrbscope/render/scene.hpp>
 #include <lrbscope/render/style.hpp>
+#include <lrbscope/self_intersections.hpp>
 
 namespace lrb::run {
 
@@ -69,6 +73,56 @@ struct NearMark {
 /// `all`: no pair is missing, for the key.
 void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, bool all,
                     const render::Style& style);
+
+/// A point and its closest point on a body. `side`: nullopt: without a side.
+struct PointMark {
+  Eigen::Vector3d point, closest;
+  std::optional<Where> side;
+};
+/// Returns the name and the colour of points on a side.
+render::LegendItem key_of_points(std::optional<Where> side);
+/// Adds the points in the colours of their sides, each with a thin segment to its closest point.
+void add_point_distances(render::Scene& scene, std::span<const PointMark> points, const render::Style& style);
+
+/// Signed distances of points to a body: all are counted, and evenly chosen ones are kept to be shown.
+class ShownPoints {
+ public:
+  static constexpr std::size_t kMaxShown = 2000;
+  struct Shown {
+    std::size_t number = 0;  ///< of the point, from 0
+    Eigen::Vector3d point;
+    PointDistance distance;
+  };
+  explicit ShownPoints(std::size_t total)
+      : total_(total), every_(std::max<std::size_t>(1, (total + kMaxShown - 1) / kMaxShown)) {}
+  /// Takes the next points, with their distances.
+  void add(std::span<const Eigen::Vector3d> points, std::span<const PointDistance> distances);
+
+  const std::vector<Shown>& shown() const { return shown_; }
+  std::vector<PointMark> marks() const;
+  std::size_t total() const { return total_; }
+  bool all() const { return shown_.size() == total_; }
+  /// Returns the number of points on a side; nullopt: those without a side.
+  std::uint64_t count(std::optional<Where> side) const { return counts_[index(side)]; }
+  /// The points with the smallest and the largest distance; the first ones of several.
+  const Shown& smallest() const { return smallest_; }
+  const Shown& largest() const { return largest_; }
+  /// Numbers the sides as Where does; points without a side come last.
+  static std::size_t index(std::optional<Where> side) {
+    return side ? static_cast<std::size_t>(*side) : kEnumNames<Where>.size();
+  }
+
+ private:
+  std::size_t total_, every_, seen_ = 0;
+  std::vector<Shown> shown_;
+  std::array<std::uint64_t, kEnumNames<Where>.size() + 1> counts_{};
+  Shown smallest_, largest_;
+};
+
+/// Adds the segments in which a body intersects itself.
+void add_self_intersections(render::Scene& scene, const SelfIntersections& found, const render::Style& style);
+/// Returns the name and the colour of the segments of a kind.
+render::LegendItem key_of(SelfContact kind);
 
 /// A point of a contact manifold, on B's surface.
 struct ContactMark {

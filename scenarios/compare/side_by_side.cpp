@@ -78,12 +78,13 @@ std::string cut_words(const Runs& runs) {
   return out;
 }
 
-void reject_folder_of_run(const std::string& folder) {
+void reject_folder_of_run(const std::string& folder, const std::string& option) {
   std::error_code error;
   for (const char* file : {"/trace.json", "/trace.json.gz"})
     if (std::filesystem::exists(folder + file, error))
       throw InputError(printable_name(folder) +
-                       ": contains a run, whose page would be overwritten; choose another folder with -o");
+                       ": contains a run, whose page would be overwritten; choose another folder with " +
+                       option);
 }
 
 ColourBy common_colours(const Runs& runs) {

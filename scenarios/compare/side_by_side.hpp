@@ -28,8 +28,9 @@ bool is_whole(const run::Recording& run, std::size_t step);
 std::size_t busiest_step(const Runs& runs);
 /// Returns a sentence that names the truncated runs; empty if there are none.
 std::string cut_words(const Runs& runs);
-/// Throws InputError if a folder contains a run, whose page would be overwritten.
-void reject_folder_of_run(const std::string& folder);
+/// Throws InputError if a folder contains a run, whose page would be overwritten. `option`: the one that
+/// names the folder.
+void reject_folder_of_run(const std::string& folder, const std::string& option = "-o");
 
 /// Meaning of the colours: box tests if both runs have recorded pairs of nodes, else face tests.
 render::FrameSpec::ColourBy common_colours(const Runs& runs);

@@ -11,8 +11,8 @@ namespace lrb::crowd {
 
 /// Size limits of a page, which opens in a second or two at these limits.
 struct CrowdSceneLimits {
-  std::size_t faces = 300'000;           ///< of all kinds; beyond this, the page has no 3D view
-  std::size_t drawn_faces = 20'000'000;  ///< of all bodies; beyond this, the page has no 3D view
+  std::size_t faces = 300'000;           ///< maximum of all kinds together for a 3D view
+  std::size_t drawn_faces = 20'000'000;  ///< maximum of all bodies together for a 3D view
   std::size_t poses = 60'000;            ///< of bodies that moved, over all steps
   std::size_t queries = 100'000;         ///< over all steps
 };

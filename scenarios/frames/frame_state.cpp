@@ -66,7 +66,7 @@ void FrameState::add_answer(Moment& m) const {
 
 bool FrameState::shows_separating_plane(const Moment& m) const {
   const CollideRequest& request = trace_.header.request;
-  return !is_single() && m.proof == nullptr && !m.answer->distance && !m.answer->near &&
+  return !is_single() && m.proof == nullptr && !m.answer->distance && !m.answer->near && !m.answer->points &&
          m.answer->relation == Relation::separate && request.recursion == Recursion::complete &&
          !request.is_coarse() && trace_.header.engine.empty() &&
          spec_.colour_by < render::FrameSpec::ColourBy::face_tests;
@@ -191,6 +191,8 @@ void FrameState::add_marks(render::Scene& scene, bool plain) const {
   if (now_.answer != nullptr && now_.answer->manifold)
     add_contact_points(scene, contact_marks(*now_.answer->manifold), now_.answer->manifold->margin,
                        size_of(bodies()), style);
+  if (now_.answer != nullptr && now_.answer->points)
+    add_point_distances(scene, point_marks(*now_.answer->points), style);
   if (now_.separation_vector) add_separation_vector(scene, *now_.separation_vector, run_.reps[0]->dim());
   if (!plain && !now_.wrong.empty()) {
     add_wrong_pairs(scene.list, now_.wrong, bodies(), style.paper);

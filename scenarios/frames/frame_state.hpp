@@ -176,8 +176,21 @@ inline std::vector<ContactMark> contact_marks(const trace::MeasuredManifolds& ma
   return out;
 }
 
-/// Return "12 pairs of faces within 0.05" and "2 contact manifolds with 8 points".
+inline std::vector<PointMark> point_marks(const trace::MeasuredPoints& points) {
+  std::vector<PointMark> out;
+  for (const trace::MeasuredPoints::Point& p : points.smallest) {
+    const Where where = p.upper < 0 ? Where::inside : p.upper > 0 ? Where::outside : Where::on_surface;
+    const bool has_side = points.has_sides || where == Where::on_surface;
+    out.push_back(
+        {vector_of(p.points[0]), vector_of(p.points[1]), has_side ? std::optional(where) : std::nullopt});
+  }
+  return out;
+}
+
+/// Return "12 pairs of faces within 0.05" and "2 contact manifolds with 8 points", "3 of 12 points inside,
+/// smallest distance -0.25".
 std::string text_of(const trace::MeasuredNearPairs& near);
 std::string text_of(const trace::MeasuredManifolds& manifolds);
+std::string text_of(const trace::MeasuredPoints& points);
 
 }  // namespace lrb::run

@@ -202,6 +202,16 @@ std::string text_of(const trace::MeasuredManifolds& manifolds) {
          render::counted(manifolds.found, "point", "points");
 }
 
+std::string text_of(const trace::MeasuredPoints& points) {
+  std::string out = render::counted(points.count, "point", "points");
+  if (points.has_sides)
+    out = render::group_digits(points.inside) + " of " + out + " inside" +
+          (points.on_surface > 0 ? ", " + render::group_digits(points.on_surface) + " on the surface" : "");
+  if (!points.smallest.empty())
+    out += ", smallest distance " + interval_text(points.smallest[0].lower, points.smallest[0].upper);
+  return out;
+}
+
 std::string FrameState::measured_text() const {
   if (now_.answer == nullptr) return {};
   std::string out;
@@ -211,6 +221,7 @@ std::string FrameState::measured_text() const {
   if (now_.separation_vector) out += ", depth " + now_.separation_vector->text;
   if (now_.answer->near) out += (out.empty() ? "" : ", ") + text_of(*now_.answer->near);
   if (now_.answer->manifold) out += (out.empty() ? "" : ", ") + text_of(*now_.answer->manifold);
+  if (now_.answer->points) out += (out.empty() ? "" : ", ") + text_of(*now_.answer->points);
   return out;
 }
 

@@ -37,7 +37,7 @@ void reject_links_in(const fs::path& folder) {
     if (fs::is_symlink(entry->symlink_status()) && is_written(entry->path().filename()))
       throw EnvironmentError(printable_name(entry->path().string()) +
                              ": expected a file of the run, found a symbolic link, which could lead out of "
-                             "the folder; remove it, or choose another folder with -o");
+                             "the folder; remove it, or choose another folder");
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ FolderLock::FolderLock(const std::string& path) : folder_(platform::lock_folder(
   if (folder_ == platform::kOthersLock)
     throw EnvironmentError(
         printable_name(path) +
-        ": another lrbscope process is writing to this folder; wait for it, or choose another folder with -o");
+        ": another lrbscope process is writing to this folder; wait for it, or choose another folder");
 }
 
 FolderLock::~FolderLock() {

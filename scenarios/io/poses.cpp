@@ -225,7 +225,8 @@ std::vector<Pose> parse_pose_table(const std::string& text, const std::string& n
       throw InputError(where + "expected " +
                        (named ? std::to_string(needed) + " cells, as in the first line"
                               : "12 numbers (a row-major 3x4 pose) or 16 (4x4)") +
-                       ", found " + std::to_string(cells.size()));
+                       ", found " + std::to_string(cells.size()) +
+                       (cells.size() == 1 ? "; in a .csv file, commas separate them" : ""));
     std::array<double, 12> x{};
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = number_in(cells, column[i], where);
     poses.push_back(pose_of(x));

@@ -19,11 +19,8 @@ using Eigen::Vector3d;
 using io::number_text;
 using render::counted;
 using render::group_digits;
+using render::percent;
 using render::short_number;
-
-std::string percent(double share) {
-  return short_number(100 * share) + " %";
-}
 
 std::string share_of_epo(const TreeFigures& f, double epo) {
   return f.epo && f.epo->value > 0 ? percent(epo / f.epo->value) : "";

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/poses.hpp"
 #include "scenarios/record/approach.hpp"
 #include "scenarios/record/engine_run.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -16,6 +17,7 @@
 #include <lrbscope/collide.hpp>
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/point_distance.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/replay.hpp>
@@ -205,6 +207,7 @@ class StepQueries {
   StepQueries(const spec::Scenario& s, const LrbRep& a, const LrbRep& b) : s_(s), a_(a), b_(b) {
     // Always use caches: whether they save time depends on timing, and a trace must be reproducible.
     if (s.more.coherent) coherent_.emplace(a, b, s.request, CoherentQuery::CacheUse::always);
+    if (!s.more.points.empty()) points_ = io::read_points(s.more.points);
   }
 
   CollideResult ask(std::uint32_t step, const Pose& pose_a, const Pose& pose_b, trace::Recorder& recorder) {
@@ -242,10 +245,16 @@ class StepQueries {
       manifolds_ = contact_manifolds(a_, pose_a, b_, pose_b, request, manifolds_ ? &*manifolds_ : nullptr);
       recorder.add(trace::measured(*manifolds_, request.margin));
     }
+    if (!points_.empty()) {
+      std::vector<Eigen::Vector3d> placed;
+      for (const Eigen::Vector3d& x : points_) placed.push_back(pose_b.apply(x));
+      recorder.add(trace::measured(point_distances(a_, pose_a, placed), placed, a_.closed()));
+    }
   }
 
   const spec::Scenario& s_;
   const LrbRep &a_, &b_;
+  std::vector<Eigen::Vector3d> points_;  ///< of B
   std::optional<CoherentQuery> coherent_;
   std::optional<ManifoldResult> manifolds_;  ///< of the previous step, whose ids continue
   Workspace workspace_;

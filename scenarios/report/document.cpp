@@ -369,6 +369,11 @@ Document& Document::tree_view(const std::string& json) {
               {"scene_run.js", "scene_bodies.js", "scene_marks.js", "scene_view.js", "tree.js"});
 }
 
+Document& Document::answers_view(const std::string& json) {
+  return view(json, io::embedded_file("answers.html"),
+              {"scene_run.js", "scene_bodies.js", "scene_marks.js", "scene_view.js", "answers.js"});
+}
+
 Document& Document::frames(const std::vector<Frame>& frames, const std::string& folder, std::size_t budget) {
   if (frames.empty()) return *this;
   std::vector<PngBytes> pngs;

@@ -68,6 +68,8 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     {"proof of separation", "faces of two disjoint wrappers that enclose the bodies"},
     {"distance", "smallest distance of the two surfaces, in mesh units; proven bounds"},
     {"contact kind", "clash class of the contact"},
+    {"points inside", "points of B inside A"},
+    {"smallest distance", "of the points of B to A, negative inside A"},
     {"near pairs", "pairs of triangles closer than the requested distance"},
     {"contact manifolds", "groups of contact points with one normal"},
     {"points", "contact points of all manifolds, before reduction"},

@@ -14,6 +14,7 @@ namespace lrb::run {
 namespace {
 
 using render::group_digits;
+using render::percent;
 using render::short_number;
 using Passes = std::vector<trace::PassSummary>;
 
@@ -40,10 +41,6 @@ constexpr std::array<std::string_view, kEnumNames<CapVerdict>.size()> kMeanings 
     "the convex hull has no interior, or the outline intersects itself",
     "coordinates are too large for a wrapper around them",
     "the planned wrapper does not contain the front"};
-
-std::string percent(std::uint64_t part, std::uint64_t whole) {
-  return short_number(100.0 * static_cast<double>(part) / static_cast<double>(whole)) + " %";
-}
 
 std::vector<std::string> pass_row(const trace::PassSummary& p) {
   const bool made = p.regions > 0;
@@ -104,7 +101,8 @@ report::Table rejection_table(const Passes& passes) {
   report::Table t{"Caps by verdict", {"verdict", "caps", "share", "meaning"}};
   for (const std::size_t v : order)
     t.rows.push_back({std::string(name_of(static_cast<CapVerdict>(v))), group_digits(caps[v]),
-                      percent(caps[v], all), std::string(kMeanings[v])});
+                      percent(static_cast<double>(caps[v]) / static_cast<double>(all)),
+                      std::string(kMeanings[v])});
   t.note =
       "Over all passes; a part of the front without a cap is tried again in later ones. A cap with too many faces counts by the "
       "reason that rejects most of the remaining collapses, limits before geometry.";

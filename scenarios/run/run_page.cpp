@@ -63,6 +63,10 @@ void add_measured(const trace::StepResult& r, const std::string& at, std::vector
   if (r.manifold)
     out.push_back({"Contact manifolds", render::group_digits(r.manifold->manifolds),
                    at + "; " + render::counted(r.manifold->found, "point", "points")});
+  if (r.points)
+    out.push_back({r.points->has_sides ? "Points inside" : "Points",
+                   render::group_digits(r.points->has_sides ? r.points->inside : r.points->count),
+                   at + "; " + text_of(*r.points)});
   if (!r.clash) return;
   const std::string reason(name_of(r.clash->reason));
   out.push_back({"Contact kind", kind_text(r.clash->kind), reason.empty() ? at : at + "; " + reason});
@@ -324,6 +328,8 @@ report::Table steps_table(const trace::Trace& trace) {
   const bool has_manifold = was_measured(trace, &trace::StepResult::manifold);
   if (has_near) t.columns.emplace_back("near pairs");
   if (has_manifold) t.columns.insert(t.columns.end(), {"contact manifolds", "points"});
+  const bool has_points = was_measured(trace, &trace::StepResult::points);
+  if (has_points) t.columns.insert(t.columns.end(), {"points inside", "smallest distance"});
   for (std::size_t i = 0; i < trace.steps.size(); ++i) {
     const trace::Step& s = trace.steps[i];
     const Counters& counters = s.result.counters;
@@ -352,6 +358,11 @@ report::Table steps_table(const trace::Trace& trace) {
     if (const auto& m = s.result.manifold; has_manifold)
       row.insert(row.end(),
                  {m ? render::group_digits(m->manifolds) : "", m ? render::group_digits(m->found) : ""});
+    if (const auto& p = s.result.points; has_points)
+      row.insert(
+          row.end(),
+          {p && p->has_sides ? render::group_digits(p->inside) : "",
+           p && !p->smallest.empty() ? interval_text(p->smallest[0].lower, p->smallest[0].upper) : ""});
   }
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
   if (timed) t.note += " Microseconds: from the first to the last event of the step, recording included.";

@@ -148,11 +148,8 @@ std::vector<report::Table> group_tables(const RecordedRun& run) {
 
 namespace {
 
+using render::percent;
 using render::short_number;
-
-std::string percent(double share) {
-  return short_number(100 * share) + " %";
-}
 
 report::Table share_table(const trace::Trace& trace) {
   report::Table t{"Where the work went", {"part of the query", "events", "box tests", "count", "of"}};

@@ -39,8 +39,8 @@ std::optional<MarkedSegment> separation_vector_in(const RecordedRun& p, std::siz
 
 nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
   // The order of MEASURED in scene_marks.js.
-  enum Kind : std::uint32_t { gap, separation_vector, near_pair, contact };
-  constexpr std::size_t kMaxOfStep = 100;  // near pairs, and contacts
+  enum Kind : std::uint32_t { gap, separation_vector, near_pair, contact, point, point_inside };
+  constexpr std::size_t kMaxOfStep = 100;  // near pairs, contacts, and points
   std::vector<std::uint32_t> steps, kinds;
   std::vector<float> ends;
   nlohmann::json words = nlohmann::json::array();
@@ -70,6 +70,12 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
       for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
         add(s, contact, marks[k].point, marks[k].point + length * marks[k].normal,
             k == 0 ? text_of(*s.result.manifold) : "");
+    }
+    if (s.result.points) {
+      const std::vector<PointMark> marks = point_marks(*s.result.points);
+      for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
+        add(s, marks[k].side == Where::inside ? point_inside : point, marks[k].point, marks[k].closest,
+            k == 0 ? text_of(*s.result.points) : "");
     }
   }
   if (steps.empty()) return nullptr;

@@ -146,7 +146,8 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
   std::vector<std::string> keys;
   for_each_field<CollideRequest>([&](const auto& field) { keys.emplace_back(field.name); });
   std::erase(keys, "max_time");
-  if (more != nullptr) keys.insert(keys.end(), {"coherent", "distance", "clash", "near", "manifold"});
+  if (more != nullptr)
+    keys.insert(keys.end(), {"coherent", "distance", "clash", "near", "manifold", "points"});
   node.object(keys);
   const auto read_flag = [&](const char* key, bool& flag) {
     if (node.has(key)) flag = node.at(key).boolean();
@@ -157,6 +158,7 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
     read_flag("clash", more->clash);
     if (const auto n = node.get("near")) read_value(*n, more->near.emplace());
     if (const auto n = node.get("manifold")) read_value(*n, more->manifold.emplace());
+    if (const auto n = node.get("points")) more->points = n->string();
   }
   CollideRequest r;
   for_each_field<CollideRequest>([&](const auto& field) {
@@ -185,7 +187,8 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
   s.purpose = root.at("purpose").string();
   if (const auto n = root.get("seed")) s.seed = n->integer(0, kAnySeed);
   if (const auto n = root.get("show")) s.show = n->choice<Show>();
-  s.bodies = read_bodies(root.at("bodies"), s.show, std::filesystem::path(file).parent_path(), s.seed);
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  s.bodies = read_bodies(root.at("bodies"), s.show, folder, s.seed);
   if (s.show == Show::collision) {
     s.motion = read_motion(root.at("motion"));
   } else {
@@ -195,6 +198,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
   }
   s.request.contacts = true;
   if (const auto n = root.get("query")) s.request = read_query(*n, &s.more);
+  if (!s.more.points.empty()) s.more.points = (folder / s.more.points).string();
   if (const auto n = root.get("trace")) read_trace(*n, s);
   s.frames = default_frames(s.show);
   if (const auto n = root.get("frames")) s.frames = read_frames(*n, s.frames);

@@ -90,6 +90,7 @@ struct StepQuestions {
   bool clash = false;              ///< query the kind and depth of their contact
   std::optional<double> near;      ///< list the pairs of faces at most this far apart
   std::optional<double> manifold;  ///< find the contact manifolds, with this margin
+  std::string points;  ///< file of points that move with B, whose distances to A are computed; may be empty
 };
 
 struct Expectation {

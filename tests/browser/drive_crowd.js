@@ -1,10 +1,7 @@
 // Operates the page of a crowd with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, then "done".
-(async function () {
-  const lines = [],
+(function () {
+  const { check, equal, press } = driven,
     { crowd, state, view, tabs, table } = crowdPage,
-    check = (is, what, found = "") => lines.push(`${is ? "ok" : "FAIL"} ${what}${is ? "" : `: ${found}`}`),
-    equal = (found, wanted, what) => check(found === wanted, what, `found ${found}, wanted ${wanted}`),
-    press = (key, more = {}) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, ...more })),
     words = (id) => byId(id).textContent,
     summary = JSON.parse(byId("summary-data").textContent),
     poses = JSON.parse(byId("trace-data").textContent).metadata.poses,
@@ -146,21 +143,6 @@
     check(canvas.width > 0.5 * innerWidth && canvas.height > 200, "the view is large", `${canvas.width} x ${canvas.height}`);
   }
 
-  try {
-    await new Promise((done) => setTimeout(done, 500)); // the strip is drawn once its size is known
-    agreesWithTheRun();
-    followsTheStep();
-    selects();
-    clicks();
-    looks();
-    showsTheMatrix();
-    fits();
-    check(complaints.length === 0, "no messages in the console", complaints.join("; "));
-  } catch (e) {
-    lines.push(`FAIL ${e.stack}`);
-  }
-  const out = document.createElement("pre");
-  out.id = "driven";
-  out.textContent = [...lines, "done"].join("\n");
-  document.body.append(out);
+  const drawsTheStrip = () => new Promise((done) => setTimeout(done, 500)); // once its size is known
+  driven.run(drawsTheStrip, agreesWithTheRun, followsTheStep, selects, clicks, looks, showsTheMatrix, fits);
 })();

@@ -1,10 +1,7 @@
 // Operates the page of a tree with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, then "done".
-(async function () {
-  const lines = [],
+(function () {
+  const { check, equal, press } = driven,
     { nodes, body, view } = treePage,
-    check = (is, what, found = "") => lines.push(`${is ? "ok" : "FAIL"} ${what}${is ? "" : `: ${found}`}`),
-    equal = (found, wanted, what) => check(found === wanted, what, `found ${found}, wanted ${wanted}`),
-    press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true })),
     words = (id) => byId(id).textContent;
 
   /** Returns the number of faces with a point clearly in the volume of a node, which are not marked as below it
@@ -85,16 +82,5 @@
     press("F");
   }
 
-  try {
-    opensAtTheWorst();
-    selects();
-    clicks();
-    check(complaints.length === 0, "no messages in the console", complaints.join("; "));
-  } catch (e) {
-    lines.push(`FAIL ${e.stack}`);
-  }
-  const out = document.createElement("pre");
-  out.id = "driven";
-  out.textContent = [...lines, "done"].join("\n");
-  document.body.append(out);
+  driven.run(opensAtTheWorst, selects, clicks);
 })();

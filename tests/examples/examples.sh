@@ -65,6 +65,16 @@ case "$name" in
       '^motion: contact at t = 0.670085, error <= ' '^end: protrudes, depth 0.125, .* moved by \(0, 0, 0.125\)$'
     refuse "missing.obj: no such file" "$gear" missing.obj 3 0 0
     ;;
+  inside)
+    try "$gear" 20
+    expect '^pairs of faces that intersect: 0; curves: 0$' '^inside: [1-9][0-9]* of 8000; smallest distance -0\.1'
+    printf 'v %s\n' '0 0 0' '2 0 0' '0 2 0' '0.5 0.25 -1' '0.5 0.25 1' '0.5 -1 0' >crossing.obj
+    printf 'f 1 2 3\nf 4 5 6\n' >>crossing.obj
+    try crossing.obj 3
+    expect '^pairs of faces that intersect: 1; curves: 1, of length 0\.25$' '^inside: 0 of 27; smallest distance [0-9]'
+    refuse "missing.obj: no such file" missing.obj 3
+    refuse "usage: " "$gear" 0
+    ;;
   watch)
     try "$gear" "$block" 0.7 0.1 -0.1
     expect '^refine region 50 of A: 28 faces more$' '^test triangle 266 of A \(depth 7\) and 3 of B \(depth 0\): cross$' \

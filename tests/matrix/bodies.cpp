@@ -83,8 +83,8 @@ Mesh times(Mesh mesh, int exponent) {
 
 std::vector<Kind> make_kinds(int noisy) {
   std::vector<Kind> kinds;
-  const auto add = [&](std::string name, Mesh mesh, bool solid = true, std::optional<bool> builds = true,
-                       bool simple = true, const char* format = "ply") {
+  const auto add = [&](std::string name, Mesh mesh, bool solid = true, bool builds = true, bool simple = true,
+                       const char* format = "ply") {
     mesh.name = name;
     if (mesh.dim == 2) format = "obj";
     kinds.push_back({std::move(name), std::move(mesh), solid, builds, simple, format});
@@ -96,7 +96,7 @@ std::vector<Kind> make_kinds(int noisy) {
   add("bent-quads", quad_torus(12, 8), true, true, true, "off");
   for (int i = 0; i < noisy; ++i)
     add("folded-" + std::to_string(i), noisy_quads(8, 2 + i % 3, 0.02 + 0.38 * ((i + 3) % 4) / 3.0, 100 + i),
-        true, {}, false);
+        true, true, false);
   add("open", test::without_faces(rock, {FaceId(0), FaceId(1), FaceId(9)}), false, false, true, "stl");
   add("sheet", sheet(5), false, false);
   add("triangle", lone({0, 1, 0}), false, false, true, "off");
@@ -122,7 +122,7 @@ std::vector<Kind> make_kinds(int noisy) {
       true, false, false);
   add("hub", hard::bipyramid(60));
   add("drum", hard::drum(40));
-  add("cog", hard::cog(40), true, false, false);
+  add("cog", hard::cog(40), true, true, false);
   add("unused", test::with_vertices(rock, {{40, 0, 0}, {0, 0, 0}}));
   add("shared-edge", two_cubes(true), true, false, false);
   add("shared-corner", two_cubes(false), true, true, false);

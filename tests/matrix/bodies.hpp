@@ -16,9 +16,8 @@ namespace lrb::matrix {
 struct Kind {
   std::string name;
   Mesh mesh;
-  bool solid = true;  ///< bounds a solid, if need be by parity
-  /// `build` takes it; nothing: what noise has made of its polygons decides.
-  std::optional<bool> builds = true;
+  bool solid = true;   ///< bounds a solid, if need be by parity
+  bool builds = true;  ///< an LRB-rep can be built
   bool simple =
       true;  ///< neither intersects itself nor has faces without area, so that every clash is decided
   const char* format = "ply";  ///< of its second file; in the plane "obj"

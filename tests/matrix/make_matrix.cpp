@@ -1,7 +1,7 @@
 /// matrix_bodies DIR [NOISY]: writes the bodies of the matrix with their properties, for doors.py:
-/// DIR/matrix.json, and of each kind NAME.obj and a file of another format; for each cell poses, a motion and
-/// a scenario. matrix_bodies --save MESH FILE.lrb: saves a body without levels, as a program in C++ may;
-/// which `lrbscope build` does not.
+/// DIR/matrix.json, and of each kind NAME.obj, a file of another format and its corners; for each cell poses,
+/// a motion and a scenario. matrix_bodies --save MESH FILE.lrb: saves a body without levels, as a program in
+/// C++ may; which `lrbscope build` does not.
 
 #include <cstdio>
 #include <cstdlib>
@@ -71,7 +71,12 @@ Json scenario_of(const Matrix& m, const Cell& cell, const std::string& name) {
       {"bodies",
        {{"a", {{"file", m.kinds[cell.a].name + ".obj"}}}, {"b", {{"file", m.kinds[cell.b].name + ".obj"}}}}},
       {"motion", {{"kind", "poses"}, {"poses", poses}}},
-      {"query", {{"contacts", true}, {"distance", true}, {"clash", m.kinds[cell.a].mesh.dim == 3}}},
+      {"query",
+       {{"contacts", true},
+        {"distance", true},
+        {"clash", m.kinds[cell.a].mesh.dim == 3},
+        {"near", 0},
+        {"manifold", cell.size / 20}}},
       {"frames", {{"at", "step"}, {"size", {640, 480}}, {"supersampling", 1}}},
       {"expect", expect}};
 }
@@ -86,10 +91,16 @@ void write_matrix(const std::filesystem::path& folder, int noisy) {
   for (const Kind& k : m.kinds) {
     save(k.name + ".obj", file_of(k.mesh, "obj"));
     save(k.name + "." + k.format, file_of(k.mesh, k.format));
+    std::string points;  // the corners of its faces
+    for (const VertexId v : k.mesh.face_vertices) {
+      for (const double x : k.mesh.vertices[v]) points += test::digits(x) + " ";
+      points += "\n";
+    }
+    save(k.name + ".points.txt", points);
     kinds.push_back({{"name", k.name},
                      {"dim", k.mesh.dim},
                      {"solid", k.solid},
-                     {"builds", k.builds ? Json(*k.builds) : Json()},
+                     {"builds", k.builds},
                      {"simple", k.simple},
                      {"files", {"obj", k.format}}});
   }

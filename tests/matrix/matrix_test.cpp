@@ -1,6 +1,7 @@
 /// Every kind of body through the doors of the library; doors.py has those of the programs.
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include <doctest/doctest.h>
@@ -20,7 +21,10 @@
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh_check.hpp>
+#include <lrbscope/near_pairs.hpp>
+#include <lrbscope/point_distance.hpp>
 #include <lrbscope/scene.hpp>
+#include <lrbscope/self_intersections.hpp>
 #include <lrbscope/validate.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -60,7 +64,9 @@ class Questions {
       doing("paper"), paper();
       doing("scene"), scene();
       doing("distance"), distances();
+      doing("near pairs"), near();
       doing("manifolds"), manifolds();
+      doing("points"), points();
       doing("why"), why();
       doing("clash"), a_.dim() == 3 ? clashes(kinds) : no_clash();
     }
@@ -169,6 +175,38 @@ class Questions {
       request.within = share * step_->distance;
       expect(distance(a_, {}, b_, step_->pose, request).within == (meet() || share > 1),
              "wrong about within");
+    }
+  }
+
+  void near() {
+    const auto pairs_within = [&](double within) {
+      NearPairsRequest request;
+      request.within = within;
+      return near_pairs(a_, {}, b_, step_->pose, request);
+    };
+    Pairs pairs;
+    for (const NearPair& pair : pairs_within(0).pairs) pairs.push_back({pair.a, pair.b});
+    expect(pairs == step_->truth.pairs, "other pairs at distance 0");
+    const double slack = kSlack * cell_.size, least = step_->distance;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const NearPair& pair : pairs_within(least + slack).pairs) nearest = std::min(nearest, pair.upper);
+    expect(std::abs(nearest - least) <= slack, "the nearest pair is not listed");
+    if (least > 2 * slack) expect(pairs_within(least - slack).pairs.empty(), "pairs nearer than the bodies");
+  }
+
+  /// Corners of B have a side if A has an inside, and are not nearer to A than B is. Those of A are on it.
+  void points() {
+    for (const Body* of : {&a_, &b_}) {
+      const Pose pose = of == &a_ ? Pose() : step_->pose;
+      std::vector<Eigen::Vector3d> corners;
+      for (FaceId f = 0; f < of->rep().real_face_count(); ++f)
+        for (const VertexId v : of->rep().face(f)) corners.push_back(pose.apply(of->rep().vertices()[v]));
+      const double least = of == &a_ ? 0 : step_->distance;
+      for (const PointDistance& d : point_distances(a_.rep(), {}, corners)) {
+        expect(d.lower <= d.upper && d.upper >= least - kSlack * cell_.size, "a point is nearer than B");
+        expect(d.side == Where::on_surface ? d.upper == 0 : d.side.has_value() == a_.rep().closed(), "side");
+        expect(of == &b_ || d.upper == 0, "a corner of A is off A");
+      }
     }
   }
 
@@ -308,13 +346,26 @@ constexpr Door kDoors[] = {
     {"lrb", [](const Kind& k, const test::Folder& folder) { return saved(k, folder, false); }},
     {"lrb with levels", [](const Kind& k, const test::Folder& folder) { return saved(k, folder, true); }}};
 
+/// The pairs of a body, whatever it was made from, are those of the mesh, with the same segments.
+void check_self_intersections(Report& report, const Kind& kind, const Body& body) {
+  const SelfIntersections truth = self_intersections(check(kind.mesh)),
+                          found = self_intersections(body.rep());
+  const bool same = std::equal(found.pairs.begin(), found.pairs.end(), truth.pairs.begin(), truth.pairs.end(),
+                               [](const SelfIntersection& x, const SelfIntersection& y) {
+                                 return x.a == y.a && x.b == y.b && x.kind == y.kind && x.curve == y.curve;
+                               });
+  if (!same)
+    report.wrong(std::to_string(found.pairs.size()) + " pairs of faces, the mesh has " +
+                 std::to_string(truth.pairs.size()));
+  if (kind.simple && !found.pairs.empty()) report.wrong("intersects itself");
+}
+
 /// The report on the mesh, and the body built from it.
 void check_build(Report& report, const Kind& kind) {
   report.doing("check");
   CheckedMesh mesh = check(kind.mesh);
   mesh.find_self_intersections();
-  if (kind.builds && mesh.report().when_turned().buildable() != *kind.builds)
-    report.wrong("buildable, or not");
+  if (mesh.report().when_turned().buildable() != kind.builds) report.wrong("buildable, or not");
   if (mesh.report().bounds_solid != kind.solid) report.wrong("a solid, or none");
   if (kind.simple && mesh.report()[MeshFault::self_intersection].count > 0) report.wrong("intersects itself");
   report.doing("validate");
@@ -326,9 +377,9 @@ void check_build(Report& report, const Kind& kind) {
   try {
     mesh.turn_outward();
     build_lrb(mesh);
-    if (kind.builds && !*kind.builds) report.wrong("is not refused");
+    if (!kind.builds) report.wrong("is not refused");
   } catch (const InputError& e) {
-    if (kind.builds && *kind.builds) report.wrong(e.what());
+    if (kind.builds) report.wrong(e.what());
   }
 }
 
@@ -374,6 +425,8 @@ void check_kind(std::size_t index, bool all, Report& report) {
     report.through(door.name);
     report.doing("open");
     const Body body = door.open(kind, folder);
+    report.doing("self-intersections");
+    check_self_intersections(report, kind, body);
     for (const Cell& cell : matrix().cells) {
       if (cell.a != index) continue;
       const Body other = cell.b == index ? body : of_mesh(matrix().kinds[cell.b], true);

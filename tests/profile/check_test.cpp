@@ -117,9 +117,10 @@ TEST_CASE("Poses that are recorded wrongly are named, and only these") {
     const Check found = checked_with([wrong = wrong](auto& poses) {
       for (Pose& p : poses) p = wrong(p);
     });
-    CAPTURE(static_cast<int>(error));
+    const std::string expected(words(error));
+    CAPTURE(expected);
     CHECK(found.is_wrong());
-    CHECK(found.pose_error.find(words(error)) != std::string::npos);
+    CHECK(found.pose_error.find(expected) != std::string::npos);
     for (const auto& [other, unused] : errors)
       if (other != error) CHECK(found.pose_error.find(words(other)) == std::string::npos);
   }

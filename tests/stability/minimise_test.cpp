@@ -239,8 +239,9 @@ TEST_CASE("lrbscope stability --minimise: the folder, its proof, the same bytes 
                                                         {"fake-miss", "identical", "10", "0"},
                                                         {"fake-crash", "identical", "10", "0"},
                                                         {"fcl", "identical", "10", "9"}}) {
-    CAPTURE(name);
-    if (name == std::string("fcl") && !has_fcl) continue;
+    const std::string method = name;
+    CAPTURE(method);
+    if (method == "fcl" && !has_fcl) continue;
     const Folder one, two;
     const std::vector<std::string> command = {"-q",         "stability",    "--family", family,   "--method",
                                               name,         "--difficulty", difficulty, "--only", index,
@@ -305,8 +306,9 @@ TEST_CASE("lrbscope stability --minimise, --saved: invalid arguments and folders
       {{"stability", "--saved", "x", "--quantity", "distance", "--method", "ours"},
        "--saved: expected --quantity pairs, found distance"}};
   for (const auto& [command, message] : wrong) {
-    CAPTURE(message);
+    const std::string expected = message;
+    CAPTURE(expected);
     const test::Outcome o = test::check_rejected(folder, command);
-    CHECK(o.err.find(message) != std::string::npos);
+    CHECK(o.err.find(expected) != std::string::npos);
   }
 }

@@ -10,6 +10,7 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
+#include "tests/support/hard_bodies.hpp"
 #include "tests/support/json_lines.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include <lrbscope/collide.hpp>
@@ -232,7 +233,13 @@ std::vector<Row> rows_3d() {
        .findings = {"a face has no area (", meet, "two vertices coincide ("},
        .build = Build::rejected,
        .relation = "separate"},
-      {.kind = "concave polygon",
+      {.kind = "concave polygons",
+       .mesh = hard::cog(40),
+       .findings = {"a polygon is not convex (2 times): face ", meet},
+       .build = Build::done,
+       .relation = "b_inside_a",
+       .at = {0.1, 0.2, 0.5}},
+      {.kind = "concave polygon, open",
        .mesh = with_face(tetrahedron(), {{0.1, 0.1, 2}, {3, 0, 2}, {0, 0, 2}, {0, 3, 2}}, {4, 5, 6, 7}),
        .findings = {"a polygon is not convex (1 time): face 4", "an edge has only one face (4 times)"},
        .build = Build::rejected,

@@ -39,8 +39,9 @@ TEST_CASE("live: programs without a capture are reported in one line") {
       {"echo hello >\"$LRBCAP_OUT\"", "expected a capture (LRBCAP ...), found text: 'hello'"},
       {"printf LRBCAP >\"$LRBCAP_OUT\"", "recorded nothing"},
       {"head -c 100000 /dev/zero >\"$LRBCAP_OUT\"; sleep 100", "expected a capture (LRBCAP ...)"}};
-  for (const auto& [script, says] : programs) {
-    CAPTURE(std::string(script));
+  for (const auto& program : programs) {
+    const std::string script = program.first, says = program.second;
+    CAPTURE(script);
     const Outcome o = run(folder, {"--quiet", "live", "--exit", "--", "sh", "-c", script});
     CHECK(o.code == 2);
     CHECK(o.out.empty());

@@ -1,9 +1,12 @@
 // lrbscope points: output and errors.
+#include <array>
+#include <filesystem>
 #include <string>
 
 #include <doctest/doctest.h>
 
 #include "tests/support/command.hpp"
+#include "tests/support/pixels.hpp"
 
 namespace lrb::test {
 namespace {
@@ -53,6 +56,60 @@ TEST_CASE("points: more than a batch of points, in their order") {
   REQUIRE(lines.size() == 5000);
   for (std::size_t i = 0; i < lines.size(); i += 499)
     CHECK(lines[i]["upper"].get<double>() == doctest::Approx(static_cast<double>(i + 1)));
+}
+
+TEST_CASE("points: a picture, with points in the colours of their sides") {
+  Command command({"--quiet", "points"});
+  command.folder.write("points.txt", "0.5 0.5 0.5\n2 0.5 0.5\n0.5 1 0.5\n0 0 3\n");
+  command.folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write_mesh(shapes::star(5), command.folder / "star.obj");
+  const auto colours = [&](const std::string& body) {
+    const std::vector<std::string> draw = {"points.txt", "--draw", "out.png", "--size", "640x400"};
+    const render::Image image = drawn(command.folder, "out.png", command.with({body}), draw).image;
+    CHECK(image.rect() == render::PixelRect{0, 0, 640, 400});
+    std::array<bool, 2> found{};
+    for (const std::size_t i : {0U, 1U}) {
+      const render::Rgba colour = i == 0 ? render::palette::kContact : render::palette::kGreen;
+      found[i] = count_pixels(image, {0, 0.15, 1, 0.85}, [&](render::Rgba c) { return c == colour; }) > 0;
+    }
+    return found;
+  };
+  CHECK(colours("cube.obj") == std::array{true, true});    // inside, on the surface
+  CHECK(colours("star.obj") == std::array{true, false});   // in the plane, z is ignored
+  CHECK(colours("open.obj") == std::array{false, false});  // neither
+}
+
+TEST_CASE("points: a page with all points, or evenly chosen ones") {
+  Command command({"--quiet", "points", "cube.obj"});
+  command.folder.write("few.txt", "0.5 0.5 0.75\n4 0.5 5\n1 0.5 0.5\n");
+  command.lines({"few.txt", "--page", "out"});
+  const std::string page = slurp(command.folder / "out/index.html");
+  for (const char* part : {"<tr data-to=\"item 0\"><td", ">inside</td>", ">outside</td>",
+                           ">on the surface</td>", "<dt>Inside</dt>", "\"what\":\"point\"", "item 2"})
+    CHECK_MESSAGE(page.find(part) != std::string::npos, std::string(part));
+  CHECK(page.find("evenly chosen") == std::string::npos);
+
+  std::string text;
+  for (int i = 0; i < 5000; ++i) text += "0.5 0.5 " + std::to_string(i + 2) + "\n";
+  command.folder.write("many.txt", text);
+  CHECK(command.lines({"many.txt", "--page", "out", "--draw", "out.png"}).size() == 5000);
+  const std::string cut = slurp(command.folder / "out/index.html");
+  CHECK(cut.find("evenly chosen from 5\xe2\x80\xaf"
+                 "000") != std::string::npos);
+  std::size_t rows = 0;
+  for (std::size_t at = 0; (at = cut.find("<tr data-to=", at)) != std::string::npos; ++at) ++rows;
+  CHECK(rows > 1000);
+  CHECK(rows <= 2000);
+}
+
+TEST_CASE("points: a page does not replace that of a run") {
+  Command command({"--quiet", "points", "cube.obj", "points.txt"});
+  command.folder.write("points.txt", "0 0 0\n");
+  std::filesystem::create_directory(command.folder / "run");
+  command.folder.write("run/trace.json", "{}");
+  command.check_refusals(
+      {{{"--page", "run"}, "run"}, {{"--draw", "a.png", "--size", "640"}, "--size: expected"}});
+  CHECK_FALSE(std::filesystem::exists(command.folder / "run/index.html"));
 }
 
 TEST_CASE("points: invalid input is rejected in one line") {

@@ -100,6 +100,8 @@ void change(Value& value) {
     value = MeasuredNearPairs{0.5, 3, {{7, 8, 0.25, 0.375, {{{1, -2, 3}, {4, 5, 6}}}}}};
   else if constexpr (std::is_same_v<Value, std::optional<MeasuredManifolds>>)
     value = MeasuredManifolds{0.5, 2, 3, {{1ULL << 33, 1, -0.25, {0, 0, 1}, {{{1, -2, 3}, {4, 5, 6}}}}}};
+  else if constexpr (std::is_same_v<Value, std::optional<MeasuredPoints>>)
+    value = MeasuredPoints{4, 1, 2, true, {{3, 8, -0.25, -0.125, {{{1, -2, 3}, {4, 5, 6}}}}}};
   else if constexpr (std::is_same_v<Value, std::optional<EngineReport>>)
     value = EngineReport{EngineQuery::self, EngineVerdict::intersecting, 7, false, 2, 3, 4, {}, {}};
   else if constexpr (std::is_same_v<Value, Counters>)

@@ -42,6 +42,8 @@ class SweepAndPrune {
 
   void choose_axis(Boxes boxes);
   void sort(Boxes boxes);
+  void sweep(Boxes boxes);
+  void sort_by(std::uint32_t BodyPair::*body, std::size_t bodies);
   bool before(Boxes boxes, std::uint32_t i, std::uint32_t j) const;
   void sort_moved(Boxes boxes, std::span<const std::uint32_t> moved);
   void sweep_moved(Boxes boxes, std::uint32_t body);
@@ -49,13 +51,19 @@ class SweepAndPrune {
   int axis_ = 0;
   std::vector<std::uint32_t> order_;  ///< bodies sorted by the lower end of their boxes on the axis
   std::vector<BodyPair> pairs_;
+  // The boxes in the order of the sweep, without empty ones, with their ends on the sweep axis and the
+  // others.
+  std::vector<std::uint32_t> swept_;
+  std::vector<double> from_;
+  std::vector<float> low_u_, high_u_, low_v_, high_v_;
+  std::vector<std::size_t> ends_;  ///< of the pairs of each body, for sorting
   Work work_;
   // For incremental updates.
   double longest_ = 0;               ///< upper bound of the boxes' lengths on the axis
   std::uint64_t moved_ = 0;          ///< bodies moved by incremental updates since the last complete one
   std::vector<bool> has_moved_;      ///< (bodies)
   std::vector<std::uint32_t> rest_;  ///< order_ without moved bodies
-  std::vector<BodyPair> found_;      ///< pairs of moved bodies
+  std::vector<BodyPair> found_;      ///< pairs of moved bodies; also a buffer for sorting
 };
 
 }  // namespace lrb

@@ -14,8 +14,9 @@
 
 namespace lrb {
 
-/// The boundary of a body. 3D: a face is a convex planar polygon with its corners counter-clockwise seen from
-/// outside. 2D: a face is a segment in the plane z = 0 with the solid on its left.
+/// The boundary of a body. 3D: a face is a polygon with its corners counter-clockwise seen from outside; one
+/// that is not planar and convex stands for the fan of triangles from its first corner. 2D: a face is a
+/// segment in the plane z = 0 with the solid on its left.
 struct Mesh {
   int dim = 3;                                    ///< 3, or 2 for closed polygons made of segments
   std::vector<Eigen::Vector3d> vertices;          ///< (|V| x 3), unit of the file; z = 0 in 2D

@@ -22,7 +22,7 @@ namespace lrb {
   MESH_FAULT(repeated_corner, "a face uses a vertex twice", false, true)                                  \
   MESH_FAULT(zero_area_face, "a face has no area", false, true)                                           \
   MESH_FAULT(non_planar_face, "a polygon is not planar", true, true)                                      \
-  MESH_FAULT(non_convex_face, "a polygon is not convex", false, true)                                     \
+  MESH_FAULT(non_convex_face, "a polygon is not convex", true, true)                                      \
   MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                              \
   MESH_FAULT(open_edge, "an edge has only one face", false, true)                                         \
   MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                           \

@@ -203,12 +203,14 @@ function squareBetween(p, q, half) {
 }
 
 // ---- in the view: the distance of the bodies in the current step, the separation vector where they overlap,
-// near pairs and contact manifolds
+// near pairs, contact manifolds and points of B
 const MEASURED = [
   { colour: "ink", key: "between the nearest points of the bodies", width: 3.5, isArrow: false },
   { colour: "ink", key: "B leaves A this way", width: 3.5, isArrow: true },
   { colour: "ink", key: "between the closest points of near pairs", width: 1.5, isArrow: false },
   { colour: "ink", key: "normals of contacts, from A to B", width: 2.5, isArrow: true },
+  { colour: "ink", key: "from points of B to the closest points of A", width: 1.5, isArrow: false },
+  { colour: "contact", key: "the same, of points inside A", width: 1.5, isArrow: false },
 ];
 
 class MeasuredMarks {

@@ -48,8 +48,10 @@ TEST_CASE("poses in CSV: errors report file and line") {
         "p.csv:1: expected 0, 0, 0, 1 as the last row of the 4x4 pose");
   fails("1,,3,4,5,6,7,8,9,10,11,12\n", "p.csv:1: cell 2 is empty: expected a number");
   fails("1,2,3,4,5,6,7,8,9,10,11,12,0,0,,1\n", "p.csv:1: cell 15 is empty: expected a number");
-  fails("1;2;3;4;5;6;7;8;9;10;11;12\n",
-        "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 1");
+  fails(
+      "1;2;3;4;5;6;7;8;9;10;11;12\n",
+      "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 1; in a .csv file, commas separate "
+      "them");
   fails("r00,r01\n1,2\n",
         "p.csv:1: missing column r02: expected r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz in any order");
   fails("r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz\n1,2\n",

@@ -10,9 +10,11 @@
 #include "scenarios/run/run_charts.hpp"
 #include "scenarios/run/run_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/style.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 
 using namespace lrb;
 using lrb::test::count;
@@ -98,6 +100,42 @@ TEST_CASE("measured runs: frames show closest points and separation vectors with
 
 std::string page_of(const run::Recording& r) {
   return run::run_page(run::recorded_run_of("gap", "", r), {}, ".", {}).html();
+}
+
+TEST_CASE("measured runs: distances of points that move with B are those of the library") {
+  const test::Folder folder;
+  folder.write("points.csv", "x,y,z\n0,0,0\n-1,0,0\n0,0,1\n3,3,3\n");
+  const std::string file = folder / "gap.json";
+  const auto record_with = [&](const std::string& query) {
+    return run::record(spec::parse_scenario(balls(query), file), run::kSilent);
+  };
+  const run::Recording r = record_with(R"({"points": "points.csv"})");
+  std::vector<Eigen::Vector3d> points = {{0, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {3, 3, 3}};
+  std::uint64_t inside = 0;
+  for (const trace::Step& step : r.trace.steps) {
+    REQUIRE(step.result.points.has_value());
+    std::vector<Eigen::Vector3d> placed;
+    for (const Eigen::Vector3d& x : points) placed.push_back(step.pose_b.apply(x));
+    const LrbRep& a = r.bodies[0].rep;
+    CHECK(*step.result.points == trace::measured(point_distances(a, step.pose_a, placed), placed, true));
+    CHECK(step.result.points->smallest.size() == points.size());
+    for (std::size_t i = 1; i < points.size(); ++i)
+      CHECK(step.result.points->smallest[i - 1].lower <= step.result.points->smallest[i].lower);
+    inside += step.result.points->inside;
+  }
+  CHECK(inside > 0);
+  CHECK(trace::trace_from_json(trace::trace_to_json(r.trace), "t.json").steps.back().result ==
+        r.trace.steps.back().result);
+  const render::FrameSpec spec;
+  const run::FrameState last = at_end(r, r.trace.steps.size() - 1, spec);
+  CHECK(last.caption().find(" of 4 points inside, smallest distance -") != std::string::npos);
+  CHECK(draws_line(last.scene().list, render::palette::kContact));
+  const std::string page = page_of(r), plain = page_of(record_with("{}"));
+  for (const char* part : {">points inside</th>", ">smallest distance</th>", "<dt>Points inside</dt>"}) {
+    CHECK_MESSAGE(count(page, part) == 1, std::string(part));
+    CHECK_MESSAGE(count(plain, part) == 0, std::string(part));
+  }
+  CHECK_THROWS_WITH_AS(record_with(R"({"points": "none.csv"})"), doctest::Contains("none.csv"), InputError);
 }
 
 TEST_CASE("measured runs: only their pages have the numbers, columns and charts") {

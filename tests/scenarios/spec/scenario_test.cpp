@@ -82,7 +82,8 @@ TEST_CASE("a scenario's query has the fields and enumerators of requests") {
     if constexpr (std::is_enum_v<Value>) CHECK(query.at(name).at("enum") == words<Value>());
   });
   // The sequence of steps, and the other queries.
-  for (const char* key : {"coherent", "distance", "clash", "near", "manifold"}) keys[key] = query.at(key);
+  for (const char* key : {"coherent", "distance", "clash", "near", "manifold", "points"})
+    keys[key] = query.at(key);
   CHECK(keys == query);
   const auto at = [&](const char* pointer) { return document.at(json::json_pointer(pointer)).at("enum"); };
   CHECK(at("/properties/show") == words<spec::Show>());

@@ -126,6 +126,8 @@ std::string counted(std::uint64_t n, const char* one, const char* many);
 
 /// Returns a value as printed on a scale: at most four digits.
 std::string short_number(double value);
+/// Returns a share as a percentage: 0.125 as "12.5 %".
+std::string percent(double share);
 
 // Draws anti-aliased text into images on the CPU, identically on every machine.
 

@@ -48,6 +48,7 @@ inline constexpr auto kFields<trace::StepResult> =
                field("clash", &trace::StepResult::clash, Kept::if_set),
                field("near", &trace::StepResult::near, Kept::if_set),
                field("manifold", &trace::StepResult::manifold, Kept::if_set),
+               field("points", &trace::StepResult::points, Kept::if_set),
                field("engine", &trace::StepResult::engine, Kept::if_set),
                field("counters", &trace::StepResult::counters)};
 

@@ -74,6 +74,7 @@ class Recorder final : public CollideProbe {
   void add(MeasuredClash clash);
   void add(MeasuredNearPairs near);
   void add(MeasuredManifolds manifold);
+  void add(MeasuredPoints points);
   void add(EngineReport report);
   void end_step(const CollideResult& result);
 

@@ -24,13 +24,13 @@
 #include <lrbscope/ids.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/observe.hpp>
+#include <lrbscope/point_distance.hpp>
 #include <lrbscope/pose.hpp>
 
 namespace lrb::trace {
 
-// Recorded results of further queries: distance, clash and the convergence of their bounds, near pairs and
-// contact manifolds per step, and the
-// first contact of a whole motion.
+// Recorded results of further queries: distance, clash and the convergence of their bounds, near pairs,
+// contact manifolds and distances of points per step, and the first contact of a whole motion.
 
 /// A DistanceResult without its features.
 struct MeasuredDistance {
@@ -94,6 +94,25 @@ struct MeasuredManifolds {
   friend bool operator==(const MeasuredManifolds&, const MeasuredManifolds&) = default;
 };
 
+/// Signed distances of points that move with B to A.
+struct MeasuredPoints {
+  struct Point {
+    std::uint32_t number = 0;                       ///< of the point, from 0
+    FaceId face = kNull;                            ///< of A, the closest one
+    double lower = 0, upper = 0;                    ///< bounds of the distance, negative inside
+    std::array<std::array<double, 3>, 2> points{};  ///< the point, and the closest one on A
+
+    friend bool operator==(const Point&, const Point&) = default;
+  };
+
+  std::uint64_t count = 0, inside = 0, on_surface = 0;
+  bool has_sides = false;       ///< A is closed; otherwise distances have no sign
+  std::vector<Point> smallest;  ///< at most kMaxListed, by ascending lower bounds
+
+  static constexpr std::size_t kMaxListed = 1000;
+  friend bool operator==(const MeasuredPoints&, const MeasuredPoints&) = default;
+};
+
 /// First contact of the motion that the steps sample. Times are shares of the motion.
 struct MeasuredApproach {
   MotionOutcome outcome = MotionOutcome::undecided;
@@ -111,6 +130,9 @@ MeasuredDistance measured(const DistanceResult& result, std::vector<Bounds> hist
 MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history);
 MeasuredNearPairs measured(const NearPairsResult& result, double within);
 MeasuredManifolds measured(const ManifoldResult& result, double margin);
+/// `points`: in the world; `has_sides`: A is closed.
+MeasuredPoints measured(std::span<const PointDistance> distances, std::span<const Eigen::Vector3d> points,
+                        bool has_sides);
 /// Converts a result. `step` and `length` stay empty, because they depend on the steps of the trace.
 MeasuredApproach measured(const FirstContactResult& result, std::vector<ContactBounds> history);
 
@@ -119,6 +141,7 @@ std::string to_text(const MeasuredDistance& m);
 std::string to_text(const MeasuredClash& m);
 std::string to_text(const MeasuredNearPairs& m);
 std::string to_text(const MeasuredManifolds& m);
+std::string to_text(const MeasuredPoints& m);
 std::string to_text(const MeasuredApproach& m);
 
 // The answer of another engine, as it reported it.
@@ -481,6 +504,7 @@ struct StepResult {
   std::optional<MeasuredClash> clash = {};         ///< if requested
   std::optional<MeasuredNearPairs> near = {};      ///< if requested
   std::optional<MeasuredManifolds> manifold = {};  ///< if requested
+  std::optional<MeasuredPoints> points = {};       ///< if requested
   std::optional<EngineReport> engine = {};         ///< if another engine reported its answer
 
   friend bool operator==(const StepResult&, const StepResult&) = default;
