@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # docs/figures.sh [LRBSCOPE]: makes the pictures of bodies in README and docs: figure2.png, collision.png, crowd.png,
-# figure.png, distance.png, near.png, points.png, manifold.png, first_contact.png and clash.png. (xray.png is a measurement: docs/profiling.md.)
+# figure.png, inset.png, distance.png, near.png, points.png, manifold.png, first_contact.png and clash.png. (xray.png is a measurement: docs/profiling.md.)
 # docs/figures.sh chart [LRBSCOPE [OPTION...]]: measures and makes only chart.png, with these options of lrbscope chart.
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -19,6 +19,7 @@ run figure figure2 --width 160mm --title --no-legend --font-size 10 --line-width
 run run collision --size 1000x562 -o "$work/collision"
 run crowd -o "$work/crowd"
 run figure figure2_mesh --width 85mm --dpi 300 -o "$work/figure.png"
+run figure figure2_mesh --panels 3 --inset b:region:40 --inset c:face:2197:6 --dpi 300 -o "$work/inset.png"
 answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE OPTION...: a picture of one answer, for the bodies of `collision`
   echo "$4" >"$work/poses.txt"
   run "$2" "$work/collision/a.lrb" "$work/collision/b.lrb" "$3" "$work/poses.txt" --draw "$docs/$1.png" --size "$5" "${@:6}"
@@ -38,4 +39,4 @@ frames=("$work"/collision/frames/*.png)
 cp "${frames[-1]}" "$docs/collision.png"
 frames=("$work"/crowd/frames/*.png)
 cp "${frames[$((${#frames[@]} / 2))]}" "$docs/crowd.png"
-cp "$work/figure2.png" "$work/figure.png" "$docs/"
+cp "$work/figure2.png" "$work/figure.png" "$work/inset.png" "$docs/"

@@ -201,6 +201,12 @@ Projection::Projection(const Camera& camera, double width, double height, const 
     throw InputError("the camera's eye and target must be finite and differ");
   }
   axes_ = axes_of(forward, camera.up);
+  to_eye_ = axes_;
+  if (orthographic_) {
+    eye_ += axes_.topRows<2>().transpose() * camera.shift;
+  } else {
+    to_eye_.topRows<2>() -= camera.shift * axes_.row(2);
+  }
   // Pixels per unit: at distance 1 in perspective, everywhere in orthographic views.
   focal_ = 0.5 * height / (orthographic_ ? camera.half_height : std::tan(0.5 * camera.fov_y));
   if (!std::isfinite(focal_) || !(focal_ > 0))

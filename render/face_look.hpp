@@ -22,7 +22,7 @@ struct FaceLook {
 class FaceLooks {
  public:
   /// `scale`: pixels of the projection per unit of the list's widths. Other arguments as in
-  /// make_screen_mesh(). Keeps references to list, projection and lighting.
+  /// make_screen_mesh(). Keeps references to list and projection.
   FaceLooks(const DrawList& list, const Projection& projection, double scale, const Lighting& lighting,
             bool even_edges);
 
@@ -37,7 +37,7 @@ class FaceLooks {
   const DrawList& list_;
   const Projection& projection_;
   double scale_;
-  const Lighting& lighting_;
+  Lighting lighting_;
   Lighting soft_;                           ///< of translucent faces: they should tint, not darken
   std::vector<double> spacing_;             ///< by triangle: see edge_spacing()
   std::vector<StyleSpacing> even_spacing_;  ///< by style; empty: edges fade individually

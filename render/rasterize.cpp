@@ -377,6 +377,13 @@ IdImage Rasterizer::ids(const DrawList& list, const Camera& camera, int width, i
   return state_->draw_ids(list, camera, width, height, translucent);
 }
 
+bool DepthImage::shows(const Projection& projection, const Eigen::Vector3d& point, double heights) const {
+  const Eigen::Vector3d at = projection.to_screen(projection.to_eye(point));
+  const int x = std::clamp(static_cast<int>(at.x()), 0, width - 1),
+            y = std::clamp(static_cast<int>(height - at.y()), 0, height - 1);
+  return projection.nearer(at.z(), heights) <= this->at(x, y);
+}
+
 DepthImage Rasterizer::depths(const DrawList& list, const Camera& camera, int width, int height) {
   return state_->draw_depths(list, camera, width, height);
 }

@@ -48,7 +48,33 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   return m;
 }
 
-spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies) {
+/// Chooses the axis that points up: without --up the one on which A is most stable, else B. An axis along
+/// --from is not chosen. Returns a note if it is not z, else an empty text.
+std::string choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBody>& bodies,
+                      const Globals& globals) {
+  if (bodies[0].rep.dim() == 2) {
+    if (camera.up == "auto") camera.up.clear();
+    return {};
+  }
+  if (!camera.up.empty()) {
+    resolve_up(camera, bodies[0].rep, globals);
+    return {};
+  }
+  for (const bodies::LoadedBody& body : bodies) {
+    const std::optional<int> guess = run::likely_up(body.rep);
+    if (!guess) continue;
+    const bool along_view =
+        !camera.from.empty() &&
+        io::parse_vector(camera.from, "--from").cross(Eigen::Vector3d::Unit(*guess)).isZero();
+    if (*guess == 2 || along_view) return {};
+    camera.up = {"xyz"[*guess]};
+    return "up is " + camera.up + ", on which " + body.rep.name() + " is most stable; --up sets another axis";
+  }
+  return {};
+}
+
+spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies,
+                             const PictureOptions& picture) {
   spec::Scenario s;
   s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string();
   s.bodies = {{}, {}};
@@ -85,7 +111,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   }
   hash.add_bytes(s.motion.from.data(), sizeof(double) * 3);
   s.hash = hash.value();
-  apply(o.picture, s.frames);
+  apply(picture, s.frames);
   return s;
 }
 
@@ -103,13 +129,16 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
   if (bodies[0].rep.dim() != bodies[1].rep.dim())
     throw InputError(o.a + " and " + o.b +
                      ": expected two bodies of the same dimension, found a 2D and a 3D body");
-  spec::Scenario scenario = make_scenario(o, bodies);
+  PictureOptions picture = o.picture;
+  const std::string up_note = choose_up(picture.camera, bodies, globals);
+  spec::Scenario scenario = make_scenario(o, bodies, picture);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   run::Recording recording = run::record(scenario, std::move(bodies), progress);
-  choose_views(o.picture.camera, scenario, recording);
+  choose_views(picture.camera, scenario, recording);
   const run::RunOutcome outcome =
       run::write_run(scenario, recording, folder, globals.command_line, progress, o.live);
   animate_frames(o.picture, folder);
+  if (!up_note.empty()) note(globals, {up_note});
   return report_outcome(outcome, folder, o.json, globals);
 }
 
@@ -147,7 +176,7 @@ Command add_collide(CLI::App& root, const Globals& globals) {
       ->type_name("FILE");
   add_events_option(*app, o->events);
   add_clock_option(*app, o->clock);
-  add_picture_options(*app, o->picture);
+  add_picture_options(*app, o->picture, UpOption::auto_by_default);
   add_animation_option(*app, o->picture);
   add_live_option(*app, o->live);
   app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");

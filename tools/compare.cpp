@@ -52,10 +52,11 @@ int run_compare(const CompareOptions& o, const Globals& globals) {
                            {&scenarios[0], &scenarios[1]},
                            {page_of(o.first), page_of(o.second)}};
   const std::string folder = o.folder.empty() ? "out/compare" : o.folder;
-  const std::optional<std::string> difference =
+  const compare::Difference difference =
       compare::write_comparison(runs, globals.command_line, folder, progress_report(globals.quiet));
-  print(difference.value_or("the runs are identical") + "\n" + folder + "/index.html\n");
-  return difference ? kMismatch : kOk;
+  print(difference.first.value_or("the runs are identical") + "\n" +
+        (difference.first ? difference.regions : std::string()) + folder + "/index.html\n");
+  return difference.first ? kMismatch : kOk;
 }
 
 }  // namespace

@@ -122,15 +122,6 @@ figure::FigureSpec figure_spec(const FigureOptions& o, const std::string& file) 
   return spec;
 }
 
-/// Returns the axis that points up: as given, or guessed, which is noted.
-std::string up_axis(const FigureOptions& o, const Source& source, const Globals& globals) {
-  if (o.picture.camera.up != "auto") return o.picture.camera.up;
-  const std::optional<int> guess = run::likely_up(source.recording.bodies[0].rep);
-  note(globals, {guess ? std::string("--up auto: the body is most stable with --up ") + "xyz"[*guess]
-                       : "--up auto: the body would fall over whichever axis is up; z is up"});
-  return {"xyz"[guess.value_or(2)]};
-}
-
 /// Returns views to choose from, with the options for them as titles: two for each axis that may point up, or
 /// six around the one given.
 std::vector<render::FrameSpec::View> views_to_try(const std::string& up, const LrbRep& rep) {
@@ -167,7 +158,7 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
                                                                                 : 1;
   if (frames.views.size() > views) frames.views.resize(views);
   PictureOptions picture = o.picture;
-  picture.camera.up = up_axis(o, source, globals);
+  resolve_up(picture.camera, source.recording.bodies[0].rep, globals);
   if (o.try_views) {
     frames.views = views_to_try(picture.camera.up, source.recording.bodies[0].rep);
     picture.camera.up.clear();
@@ -211,6 +202,11 @@ std::string shell_options(const CLI::App& app) {
     if (option->count() == 0 || option->get_positional() || name == "--output" || name == "--artifact" ||
         name == "--bodies")
       continue;
+    // Options without a delimiter have one value each time that they are given.
+    if (option->get_items_expected_max() > 0 && option->get_delimiter() == '\0') {
+      for (const std::string& value : option->results()) out += " " + name + " " + shell_word(value);
+      continue;
+    }
     std::string values;
     for (const std::string& value : option->results()) values += (values.empty() ? "" : ",") + value;
     const bool flag = option->get_items_expected_max() == 0;
@@ -328,6 +324,26 @@ void add_panel_options(CLI::App& app, FigureOptions& o) {
   steps->excludes(layers);
 }
 
+void add_callout_options(CLI::App& app, FigureOptions& o) {
+  app.add_option_function<std::vector<std::string>>(
+         "--callout",
+         [&o](const std::vector<std::string>& all) {
+           for (const std::string& text : all) o.figure.callouts.push_back(figure::parse_callout(text));
+         },
+         "Point to a face or region (N or aN of A, bN of B) with its number or a text, in one panel or in all; "
+         "repeatable")
+      ->allow_extra_args(false)
+      ->type_name("[PANEL:]face|region:N[=TEXT]");
+  app.add_option_function<std::vector<std::string>>(
+         "--inset",
+         [&o](const std::vector<std::string>& all) {
+           for (const std::string& text : all) o.figure.insets.push_back(figure::parse_inset(text));
+         },
+         "Show a face, a region or the contact enlarged below a panel, which has a frame there; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("PANEL:face|region:N|contact[:TIMES]");
+}
+
 void add_paper_options(CLI::App& app, FigureOptions& o) {
   app.add_option("--width", o.width, "Width on paper, in mm, cm, in or pt [85mm]")->type_name("LENGTH");
   app.add_option("--columns", o.figure.columns, "Number of columns [chosen automatically]")
@@ -361,6 +377,8 @@ void add_paper_options(CLI::App& app, FigureOptions& o) {
       "Leave texts out of the PDF, and write FIG.tex, which includes it and sets the texts in the font of the "
       "document");
   add_style_option(app, o.picture, "print");
+  app.add_flag("--occlusion", o.figure.occlusion,
+               "Darken creases and gaps between 3D bodies (ambient occlusion)");
   app.add_flag("--transparent", o.picture.transparent, "Transparent background");
 }
 
@@ -380,6 +398,7 @@ Command add_figure(CLI::App& root, const Globals& globals) {
       ->type_name("FILE")
       ->expected(1, 2);
   add_panel_options(*app, *o);
+  add_callout_options(*app, *o);
   add_paper_options(*app, *o);
   app->add_option("--views", o->views,
                   "Maximum number of the run's views to show [one body: all; two bodies: 1]")
@@ -388,7 +407,7 @@ Command add_figure(CLI::App& root, const Globals& globals) {
   app->add_flag("--try-views", o->try_views,
                 "Show the last state from several directions instead, each with the options for it");
   app->add_flag("--close-up", o->close_up, "Add panels that show the contact close up, without wrappers");
-  add_camera_options(*app, o->picture.camera, true);
+  add_camera_options(*app, o->picture.camera, UpOption::axis_or_auto);
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);
   app->add_option(

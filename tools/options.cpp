@@ -158,7 +158,7 @@ void add_style_option(CLI::App& app, PictureOptions& options, const std::string&
       "print: black on white, thin lines, distinguishable in greyscale; dark: for slides [" + usual + "]");
 }
 
-void add_picture_options(CLI::App& app, PictureOptions& options) {
+void add_picture_options(CLI::App& app, PictureOptions& options, UpOption up) {
   add_size_options(app, options);
   app.add_flag("--transparent", options.transparent, "Transparent background");
   app.add_flag_callback(
@@ -177,7 +177,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--most", options.most, "Maximum number of frames, evenly spaced")
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
-  add_camera_options(app, options.camera);
+  add_camera_options(app, options.camera, up);
   add_orbit_option(app, options.camera);
   add_colour_options(app, options);
 }
@@ -215,7 +215,7 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
   apply(options.camera, spec.views);
 }
 
-void add_camera_options(CLI::App& app, CameraOptions& options, bool automatic_up) {
+void add_camera_options(CLI::App& app, CameraOptions& options, UpOption up) {
   app.add_option("--from", options.from, "Direction from the bodies to the camera, in file axes")
       ->type_name("X,Y,Z");
   app.add_option("--look-at", options.look_at, "Point to centre the picture on [centre of the bodies]")
@@ -229,7 +229,7 @@ void add_camera_options(CLI::App& app, CameraOptions& options, bool automatic_up
          "Camera projection")
       ->check(CLI::IsMember({"perspective", "orthographic"}).description(""))
       ->type_name("perspective|orthographic");
-  add_up_option(app, options.up, automatic_up);
+  add_up_option(app, options.up, up);
 }
 
 void add_orbit_option(CLI::App& app, CameraOptions& options) {
@@ -273,12 +273,16 @@ void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& v
   }
 }
 
-void add_up_option(CLI::App& app, std::string& up, bool automatic) {
+void add_up_option(CLI::App& app, std::string& up, UpOption values) {
   std::vector<std::string> axes = {"x", "y", "z"};
+  const bool automatic = values != UpOption::axis;
   if (automatic) axes.emplace_back("auto");
-  app.add_option("--up", up,
-                 std::string("Axis that points up in the pictures") +
-                     (automatic ? "; auto: the one on which the body is most stable [z]" : " [z]"))
+  app.add_option(
+         "--up", up,
+         std::string("Axis that points up in the pictures") +
+             (automatic ? "; auto: the one on which the body is most stable" : "") +
+             (values == UpOption::auto_by_default ? " [auto, by body A; z for 2D and bodies that fall over]"
+                                                  : " [z]"))
       ->check(CLI::IsMember(axes).description(""))
       ->type_name(automatic ? "x|y|z|auto" : "x|y|z");
 }
@@ -326,18 +330,13 @@ std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render:
   return {whole, contact};
 }
 
-namespace {
-
-/// Returns a direction beside the path of B, slightly on B's side and above, so that the gap between the
-/// bodies is visible; `otherwise` if B does not approach.
-Eigen::Vector3d beside(const spec::Motion& motion, const Eigen::Vector3d& up,
-                       const Eigen::Vector3d& otherwise) {
-  const Eigen::Vector3d side = motion.from.cross(up.normalized());
-  if (motion.kind != spec::Motion::Kind::approach || !(side.squaredNorm() > 0)) return otherwise;
-  return 0.8 * side.normalized() + 0.3 * motion.from.normalized() + 0.45 * up.normalized();
+void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals) {
+  if (camera.up != "auto") return;
+  const std::optional<int> guess = run::likely_up(rep);
+  note(globals, {guess ? std::string("--up auto: the body is most stable with --up ") + "xyz"[*guess]
+                       : "--up auto: the body would fall over whichever axis is up; z is up"});
+  camera.up = {"xyz"[guess.value_or(2)]};
 }
-
-}  // namespace
 
 void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Recording& recording) {
   const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
@@ -345,7 +344,7 @@ void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Rec
   const Eigen::Vector3d up = views[0].up;
   // Directions are compared in drawn pictures, which a run without frames must not need.
   if (given.from.empty() && scenario.frames.at != render::FrameSpec::At::none) {
-    const Eigen::Vector3d from = run::min_hidden(recorded, up, beside(scenario.motion, up, views[0].from));
+    const Eigen::Vector3d from = run::min_hidden(recorded, up, views[0].from);
     for (render::FrameSpec::View& view : views) view.from = from;
   }
   run::widen_close_ups(recorded, views);

@@ -135,7 +135,9 @@ struct CameraOptions {
   std::optional<double> zoom;
   std::optional<bool> orthographic;
 };
-void add_camera_options(CLI::App& app, CameraOptions& options, bool automatic_up = false);
+/// The values and the default of --up: an axis, z by default; or also `auto`, which may be the default.
+enum class UpOption : std::uint8_t { axis, axis_or_auto, auto_by_default };
+void add_camera_options(CLI::App& app, CameraOptions& options, UpOption up = UpOption::axis);
 /// Adds --orbit, for pictures of several frame states.
 void add_orbit_option(CLI::App& app, CameraOptions& options);
 /// Applies the options to all views. --up rotates existing views; --from and --look-at are given in the axes
@@ -158,7 +160,7 @@ struct PictureOptions {
   std::optional<render::FrameSpec::ColourPer> colour_per;
   std::optional<std::uint32_t> node_boxes;
 };
-void add_picture_options(CLI::App& app, PictureOptions& options);
+void add_picture_options(CLI::App& app, PictureOptions& options, UpOption up = UpOption::axis);
 /// Adds --size, --dpi and --style alone.
 void add_size_options(CLI::App& app, PictureOptions& options);
 /// Adds --style alone; `usual` is its default.
@@ -175,8 +177,10 @@ void animate_frames(const PictureOptions& options, const std::string& folder);
 /// Adds --live, for commands that write a run.
 void add_live_option(CLI::App& app, bool& live);
 
-/// Adds --up, which takes x, y or z, or also auto.
-void add_up_option(CLI::App& app, std::string& up, bool automatic = false);
+/// Adds --up.
+void add_up_option(CLI::App& app, std::string& up, UpOption values = UpOption::axis);
+/// Replaces --up auto by the axis on which the body is most stable, or z, and notes it.
+void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals);
 /// Returns a view rotated so that an axis (0, 1, 2) points up instead of z.
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 
@@ -184,8 +188,8 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 /// Both use the direction of the first given view.
 std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as = {});
 
-/// Selects the view direction from which the bodies hide least of the contacts, unless one was given. Omits a
-/// close-up that would show almost the entire scene.
+/// Selects the view direction across the line from A to B from which the bodies hide least of the contacts,
+/// unless one was given. Omits a close-up that would show almost the entire scene.
 void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Recording& recording);
 
 /// Returns the number of hardware threads, at least 1.

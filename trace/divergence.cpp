@@ -183,8 +183,14 @@ void compare_events(Comparison& c, const Event& x, const Event& y) {
     compare_nodes(c, x, y);
   else if (x.kind == EventKind::pass || x.kind == EventKind::cap)
     c.same("distance", double{x.off()}, double{y.off()});
-  else
+  else if (x.kind != EventKind::patch)  // a patch: where its vertices are stored
     c.same_or_none("wrapper faces", x.boundary, y.boundary);
+}
+
+std::string to_text(std::span<const VertexId> vertices) {
+  std::string out;
+  for (const VertexId v : vertices) out += (out.empty() ? "" : " ") + std::to_string(v);
+  return out.empty() ? "not recorded" : out;
 }
 
 void compare_results(Comparison& c, const Step& x, const Step& y) {
@@ -198,9 +204,12 @@ void compare_step_events(Comparison& c, const Trace& x, const Trace& y, std::siz
   const EventId first = x.steps[step].first_event;
   // The common prefix: equal events are skipped by one comparison each.
   for (std::size_t i = 0; i < std::min(p.size(), q.size()); ++i) {
-    if (p[i] == q[i]) continue;
+    const auto of_x = x.vertices_of(p[i]), of_y = y.vertices_of(q[i]);
+    const bool same_vertices = std::equal(of_x.begin(), of_x.end(), of_y.begin(), of_y.end());
+    if (p[i] == q[i] && same_vertices) continue;
     c.at(first + static_cast<EventId>(i), step);
     compare_events(c, p[i], q[i]);
+    if (!same_vertices) c.found("vertices", to_text(of_x), to_text(of_y));
     return;
   }
   if (p.size() == q.size()) return;
@@ -252,7 +261,7 @@ std::string describe(const Event& e) {
     add("stage", to_text(e.stage()));
   else if (e.kind == EventKind::cap)
     add("verdict", to_text(e.verdict()));
-  else if (e.boundary != kNull)
+  else if (e.boundary != kNull && e.kind != EventKind::patch)
     add("wrapper faces", std::to_string(e.boundary));
   if (e.cause != kNull) add("cause", std::to_string(e.cause));
   return out;

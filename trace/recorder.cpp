@@ -45,7 +45,12 @@ void ConstructRecorder::pass(const PassStart& start) {
 }
 
 void ConstructRecorder::patch(const GrownPatch& patch) {
-  patch_ = push(Event::of(payload::Patch{patch.vertex, patch.faces, saturated(patch.interior)}, pass_));
+  payload::Patch event{patch.vertex, patch.faces, saturated(patch.interior)};
+  const bool known = !patch.vertices.empty() && patch.vertices.size() == event.interior;
+  if (known) event.first = static_cast<std::uint32_t>(trace_.patch_vertices.size());
+  patch_ = push(Event::of(event, pass_));
+  if (!known || patch_ == kNull) return;
+  trace_.patch_vertices.insert(trace_.patch_vertices.end(), patch.vertices.begin(), patch.vertices.end());
 }
 
 void ConstructRecorder::cap(const TriedCap& cap) {

@@ -184,6 +184,11 @@ std::size_t Trace::step_of(EventId event) const {
   return static_cast<std::size_t>(after - steps.begin()) - 1;
 }
 
+std::span<const VertexId> Trace::vertices_of(const Event& patch) const {
+  if (patch.kind != EventKind::patch || patch.boundary == kNull) return {};
+  return std::span(patch_vertices).subspan(patch.boundary, patch.patch().interior);
+}
+
 bool Trace::has_engine_reports() const {
   return std::any_of(steps.begin(), steps.end(), [](const Step& s) { return s.result.engine.has_value(); });
 }
@@ -379,6 +384,9 @@ class Checker {
     if (e.kind == EventKind::pass && !(e.off() >= 0)) bad("its deviation is not a number of at least 0");
     if (e.kind == EventKind::cap && e.detail >= kEnumNames<CapVerdict>.size()) bad("unknown verdict");
     if (e.kind == EventKind::cap && !has_cause({EventKind::patch})) bad("its cause is not a patch");
+    if (e.kind == EventKind::patch && e.boundary != kNull &&
+        std::size_t{e.boundary} + e.depth_a > t_.patch_vertices.size())
+      bad("its vertices are missing");
     const bool in_pass = e.kind == EventKind::patch || e.kind == EventKind::pass_end;
     if (in_pass && !has_cause({EventKind::pass})) bad("its cause is not a pass");
   }
@@ -393,7 +401,8 @@ bool operator==(const Trace& x, const Trace& y) {
   return equal(x.header, y.header) &&
          std::equal(x.steps.begin(), x.steps.end(), y.steps.begin(), y.steps.end(),
                     [](const Step& p, const Step& q) { return equal(p, q); }) &&
-         x.events == y.events && x.wall_ns == y.wall_ns && x.events_seen == y.events_seen;
+         x.events == y.events && x.wall_ns == y.wall_ns && x.events_seen == y.events_seen &&
+         x.patch_vertices == y.patch_vertices;
 }
 
 void check_trace(const Trace& trace, const std::string& where) {

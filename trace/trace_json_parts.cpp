@@ -256,11 +256,13 @@ void write_totals(JsonWriter& w, const Trace& t) {
 }  // namespace
 
 void write_metadata(const Trace& trace, JsonOut& out) {
-  constexpr std::uint32_t kVersionWithoutReports = 3;
+  constexpr std::uint32_t kVersionWithoutReports = 3, kVersionOfReports = 4;
   const TraceHeader& h = trace.header;
   JsonWriter w(out, 2);
   w.begin_object();
-  const std::uint32_t version = trace.has_engine_reports() ? kTraceVersion : kVersionWithoutReports;
+  const std::uint32_t version = !trace.patch_vertices.empty() ? kTraceVersion
+                                : trace.has_engine_reports()  ? kVersionOfReports
+                                                              : kVersionWithoutReports;
   w.member("format", kTraceFormat).member("version", version).member("lrbscope", h.lrbscope);
   w.key("scenario");
   write_scenario(w, h);

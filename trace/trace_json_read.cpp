@@ -327,8 +327,20 @@ class Reader {
     if (number != t_.events.size())
       args.at("event").fail(std::to_string(t_.events.size()) + ", the next event");
     read_fields(args, e);
+    if (args.has("vertices")) read_vertices(args.at("vertices"), e);
     if (args.has("ns")) t_.wall_ns.push_back(args.at("ns").integer<std::uint64_t>());
     t_.events.push_back(e);
+  }
+
+  /// Reads the interior vertices of a patch.
+  void read_vertices(const TraceNode& node, Event& e) {
+    const std::size_t count = node.array_size();
+    if (e.kind != EventKind::patch) node.fail("vertices of patches only");
+    if (count != e.depth_a) node.fail(std::to_string(e.depth_a) + " vertices, those inside the patch");
+    if (t_.patch_vertices.size() + count > kMaxId) node.fail("fewer vertices of patches");
+    e.boundary = static_cast<std::uint32_t>(t_.patch_vertices.size());
+    for (std::size_t i = 0; i < count; ++i)
+      t_.patch_vertices.emplace_back(node.at(i).integer<std::uint32_t>());
   }
 
   void read_header(const TraceNode& metadata) {

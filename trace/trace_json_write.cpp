@@ -424,7 +424,7 @@ class TraceWriter {
     if (e.kind == EventKind::node_pair) return write_node_pair(e);
     if (e.kind == EventKind::plane_test) write_word("plane of", name_of(e.side));
     if (e.kind == EventKind::pass || e.kind == EventKind::cap) return write_built(e);
-    if (e.kind == EventKind::patch) write_number("interior vertices", e.patch().interior);
+    if (e.kind == EventKind::patch) return write_patch(e);
     if (e.kind == EventKind::pass_end && e.pass_end().given_up) out_.raw(",\"given up\":true");
     if (e.kind == EventKind::point) {
       write_word("of", name_of(e.side));
@@ -453,6 +453,21 @@ class TraceWriter {
     out_.raw(name);
     out_.raw("\":");
     out_.number(number);
+  }
+
+  void write_patch(const Event& e) {
+    write_number("interior vertices", e.patch().interior);
+    if (const std::span<const VertexId> vertices = t_.vertices_of(e); !vertices.empty()) {
+      char before = '[';
+      out_.raw(",\"vertices\":");
+      for (const VertexId v : vertices) {
+        out_.raw({&before, 1});
+        out_.number(std::uint64_t{v});
+        before = ',';
+      }
+      out_.raw("]");
+    }
+    write_cause(e.cause);
   }
 
   void write_node_pair(const Event& e) {

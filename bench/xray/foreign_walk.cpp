@@ -131,8 +131,7 @@ std::vector<std::string> write_xray(const Xray& x, const std::string& folder,
   for (const auto& [recording, name] : {std::pair{&x.theirs, x.method}, {&x.ours, std::string("ours")}}) {
     spec::Scenario scenario = x.scenario;
     scenario.purpose = recording == &x.theirs
-                           ? "Recorded in " + x.title() +
-                                 ". It has no wrappers, so none is refined; contact curves are exact."
+                           ? "Recorded in " + x.title() + "; its pairs are compared with exact answers."
                            : "Recorded in lrbscope.";
     const run::RunOutcome outcome = run::write_run(
         scenario, *recording, (std::filesystem::path(folder) / name).string(), x.command, progress);

@@ -246,7 +246,12 @@ class ChainBuilder {
     const ChainCap& cap = p.cap;
     // Rejected caps have no deviation to report.
     const bool measured = verdict == CapVerdict::accepted && max_deviation > 0;
-    options_.probe->patch({p.start, cap.length, cap.length - 1});
+    // Where another cap took part of the chain, its vertices can no longer be told.
+    std::vector<VertexId> vertices;
+    if (verdict != CapVerdict::overlaps)
+      for (Slot s = front_[cap.first].next; vertices.size() + 1 < cap.length; s = front_[s].next)
+        vertices.push_back(front_[s].a);
+    options_.probe->patch({p.start, cap.length, cap.length - 1, vertices});
     options_.probe->cap({cap.segments(), cap.length, verdict, false,
                          measured ? std::min(max_deviation, off_of(front_, cap)) : -1});
   }

@@ -201,8 +201,10 @@ double PatchPass::off_of(const CapSurface& cap) {
 
 void PatchPass::notify(const Job& job) const {
   const Patch& patch = job.patch;
-  probe_->patch({front_.point(patch.interior.front()).id, static_cast<std::uint32_t>(patch.slots.size()),
-                 static_cast<std::uint32_t>(patch.interior.size())});
+  std::vector<VertexId> vertices;
+  for (const Corner c : patch.interior) vertices.push_back(front_.point(c).id);
+  probe_->patch({vertices.front(), static_cast<std::uint32_t>(patch.slots.size()),
+                 static_cast<std::uint32_t>(vertices.size()), vertices});
   for (std::size_t i = 0; i < job.tries; ++i) probe_->cap(job.tried[i]);
 }
 

@@ -126,7 +126,7 @@ namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
-constexpr std::size_t kLanes = 4;
+constexpr std::size_t kBoxesAtOnce = 4;
 
 // The nearest floats that are at most, and at least, a number.
 float float_below(double x) {
@@ -167,7 +167,7 @@ void SweepAndPrune::sweep(Boxes boxes) {
     high_v_.push_back(float_above(b.max()[v]));
   }
   // Fill the last group of lanes. The fill is never reported: its lanes are beyond the end of every range.
-  for (auto* ends : {&low_u_, &high_u_, &low_v_, &high_v_}) ends->resize(swept_.size() + kLanes, 0);
+  for (auto* ends : {&low_u_, &high_u_, &low_v_, &high_v_}) ends->resize(swept_.size() + kBoxesAtOnce, 0);
   for (std::size_t k = 0, end = 0; k < swept_.size(); ++k) {
     const std::uint32_t i = swept_[k];
     const Box& a = boxes[i];
@@ -178,13 +178,13 @@ void SweepAndPrune::sweep(Boxes boxes) {
     while (from_[end - 1] > to) --end;
     work_.box_tests += end - k - 1;
     const float low_u = low_u_[k], high_u = high_u_[k], low_v = low_v_[k], high_v = high_v_[k];
-    for (std::size_t l = k + 1; l < end; l += kLanes) {
+    for (std::size_t l = k + 1; l < end; l += kBoxesAtOnce) {
       const Int4 hit = (load(&low_u_[l]) <= high_u) & (low_u <= load(&high_u_[l])) &
                        (load(&low_v_[l]) <= high_v) & (low_v <= load(&high_v_[l]));
       std::uint64_t halves[2];
       std::memcpy(halves, &hit, sizeof halves);
       if ((halves[0] | halves[1]) == 0) continue;
-      for (std::size_t lane = 0; lane < std::min(kLanes, end - l); ++lane) {
+      for (std::size_t lane = 0; lane < std::min(kBoxesAtOnce, end - l); ++lane) {
         const std::uint32_t j = swept_[l + lane];
         if (hit[lane] != 0 && overlap(a, boxes[j], u, v)) pairs_.push_back({std::min(i, j), std::max(i, j)});
       }

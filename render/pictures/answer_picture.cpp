@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 namespace {
 
 /// A detail smaller than this fraction of the bodies gets a close-up.
-constexpr double kSmall = 0.12;
+constexpr double kSmallDetail = 0.12;
 constexpr int kGhosts = 4;
 
 Scene scene_of(const PosedBodies& bodies, std::span<const ContactRegion> contacts = {}) {
@@ -133,7 +133,7 @@ struct AnswerPicture {
     }
     std::vector<Panel> panels = {{scene.list, camera, ""}};
     const double size = bounds(whole).diagonal().norm();
-    if (!detail.empty() && bounds(detail).diagonal().norm() < kSmall * size)
+    if (!detail.empty() && bounds(detail).diagonal().norm() < kSmallDetail * size)
       panels.push_back({scene.list, close_up(fit), "from nearby"});
     return draw_panels(panels, overlay, look);
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "render/pictures/panel.hpp"
+#include "scenarios/compare/regions.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/run_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -176,14 +177,15 @@ std::vector<report::View> views_of(const Runs& runs, const std::string& folder) 
 
 }  // namespace
 
-std::optional<std::string> write_comparison(const Runs& runs, const std::string& command,
-                                            const std::string& folder, const run::ProgressReport& progress) {
+Difference write_comparison(const Runs& runs, const std::string& command, const std::string& folder,
+                            const run::ProgressReport& progress) {
   check_runs(runs);
   reject_folder_of_run(folder);
   const bool alone = of_one_body(runs);
   const std::size_t step = alone ? 0 : busiest_step(runs);
   const render::Image picture = alone ? draw_bodies(runs, progress) : draw(runs, step, progress);
-  std::optional<std::string> difference = first_difference(runs);
+  Difference out{first_difference(runs), {}};
+  const std::optional<std::string>& difference = out.first;
   report::Document doc(runs.names[0] + " and " + runs.names[1],
                        alone ? "Two recorded runs of one body each." : "Two recorded runs, step by step.");
   if (const std::string cut = cut_words(runs); !cut.empty()) doc.purpose(cut);
@@ -193,6 +195,14 @@ std::optional<std::string> write_comparison(const Runs& runs, const std::string&
   if (alone) {
     doc.chart(faces_chart(runs)).table(body_table(runs));
     if (const report::Table passes = pass_table(runs); !passes.rows.empty()) doc.table(passes);
+    if (const auto regions = compare_regions(runs)) {
+      out.regions = regions_text(*regions, runs);
+      doc.text({"Regions", regions_sentence(*regions, runs)});
+      doc.each(region_tables(*regions, runs), &report::Document::table);
+    } else if (rep_of(runs, 0).region_count() + rep_of(runs, 1).region_count() > 0) {
+      out.regions = "regions are not compared: the bodies' own faces differ\n";
+      doc.text({"Regions", "Not compared: the bodies' own faces differ."});
+    }
     doc.picture(kPicture, picture, "After the last event", "Coloured by region, seen by one camera.");
   } else {
     add_work_charts(doc, runs);
@@ -203,7 +213,7 @@ std::optional<std::string> write_comparison(const Runs& runs, const std::string&
         "same faces. Pale: less than a fiftieth of the maximum.");
   }
   doc.write(folder);
-  return difference;
+  return out;
 }
 
 }  // namespace lrb::compare

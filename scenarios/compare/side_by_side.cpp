@@ -174,10 +174,11 @@ report::Table totals_of(const Runs& runs) {
                   {"run", "pairs of nodes", "box tests", "face tests", "refined regions", "pairs found"}};
   for (std::size_t i = 0; i < 2; ++i) {
     const run::Recording& r = *runs.of[i];
-    t.rows.push_back({runs.names[i], group_digits(sum_of(r, &Counters::node_pairs)),
-                      group_digits(sum_of(r, &Counters::box_tests)),
-                      group_digits(sum_of(r, &Counters::face_tests)),
-                      group_digits(sum_of(r, &Counters::regions_opened)), group_digits(pairs_of(r))});
+    t.rows.push_back(
+        {runs.names[i], group_digits(sum_of(r, &Counters::node_pairs)),
+         group_digits(sum_of(r, &Counters::box_tests)), group_digits(sum_of(r, &Counters::face_tests)),
+         r.trace.header.engine.empty() ? group_digits(sum_of(r, &Counters::regions_opened)) : "none",
+         group_digits(pairs_of(r))});
   }
   return t;
 }

@@ -1,10 +1,13 @@
 #include "scenarios/figure/figure.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "render/canvas.hpp"
+#include "render/occlusion.hpp"
 #include "render/paint_list.hpp"
 #include "render/pictures/panel.hpp"
 #include "render/vector_faces.hpp"
@@ -48,11 +51,17 @@ class FigureJob {
         dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
         chosen_(choose(recorded, figure.choice)),
         framing_(run::frame_sequence(recorded, frames_)),
-        state_(in_common_range(), frames_, false) {}
+        state_(in_common_range(), frames_, false) {
+    for (const Callout& c : figure.callouts) check_target(c.option, c.target, recorded.reps);
+    for (const Inset& i : figure.insets) check_target(i.option, i.target, recorded.reps);
+    if (figure.occlusion && shows_values())
+      throw InputError("--occlusion: would change the colours of --colour-by; omit one of them");
+  }
 
   Figure draw(const run::ProgressReport& progress) {
     arrange();
     if (figure_.choice.by == Choice::By::changes && leave_out_alike(progress)) arrange();
+    check_letters();
     Figure out;
     out.panels = captions_.size();
     if (!chosen_.left_out.empty()) out.notes.push_back(chosen_.left_out);
@@ -86,6 +95,10 @@ class FigureJob {
         break;
       }
     }
+    for (std::size_t i = 0; i < figure_.callouts.size(); ++i)
+      if (!called_out_.contains(i))
+        out.notes.push_back(figure_.callouts[i].option + ": is outside of " +
+                            (figure_.callouts[i].panel.empty() ? "all panels" : "its panel"));
     return out;
   }
 
@@ -153,12 +166,235 @@ class FigureJob {
     return scene;
   }
 
-  std::string caption() const { return run::caption_of(recorded_, captions_); }
+  std::string caption() const {
+    std::vector<std::string> texts = captions_;
+    for (const Piece& piece : pieces_)
+      if (piece.inset != nullptr)
+        texts[piece.panel] += " (inset: " + name_of(piece.inset->target, recorded_.reps.size()) + ", " +
+                              render::short_number(std::round(10 * piece.magnification) / 10) +
+                              " times as large)";
+    return run::caption_of(recorded_, texts);
+  }
 
   void arrange() {
     survey();
-    layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
-                      figure_.legend ? bar_ : std::nullopt, figure_.caption ? caption() : "", options());
+    pieces_.clear();
+    const auto lay_out_all = [this] {
+      layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
+                        figure_.legend ? bar_ : std::nullopt, figure_.caption ? caption() : "", options());
+    };
+    lay_out_all();
+    find_pieces();
+    if (!figure_.caption || figure_.insets.empty()) return;
+    lay_out_all();  // the caption gives the magnifications
+    find_pieces();
+  }
+
+  // ---- insets and callouts
+
+  static std::string letter_of(std::size_t panel) {
+    const std::string text = render::panel_letter(panel);
+    return text.substr(1, text.size() - 2);
+  }
+
+  void check_letters() const {
+    const auto check = [this](const std::string& option, const std::string& letter) {
+      for (std::size_t i = 0; i < captions_.size(); ++i)
+        if (letter.empty() || letter == letter_of(i)) return;
+      throw InputError(option + ": expected a panel of the figure, which has " +
+                       (captions_.size() > 1 ? "a to " + letter_of(captions_.size() - 1) : "only a"));
+    };
+    for (const Callout& c : figure_.callouts) check(c.option, c.panel);
+    for (const Inset& i : figure_.insets) check(i.option, i.panel);
+  }
+
+  const LrbRep& rep_of(const Target& target) const { return *recorded_.reps[target.body]; }
+  Pose pose_of(const Target& target) const { return state_.pose(static_cast<Side>(target.body)); }
+
+  /// Returns a target's box in a view of the current state.
+  AlignedBox2d box_of(const Inset& inset, const render::DrawList& list, const render::Camera& camera) const {
+    const Target& target = inset.target;
+    std::vector<Eigen::Vector3d> points;
+    if (target.kind == Target::Kind::contact) {
+      points = render::contact_points(state_.contacts());
+      if (points.empty())
+        throw InputError(inset.option + ": expected a panel with a contact, found none in it");
+    } else if (target.kind == Target::Kind::face) {
+      points = run::corners_of(rep_of(target), FaceId(target.number), pose_of(target));
+    } else {
+      for (const Eigen::Vector3d& x : run::region_corners(rep_of(target), RegionId(target.number)))
+        points.push_back(pose_of(target).apply(x));
+    }
+    const render::Projection projection(camera, kViewSide, kViewSide, render::bounds(list));
+    AlignedBox2d out;
+    for (const Eigen::Vector3d& x : points)
+      if (const auto at = projection.to_pixel(x)) out.extend(*at);
+    if (out.isEmpty()) throw InputError(inset.option + ": is behind the camera of its panel");
+    return out;
+  }
+
+  /// A panel or an inset.
+  struct Piece {
+    const View* view;
+    std::size_t moment;
+    std::size_t block, panel;
+    PanelPlace place;
+    double scale;                  ///< points per unit of the view
+    const Inset* inset = nullptr;  ///< null: a panel
+    double magnification = 1;
+    AlignedBox2d shown = {};  ///< part of the view
+  };
+
+  AlignedBox2d shown_part(const PanelPlace& place, double scale) const {
+    const Vector2d low = place.seen_from - Vector2d::Constant(options().margin / scale);
+    return {low, low + place.box.sizes() / scale};
+  }
+
+  /// Collects panels, each followed by its insets.
+  void find_pieces() {
+    pieces_.clear();
+    std::size_t panel = 0;
+    for (std::size_t b = 0; b < panels_.size(); ++b) {
+      const BlockLayout& block = layout_.blocks[b];
+      for (std::size_t i = 0; i < block.panels.size(); ++i, ++panel) {
+        const PanelPlace& place = block.panels[i];
+        const auto [view, moment] = panels_[b][i];
+        pieces_.push_back(
+            {view, moment, b, panel, place, block.scale, nullptr, 1, shown_part(place, block.scale)});
+        for (std::size_t k = 0; k < place.insets.size(); ++k) add_inset(b, i, panel, k);
+      }
+    }
+  }
+
+  /// Adds an inset: the target with its surroundings, in a square. Its magnification is limited, so that its
+  /// frame in the panel can be seen, and so that it is larger than in the panel.
+  void add_inset(std::size_t b, std::size_t i, std::size_t panel, std::size_t k) {
+    constexpr double kFaceRoom = 4, kRoom = 1.7;  // sides of the square, in sizes of the target
+    constexpr double kLeast = 1.5, kMax = 12;
+    const BlockLayout& block = layout_.blocks[b];
+    const auto& [inset, target] = inset_boxes_[panel][k];
+    Piece piece{panels_[b][i].view, panels_[b][i].moment, b, panel, {}, 0, inset};
+    piece.place.box = block.panels[i].insets[k];
+    const double side = piece.place.box.sizes().x(),
+                 room = inset->target.kind == Target::Kind::face ? kFaceRoom : kRoom,
+                 fitted = side / (room * std::max(target.sizes().maxCoeff(), 1e-9 * kViewSide) * block.scale);
+    piece.magnification = inset->magnification > 0 ? inset->magnification : std::clamp(fitted, kLeast, kMax);
+    piece.scale = piece.magnification * block.scale;
+    const Vector2d half = 0.5 * piece.place.box.sizes() / piece.scale;
+    piece.shown = {target.center() - half, target.center() + half};
+    piece.place.seen_from = piece.shown.min() + Vector2d::Constant(options().margin / piece.scale);
+    pieces_.push_back(std::move(piece));
+  }
+
+  double callout_radius() const { return std::max(1.0, 3 * figure_.line_width); }
+
+  /// Adds the marks of a piece to its scene: the outline of an inset's target, outlines and points of
+  /// callouts. Returns the callouts with their anchors in the view. A callout whose anchor is in an inset of
+  /// the panel is in the inset, not in the panel.
+  std::vector<std::pair<const Callout*, Vector2d>> add_marks(render::DrawList& list, const Piece& piece) {
+    const render::Projection projection(camera(*piece.view, piece.moment), kViewSide, kViewSide,
+                                        render::bounds(list));
+    const auto add_outlines = [&](const Target& target) {
+      const double thin = figure_.line_width;
+      for (std::vector<Eigen::Vector3d>& chain : outlines(target, rep_of(target), pose_of(target))) {
+        render::DrawLine line;
+        line.closed = chain.size() > 2 && chain.front() == chain.back();
+        if (line.closed) chain.pop_back();
+        line.points = std::move(chain);
+        line.colour = style().ink;
+        line.width = static_cast<float>(2 * thin);
+        line.halo = style().paper;
+        line.halo_width = static_cast<float>(thin);
+        line.layer = render::Layer::on_top;
+        list.lines.push_back(std::move(line));
+      }
+    };
+    if (piece.inset != nullptr && piece.inset->target.kind != Target::Kind::contact)
+      add_outlines(piece.inset->target);
+    std::vector<std::pair<const Callout*, Vector2d>> out;
+    for (std::size_t i = 0; i < figure_.callouts.size(); ++i) {
+      const Callout& callout = figure_.callouts[i];
+      if (!callout.panel.empty() && callout.panel != letter_of(piece.panel)) continue;
+      const Eigen::Vector3d point = anchor(callout.target, rep_of(callout.target), pose_of(callout.target));
+      const auto at = projection.to_pixel(point);
+      if (!at || !piece.shown.contains(*at)) continue;
+      const bool in_inset = std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& p) {
+        return p.inset != nullptr && p.panel == piece.panel && p.shown.contains(*at);
+      });
+      if (piece.inset == nullptr && in_inset) continue;
+      add_outlines(callout.target);
+      render::DrawPoint dot;
+      dot.x = point;
+      dot.colour = style().ink;
+      dot.radius = static_cast<float>(callout_radius());
+      dot.halo = style().paper;
+      dot.halo_width = static_cast<float>(figure_.line_width);
+      dot.layer = render::Layer::on_top;
+      list.points.push_back(dot);
+      out.emplace_back(&callout, *at);
+      called_out_.insert(i);
+    }
+    return out;
+  }
+
+  /// Paints the texts of callouts, with leaders to their anchors.
+  void paint_callouts(render::Canvas& canvas, const Piece& piece, const render::DrawList& list,
+                      const std::vector<std::pair<const Callout*, Vector2d>>& callouts) {
+    if (callouts.empty()) return;
+    std::vector<std::string> texts;
+    std::vector<Vector2d> anchors, sizes;
+    const AlignedBox2d& box = piece.place.box;
+    for (const auto& [callout, at] : callouts) {
+      texts.push_back(callout->text.empty() ? name_of(callout->target, recorded_.reps.size())
+                                            : callout->text);
+      anchors.push_back(box.min() + (at - piece.shown.min()) * piece.scale);
+      sizes.emplace_back(render::text_width(texts.back(), layout_.text_height) + 0.3 * figure_.font_size,
+                         layout_.text_height);
+      if (sizes.back().x() > box.sizes().x() || sizes.back().y() > box.sizes().y())
+        throw InputError(callout->option + ": the text \"" + texts.back() + "\" is wider than its panel of " +
+                         length_text(box.sizes().x()) +
+                         "; use a shorter =TEXT, a smaller --font-size, fewer --columns or a larger --width");
+    }
+    // The content, one pixel per point.
+    render::RasterOptions raster;
+    raster.width = std::max(1, static_cast<int>(std::ceil(box.sizes().x())));
+    raster.height = std::max(1, static_cast<int>(std::ceil(box.sizes().y())));
+    raster.supersample = 1;
+    raster.labels = false;
+    raster.background.reset();
+    const render::Image content =
+        rasterizer_.draw(list, part_of(camera(*piece.view, piece.moment), piece.shown), raster);
+    const std::vector<CalloutPlace> places = place_callouts(box, content, anchors, sizes);
+    const double width = std::max(kHairline, figure_.line_width);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      // From the text to the rim of the point, which is a disc, or a ring if it is hidden.
+      const Vector2d way = anchors[i] - places[i].leader;
+      const Vector2d end = anchors[i] - std::min(callout_radius(), way.norm()) * way.normalized();
+      canvas.stroke({places[i].leader, end}, false, {style().paper, 3 * width, 0});
+      canvas.stroke({places[i].leader, end}, false, {style().ink, width, 0});
+    }
+    for (std::size_t i = 0; i < places.size(); ++i)
+      canvas.text({places[i].text, texts[i], layout_.text_height, false, style().ink, render::Align::centre,
+                   style().paper});
+  }
+
+  /// Paints the frame of an inset in its panel, and the lines that connect both.
+  void paint_frame(render::Canvas& canvas, const Piece& panel, const Piece& inset) const {
+    const auto on_paper = [&](const Vector2d& x) {
+      return Vector2d(panel.place.box.min() + (x - panel.shown.min()) * panel.scale);
+    };
+    const AlignedBox2d frame(on_paper(inset.shown.min()), on_paper(inset.shown.max())),
+        &box = inset.place.box;
+    const double width = std::max(kHairline, 1.5 * figure_.line_width);
+    const std::array<render::Canvas::Loop, 2> sides = {
+        {{Vector2d(frame.min().x(), frame.max().y()), box.min()},
+         {frame.max(), Vector2d(box.max().x(), box.min().y())}}};
+    // The halos of all lines lie under all lines.
+    for (const double halo : {3 * width, 0.0}) {
+      const render::Pen pen{halo > 0 ? style().paper : style().ink, halo > 0 ? halo : width, 0};
+      canvas.stroke(render::corners(frame), true, pen);
+      for (const render::Canvas::Loop& side : sides) canvas.stroke(side, false, pen);
+    }
   }
 
   // ---- panels that look alike
@@ -213,7 +449,7 @@ class FigureJob {
 
   /// Determines the content and size of each panel, and the entries of the common legend.
   void survey() {
-    panels_.clear(), blocks_.clear(), captions_.clear(), key_.clear();
+    panels_.clear(), blocks_.clear(), captions_.clear(), key_.clear(), inset_boxes_.clear();
     for (const View& view : frames_.views) {
       if (blocks_.empty() || !figure_.contact_sheet) blocks_.emplace_back(), panels_.emplace_back();
       for (std::size_t i = 0; i < moments(); ++i) {
@@ -222,6 +458,11 @@ class FigureJob {
         run::merge_key(key_, shown.key);
         if (shown.scale) bar_ = shown.scale;
         blocks_.back().seen.push_back(seen_box(shown.list, camera(view, i)));
+        inset_boxes_.emplace_back();
+        for (const Inset& inset : figure_.insets)
+          if (inset.panel == letter_of(captions_.size()))
+            inset_boxes_.back().emplace_back(&inset, box_of(inset, shown.list, camera(view, i)));
+        blocks_.back().insets.push_back(inset_boxes_.back().size());
         const std::string text = shortened(state_.short_caption());
         captions_.push_back(view.title.empty()      ? text
                             : figure_.contact_sheet ? view.title
@@ -252,36 +493,54 @@ class FigureJob {
   }
 
   void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {
-    std::size_t panel = 0;
-    for (std::size_t b = 0; b < panels_.size(); ++b) {
-      const BlockLayout& block = layout_.blocks[b];
-      for (std::size_t i = 0; i < block.panels.size(); ++i, ++panel) {
-        progress("draw", panel, captions_.size());
-        const PanelPlace& place = block.panels[i];
-        const View& view = *panels_[b][i].view;
-        const std::size_t moment = panels_[b][i].moment;
-        const render::Scene shown = scene(view, moment);
-        flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, block.scale)
-               : paint_deep(canvas, shown.list, camera(view, moment), place, block.scale, dpi_,
-                            visible_.empty() ? nullptr : &visible_[panel]);
-        if (runs_over(blocks_[b]))
-          canvas.stroke(render::corners(place.box), true, {style().faint, kHairline, 0});
-        double y = place.box.max().y() + 0.65 * figure_.font_size;
-        for (const std::string& line : place.lines) {
-          canvas.text({{place.box.center().x(), y},
-                       line,
-                       layout_.text_height,
-                       false,
-                       style().ink,
-                       render::Align::centre});
-          y += 1.3 * figure_.font_size;
+    std::vector<render::DrawTriangle> shaded;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      progress("draw", i, pieces_.size());
+      const Piece& piece = pieces_[i];
+      render::Scene shown = scene(*piece.view, piece.moment);
+      if (figure_.occlusion && !flat()) {
+        // An inset shows the scene of the panel before it.
+        if (piece.inset == nullptr) {
+          render::add_ambient_occlusion(shown.list, rasterizer_);
+          shaded = shown.list.triangles;
+        } else {
+          shown.list.triangles = shaded;
         }
       }
+      const auto callouts = add_marks(shown.list, piece);
+      flat() ? paint_flat(canvas, shown.list, camera(*piece.view, piece.moment), piece.place, piece.scale)
+             : paint_deep(canvas, shown.list, camera(*piece.view, piece.moment), piece.place, piece.scale,
+                          dpi_, visible_.empty() ? nullptr : &visible_[i]);
+      if (piece.inset != nullptr) {
+        canvas.stroke(render::corners(piece.place.box), true,
+                      {style().ink, std::max(kHairline, 1.5 * figure_.line_width), 0});
+      } else if (runs_over(blocks_[piece.block])) {
+        canvas.stroke(render::corners(piece.place.box), true, {style().faint, kHairline, 0});
+      }
+      if (piece.inset == nullptr)
+        for (std::size_t k = i + 1; k < pieces_.size() && pieces_[k].inset != nullptr; ++k)
+          paint_frame(canvas, piece, pieces_[k]);
+      paint_callouts(canvas, piece, shown.list, callouts);
+      paint_title(canvas, piece.place);
     }
     paint_key(canvas, layout_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
               figure_.legend ? bar_ : std::nullopt, style());
     for (const auto& [y, line] : layout_.caption)
       canvas.text({{0, y}, line, layout_.text_height, false, style().ink});
+  }
+
+  void paint_title(render::Canvas& canvas, const PanelPlace& place) const {
+    double y = place.box.max().y() + 0.65 * figure_.font_size;
+    for (const std::string& line : place.lines) {
+      canvas.text({{place.box.center().x(), y},
+                   line,
+                   layout_.text_height,
+                   false,
+                   style().ink,
+                   render::Align::centre,
+                   place.insets.empty() ? render::kTransparent : style().paper});
+      y += 1.3 * figure_.font_size;
+    }
   }
 
   void paint_flat(render::Canvas& canvas, const render::DrawList& list, const render::Camera& camera,
@@ -297,55 +556,43 @@ class FigureJob {
   /// The part of a view that a panel shows.
   struct DeepView {
     render::Camera camera;
-    Vector2d paper;         ///< size of the camera's picture, points
+    Vector2d paper;         ///< size, points
     Eigen::Vector2i drawn;  ///< the same, pixels
-    Eigen::Vector2i from;   ///< pixel of the picture at the corner of the panel's box
-    Vector2d origin;        ///< corner of the picture on the page
     double pixel;           ///< points
   };
 
   DeepView deep_view(const render::Camera& whole, const PanelPlace& place, double scale, double dpi) const {
     DeepView out;
     out.pixel = render::kPointsPerInch / dpi;
-    const double pixel = out.pixel, margin = options().margin, centre = 0.5 * kViewSide * scale;
-    const Vector2d low =
-        place.seen_from * scale - Vector2d(margin, margin);  // of the box, in the view, points
-    // The central part of the view that contains the box, with a margin of one pixel on each side.
-    const Vector2d reach =
-        (low.array() - centre).abs().max((low + place.box.sizes()).array() - centre) + 2 * pixel;
-    out.drawn = (2 * reach / pixel).array().ceil().cast<int>();
-    out.paper = out.drawn.cast<double>() * pixel;
-    out.camera = central_part(whole, out.paper.y() / scale);
-    out.from = ((low - Vector2d(centre, centre) + 0.5 * out.paper) / pixel).array().round().cast<int>();
-    out.origin = place.box.min() - out.from.cast<double>() * pixel;
+    out.drawn = (place.box.sizes() / out.pixel).array().round().max(1).cast<int>();
+    out.paper = out.drawn.cast<double>() * out.pixel;
+    AlignedBox2d part = shown_part(place, scale);
+    part.max() = part.min() + out.paper / scale;
+    out.camera = part_of(whole, part);
     return out;
   }
 
   /// Finds the visible faces of all panels, if none has too many.
   void find_vector_faces(std::vector<std::string>& notes, const run::ProgressReport& progress) {
-    std::size_t panel = 0;
-    for (std::size_t b = 0; b < panels_.size(); ++b)
-      for (std::size_t i = 0; i < panels_[b].size(); ++i, ++panel) {
-        progress("find visible faces", panel, captions_.size());
-        const auto [view, moment] = panels_[b][i];
-        const render::DrawList list = scene(*view, moment).list;
-        const DeepView deep =
-            deep_view(camera(*view, moment), layout_.blocks[b].panels[i], layout_.blocks[b].scale, dpi_);
-        const render::DepthImage depths =
-            rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
-        auto visible = render::visible_faces(list, projection(deep, list), depths);
-        if (visible && visible->size() <= figure_.vector_faces) {
-          visible_.push_back(std::move(*visible));
-          continue;
-        }
-        visible_.clear();
-        if (visible)
-          notes.push_back("faces are an image of " + render::short_number(dpi_) + " dpi: " +
-                          (captions_.size() > 1 ? "panel " + render::panel_letter(panel) + " has " : "") +
-                          render::counted(visible->size(), "visible face", "visible faces") +
-                          ", more than --vector-faces " + std::to_string(figure_.vector_faces));
-        return;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      progress("find visible faces", i, pieces_.size());
+      const Piece& piece = pieces_[i];
+      const render::DrawList list = scene(*piece.view, piece.moment).list;
+      const DeepView deep = deep_view(camera(*piece.view, piece.moment), piece.place, piece.scale, dpi_);
+      const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
+      auto visible = render::visible_faces(list, projection(deep, list), depths);
+      if (visible && visible->size() <= figure_.vector_faces) {
+        visible_.push_back(std::move(*visible));
+        continue;
       }
+      visible_.clear();
+      if (visible)
+        notes.push_back("faces are an image of " + render::short_number(dpi_) + " dpi: " +
+                        (captions_.size() > 1 ? "panel " + render::panel_letter(piece.panel) + " has " : "") +
+                        render::counted(visible->size(), "visible face", "visible faces") +
+                        ", more than --vector-faces " + std::to_string(figure_.vector_faces));
+      return;
+    }
   }
 
   static render::Projection projection(const DeepView& deep, const render::DrawList& list) {
@@ -360,21 +607,21 @@ class FigureJob {
     const DeepView deep = deep_view(whole, place, scale, dpi);
     const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
     const render::Projection on_paper = projection(deep, list);
-    if (visible == nullptr) canvas.picture(pixels(list, deep, place), place.box);
+    const Vector2d& origin = place.box.min();
+    if (visible == nullptr) canvas.picture(pixels(list, deep), place.box);
     canvas.begin_clip(place.box);
     if (visible != nullptr) {
       const render::Lighting lighting;
       const render::FaceLooks looks(list, on_paper, 1, lighting, true);
       render::paint_faces(canvas, list, render::painting_order(list, on_paper, looks, *visible), looks,
-                          deep.origin);
-      render::paint_visible_lines(canvas, list, on_paper, depths, deep.origin);
+                          origin);
+      render::paint_visible_lines(canvas, list, on_paper, depths, origin);
     }
-    render::paint_over(canvas, list, on_paper, depths, deep.origin);
+    render::paint_over(canvas, list, on_paper, depths, origin);
     canvas.end_clip();
   }
 
-  render::Image pixels(const render::DrawList& list, const DeepView& deep, const PanelPlace& place) {
-    const Eigen::Vector2i size = (place.box.sizes() / deep.pixel).array().round().cast<int>();
+  render::Image pixels(const render::DrawList& list, const DeepView& deep) {
     render::RasterOptions raster;
     raster.width = deep.drawn.x(), raster.height = deep.drawn.y();
     raster.supersample = frames_.supersampling;
@@ -382,10 +629,7 @@ class FigureJob {
     raster.labels = false;
     raster.even_edges = true;
     raster.background = frames_.paper();
-    const render::Image picture = rasterizer_.draw(render::under_lines(list), deep.camera, raster);
-    render::Image part(size.x(), size.y(), render::kTransparent);
-    part.paste(picture, -deep.from.x(), -deep.from.y());
-    return part;
+    return rasterizer_.draw(render::under_lines(list), deep.camera, raster);
   }
 
   const run::RecordedRun& recorded_;
@@ -406,8 +650,12 @@ class FigureJob {
   std::vector<render::LegendItem> key_;
   std::optional<render::ScaleBar> bar_;
   FigureLayout layout_;
+  /// (panels) insets with the boxes of their targets in the view
+  std::vector<std::vector<std::pair<const Inset*, AlignedBox2d>>> inset_boxes_;
+  std::vector<Piece> pieces_;
   std::vector<std::vector<std::uint32_t>>
-      visible_;  ///< (panels) faces to draw as vector graphics; empty: image
+      visible_;                       ///< (pieces) faces to draw as vector graphics; empty: image
+  std::set<std::size_t> called_out_;  ///< callouts that were drawn
 };
 
 }  // namespace

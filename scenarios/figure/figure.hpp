@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/figure/callouts.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_panels.hpp"
 #include "scenarios/frames/frames.hpp"
@@ -24,7 +25,10 @@ struct FigureSpec {
   bool titles = false;         ///< below each panel its description; else only its letter
   bool legend = true;          ///< one for all panels, or a colour bar
   bool caption = false;        ///< below the figure
+  bool occlusion = false;      ///< 3D: darkens creases and gaps (ambient occlusion)
   bool contact_sheet = false;  ///< all views in one block of panels, for comparison; each has its own scale
+  std::vector<Callout> callouts;
+  std::vector<Inset> insets;
   /// Name of the PDF for the TeX file that sets the texts over it; the PDF itself has none. Empty: no TeX
   /// file.
   std::string tex;
@@ -42,7 +46,7 @@ struct Figure {
   std::string tex;      ///< text of the TeX file, if requested
   std::string caption;  ///< text for print below the figure
   std::size_t panels = 0;
-  std::vector<std::string> notes;  ///< about states that are not shown, and faces that are an image
+  std::vector<std::string> notes;  ///< on omitted states, faces that are an image, unseen callouts
 };
 
 /// Draws the figure. `frames` defines the meaning of colours, the visible regions and the viewpoint. Throws

@@ -52,6 +52,8 @@ constexpr double kShape = 1.5;   ///< target aspect ratio of automatic columns
 constexpr double kGapCost = 2;   ///< cost of empty cells, in logarithms of that ratio, if all cells are empty
 constexpr double kTallest = 1.4;  ///< maximum height of a block, in widths
 constexpr double kMinPanel = 5 * kPointsPerMm, kMinAutomatic = 12 * kPointsPerMm;
+constexpr double kInset = 0.4;      ///< maximum side of an inset, as a share of the figure's width
+constexpr double kInsetGap = 1;     ///< above an inset, in font sizes: space for the lines to its frame
 constexpr double kBarWidth = 0.45;  ///< width of the colour bar, as a share of the figure's
 
 /// Wraps text of a font size in points.
@@ -95,11 +97,13 @@ class BlockLayouter {
     out.layout.scale = scale;
     std::vector<std::vector<std::string>> lines;
     std::vector<std::size_t> most(rows_, 0);
+    std::vector<double> insets(rows_, 0);  // the largest side
     for (std::size_t i = 0; i < block_.seen.size(); ++i) {
       const double own = column_[i % columns_].length() * scale + 2 * o_.margin;
       lines.push_back(block_.texts.empty() ? std::vector<std::string>()
                                            : wrap(block_.texts[i], own, o_.font_size));
       most[i / columns_] = std::max(most[i / columns_], lines.back().size());
+      insets[i / columns_] = std::max(insets[i / columns_], inset_side(i, own));
     }
     const double used = width * scale + 2 * o_.margin * static_cast<double>(columns_) +
                         (static_cast<double>(columns_) - 1) * gutter();
@@ -114,10 +118,13 @@ class BlockLayouter {
         place.box = AlignedBox2d(Vector2d(x, y), Vector2d(x + wide, y + high));
         place.seen_from = {column.low, row_[row].low};
         place.lines = std::move(lines[i]);
+        place_insets(place, i,
+                     y + high + (static_cast<double>(most[row]) * kLine + kInsetGap) * o_.font_size);
         out.layout.panels.push_back(std::move(place));
         x += wide + gutter();
       }
       y += high + static_cast<double>(most[row]) * kLine * o_.font_size + (row + 1 < rows_ ? gutter() : 0);
+      if (insets[row] > 0) y += kInsetGap * o_.font_size + insets[row];
     }
     out.height = y;
     return out;
@@ -137,6 +144,22 @@ class BlockLayouter {
     return out;
   }
   double gutter() const { return kGutter * o_.font_size; }
+  std::size_t insets_of(std::size_t panel) const { return block_.insets.empty() ? 0 : block_.insets[panel]; }
+  /// Returns the side of a panel's insets, which share its width; 0 without insets.
+  double inset_side(std::size_t panel, double width) const {
+    const auto count = static_cast<double>(insets_of(panel));
+    return count > 0 ? std::min(kInset * o_.width, (width - (count - 1) * gutter()) / count) : 0;
+  }
+  /// Places the insets of a panel side by side below it.
+  void place_insets(PanelPlace& place, std::size_t panel, double top) const {
+    const double side = inset_side(panel, place.box.sizes().x()), step = side + gutter();
+    const auto count = static_cast<double>(insets_of(panel));
+    for (std::size_t k = 0; k < insets_of(panel); ++k) {
+      const double left =
+          place.box.center().x() - 0.5 * (count * step - gutter()) + static_cast<double>(k) * step;
+      place.insets.emplace_back(Vector2d(left, top), Vector2d(left + side, top + side));
+    }
+  }
 
   const Block& block_;
   const LayoutOptions& o_;
@@ -172,10 +195,13 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
 /// Moves all parts of a block to their positions, on the grid.
 void place(BlockLayout& block, double top, double grid) {
   const auto snapped = [&](double x) { return grid > 0 ? grid * std::round(x / grid) : x; };
+  const auto moved = [&](const AlignedBox2d& box) {
+    return AlignedBox2d(Vector2d(snapped(box.min().x()), snapped(box.min().y() + top)),
+                        Vector2d(snapped(box.max().x()), snapped(box.max().y() + top)));
+  };
   for (PanelPlace& p : block.panels) {
-    const Vector2d low(snapped(p.box.min().x()), snapped(p.box.min().y() + top));
-    const Vector2d high(snapped(p.box.max().x()), snapped(p.box.max().y() + top));
-    p.box = AlignedBox2d(low, high);
+    p.box = moved(p.box);
+    for (AlignedBox2d& inset : p.insets) inset = moved(inset);
   }
 }
 

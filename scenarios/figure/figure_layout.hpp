@@ -19,6 +19,7 @@ struct Block {
   std::vector<Eigen::AlignedBox2d> seen;  ///< (panels) the bounding box of the content, in the view's own
                                           ///< units
   std::vector<std::string> texts;         ///< below each: letter and title; empty: no space is reserved
+  std::vector<std::size_t> insets;        ///< number below each panel and its text; empty: none
 };
 
 struct LayoutOptions {
@@ -35,6 +36,7 @@ struct PanelPlace {
   Eigen::Vector2d
       seen_from;  ///< the point of the view, in its own units, at the box's corner plus the margin
   std::vector<std::string> lines;
+  std::vector<Eigen::AlignedBox2d> insets;  ///< squares on the paper
 };
 
 struct BlockLayout {

@@ -204,10 +204,14 @@ Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera&
   return empty ? square : box;
 }
 
-render::Camera central_part(const render::Camera& camera, double height) {
+render::Camera part_of(const render::Camera& camera, const Eigen::AlignedBox2d& part) {
   render::Camera out = camera;
-  out.half_height *= height / kViewSide;
-  out.fov_y = 2 * std::atan(std::tan(0.5 * camera.fov_y) * height / kViewSide);
+  const double share = part.sizes().y() / kViewSide, tangent = std::tan(0.5 * camera.fov_y);
+  const Eigen::Vector2d off =
+      (2 * part.center() - Eigen::Vector2d::Constant(kViewSide)) / kViewSide;  // in half sides, y down
+  out.half_height *= share;
+  out.fov_y = 2 * std::atan(tangent * share);
+  out.shift += (camera.orthographic ? camera.half_height : tangent) * Eigen::Vector2d(off.x(), -off.y());
   return out;
 }
 

@@ -52,8 +52,7 @@ inline constexpr double kViewSide = 1000;
 /// reaches behind the camera, or nothing is visible.
 Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera& camera);
 
-/// Returns the camera that shows the centre of the square, `height` units of it, at the same scale in a
-/// picture of that height.
-render::Camera central_part(const render::Camera& camera, double height);
+/// Returns the camera that shows a part of the square.
+render::Camera part_of(const render::Camera& camera, const Eigen::AlignedBox2d& part);
 
 }  // namespace lrb::figure

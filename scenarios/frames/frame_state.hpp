@@ -52,7 +52,12 @@ class FrameState {
   /// Returns a shorter text for a panel of a montage.
   std::string short_caption() const;
   /// Returns true if the displayed answer has contact regions.
-  bool in_contact() const { return now_.result != nullptr && !now_.result->regions.empty(); }
+  bool in_contact() const { return !contacts().empty(); }
+  /// Returns these contact regions.
+  std::span<const ContactRegion> contacts() const {
+    if (now_.result == nullptr) return {};
+    return now_.result->regions;
+  }
   std::uint32_t step() const { return cursor_.step()->index; }
   Pose pose(Side side) const { return cursor_.pose(side); }
   const std::vector<const LrbRep*>& reps() const { return run_.reps; }

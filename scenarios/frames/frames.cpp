@@ -208,10 +208,20 @@ void check_frame_size(const render::Look& spec) {
                      " pixels at this dpi, more than 8192 per side; lower --dpi or --size");
 }
 
+namespace {
+
+/// Returns the specification with sizes in pixels and, if it gives none, the view that a thin body needs.
+render::FrameSpec completed(render::FrameSpec spec, const RecordedRun& recorded) {
+  to_pixels(spec);
+  if (const auto from = view_of_thin_body(recorded, spec)) spec.views.emplace_back().from = *from;
+  return spec;
+}
+
+}  // namespace
+
 std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& given,
                                        const ProgressReport& progress, const Framing* framing) {
-  render::FrameSpec spec = given;
-  to_pixels(spec);
+  const render::FrameSpec spec = completed(given, recorded);
   std::vector<PaintedFrame> out;
   const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;
@@ -229,8 +239,7 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
                         const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const ProgressReport& progress) {
-  render::FrameSpec spec = given;
-  to_pixels(spec);
+  const render::FrameSpec spec = completed(given, recorded);
   DrawnFrames out;
   make_folder(folder + "/frames");
   remove_old_frames(folder);

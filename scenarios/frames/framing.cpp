@@ -94,26 +94,78 @@ double seen_share(const std::vector<Vector3d>& points, const render::Projection&
   constexpr double kLift =
       2.0 / kHeight;  // a curve lies on faces: it counts as visible up to two pixels behind them
   std::size_t seen = 0;
-  for (const Vector3d& p : points) {
-    const Vector3d at = projection.to_screen(projection.to_eye(p));
-    const int x = std::clamp(static_cast<int>(at.x()), 0, kWidth - 1);
-    const int y = std::clamp(static_cast<int>(kHeight - at.y()), 0, kHeight - 1);
-    seen += projection.nearer(at.z(), kLift) <= depths.at(x, y) ? 1 : 0;
-  }
+  for (const Vector3d& p : points) seen += depths.shows(projection, p, kLift) ? 1 : 0;
   return static_cast<double>(seen) / static_cast<double>(points.size());
 }
+
+/// The vertical axis of a camera's directions, and two horizontal ones.
+struct Around {
+  Vector3d up, side, third;
+
+  explicit Around(const Vector3d& upward)
+      : up(upward.normalized()), side(up.unitOrthogonal()), third(up.cross(side)) {}
+  Vector3d horizontal(double angle) const { return std::cos(angle) * side + std::sin(angle) * third; }
+};
 
 /// Returns directions all around, at two heights.
 std::vector<Vector3d> directions(const Vector3d& up) {
   constexpr int kTurns = 16;
-  const Vector3d u = up.normalized(), side = u.unitOrthogonal(), third = u.cross(side);
+  const Around around(up);
   std::vector<Vector3d> out;
   for (const double height : {0.3, 0.7})
-    for (int i = 0; i < kTurns; ++i) {
-      const double angle = 2 * std::numbers::pi * (i + 0.5) / kTurns;
-      out.push_back((std::cos(angle) * side + std::sin(angle) * third + height * u).normalized());
-    }
+    for (int i = 0; i < kTurns; ++i)
+      out.push_back(
+          (around.horizontal(2 * std::numbers::pi * (i + 0.5) / kTurns) + height * around.up).normalized());
   return out;
+}
+
+/// Returns directions perpendicular to `axis`, from slightly to far above; the first is the usual one: the
+/// axis points to the right. All around an almost vertical axis, and then slightly above the perpendicular.
+std::vector<Vector3d> directions_across(const Vector3d& axis, const Vector3d& up) {
+  constexpr double kNearlyVertical = 0.97;  // cosine: from there on, an axis has no side
+  constexpr int kTurns = 16;
+  constexpr double kAbove = 0.2, kOblique = 0.5;  // radians, so that boxes show two sides
+  const Around around(up);
+  const Vector3d along = axis.normalized();
+  std::vector<Vector3d> out;
+  if (std::abs(along.dot(around.up)) > kNearlyVertical) {
+    for (int i = 0; i < kTurns; ++i) {
+      const Vector3d d = around.horizontal(kOblique + 2 * std::numbers::pi * i / kTurns);
+      out.push_back(((d - along * d.dot(along)).normalized() + kAbove * around.up).normalized());
+    }
+    return out;
+  }
+  const Vector3d side = along.cross(around.up).normalized(), above = side.cross(along);
+  for (const double elevation : {0.45, 0.2, 0.32, 0.6, 0.75, 0.9})
+    for (const double sign : {1.0, -1.0})
+      out.push_back(sign * std::cos(elevation) * side + std::sin(elevation) * above);
+  return out;
+}
+
+/// Returns the direction, of `candidates`, from which the bodies hide least of the contacts of the last step
+/// with contacts; of similar ones, the one closest to `like`. Returns `like` if there is no contact.
+Vector3d min_hidden_of(const RecordedRun& recorded, const std::vector<Vector3d>& candidates,
+                       const Vector3d& up, const Vector3d& like) {
+  const std::size_t step = last_contact(recorded);
+  if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return like;
+  const trace::Step& s = recorded.trace->steps[step];
+  const PosedBodies bodies{*recorded.reps[0], s.pose_a, *recorded.reps[1], s.pose_b};
+  const render::DrawList list = render::build_scene(bodies.in_scene()).list;
+  const std::vector<Vector3d> contact = render::contact_points((*recorded.results)[step].regions);
+  const std::vector<Vector3d> points = points_at(recorded, step);
+  render::Rasterizer rasterizer;
+  Vector3d best = like;
+  double most = -1;
+  for (const Vector3d& from : candidates) {
+    render::FitOptions fit;
+    fit.view = {from, up};
+    const render::Camera camera = render::fit_camera(points, kWidth, kHeight, fit);
+    const double seen = seen_share(contact, render::Projection(camera, kWidth, kHeight, render::bounds(list)),
+                                   rasterizer.depths(list, camera, kWidth, kHeight)) +
+                        kNearness * from.dot(like.normalized());
+    if (seen > most) most = seen, best = from;
+  }
+  return best;
 }
 
 /// Returns true if a close-up of the contacts would show almost as much as a view of both bodies.
@@ -137,6 +189,19 @@ bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& cl
 
 }  // namespace
 
+std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& p, const render::Look& look) {
+  if (!look.views.empty() || p.reps.size() != 1 || p.reps[0]->dim() != 3 || p.trace->steps.empty()) return {};
+  constexpr double kThin = 0.25;
+  const Eigen::AlignedBox3d box = box_of(*p.reps[0], p.trace->steps[0].pose_a);
+  if (box.isEmpty()) return {};
+  const Eigen::Vector3d size = box.sizes(), up = render::Look::View{}.up;
+  int thinnest = 0, vertical = 0;
+  const double least = size.minCoeff(&thinnest);
+  up.cwiseAbs().maxCoeff(&vertical);
+  if (thinnest == vertical || !(least < kThin * size.maxCoeff())) return {};
+  return broadside(box, up);
+}
+
 Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
   const bool regions_alone = !(spec.isolate[0].empty() && spec.isolate[1].empty());
   Framing f;
@@ -154,26 +219,16 @@ Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
 }
 
 Vector3d min_hidden(const RecordedRun& recorded, const Vector3d& up, const Vector3d& like) {
-  const std::size_t step = last_contact(recorded);
-  if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return like;
-  const trace::Step& s = recorded.trace->steps[step];
-  const PosedBodies bodies{*recorded.reps[0], s.pose_a, *recorded.reps[1], s.pose_b};
-  const render::DrawList list = render::build_scene(bodies.in_scene()).list;
-  const std::vector<Vector3d> contact = render::contact_points((*recorded.results)[step].regions);
-  const std::vector<Vector3d> points = points_at(recorded, step);
-  render::Rasterizer rasterizer;
-  Vector3d best = like;
-  double most = -1;
-  for (const Vector3d& from : directions(up)) {
-    render::FitOptions fit;
-    fit.view = {from, up};
-    const render::Camera camera = render::fit_camera(points, kWidth, kHeight, fit);
-    const double seen = seen_share(contact, render::Projection(camera, kWidth, kHeight, render::bounds(list)),
-                                   rasterizer.depths(list, camera, kWidth, kHeight)) +
-                        kNearness * from.dot(like.normalized());
-    if (seen > most) most = seen, best = from;
-  }
-  return best;
+  if (recorded.reps[0]->dim() != 3 || recorded.trace->steps.empty()) return like;
+  const trace::Step& first = recorded.trace->steps.front();
+  const Eigen::AlignedBox3d a = box_of(*recorded.reps[0], first.pose_a),
+                            b = box_of(*recorded.reps[1], first.pose_b);
+  const Vector3d axis = b.center() - a.center();
+  constexpr double kApart = 1e-3;  // of the bodies' size: closer centres give no direction
+  if (!(axis.norm() > kApart * a.merged(b).diagonal().norm()))
+    return min_hidden_of(recorded, directions(up), up, like);
+  const std::vector<Vector3d> candidates = directions_across(axis, up);
+  return min_hidden_of(recorded, candidates, up, candidates.front());
 }
 
 void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views) {

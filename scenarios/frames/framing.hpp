@@ -1,6 +1,8 @@
 #pragma once
 /// The points that cameras show, and the directions that are chosen if none is given.
 
+#include <optional>
+
 #include <Eigen/Geometry>
 
 #include "render/pictures/panel.hpp"
@@ -12,9 +14,15 @@ namespace lrb::run {
 /// rest is shown as a ghost; if it explodes bodies, the displaced regions.
 Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spec);
 
-/// Returns the direction, of many all around and from above, from which the bodies hide least of the contacts
-/// of the last step with contacts; of similar ones, the one closest to `like`. Returns `like` if there is no
-/// contact.
+/// Returns the direction from which a single thin body in upright position fills its pictures: across its
+/// thinnest extent, if that is horizontal and less than a quarter of the largest. Returns nullopt for other
+/// bodies, and if the pictures have views.
+std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& recorded, const render::Look& look);
+
+/// Returns the direction, of those across the line from A to B at the first step, from which the bodies hide
+/// least of the contacts of the last step with contacts: both bodies and the gap between them are visible. If
+/// their centres coincide: of directions all around and from above; of similar ones, the one closest to
+/// `like`, which is returned without a contact. Returns `like` in 2D.
 Eigen::Vector3d min_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
                            const Eigen::Vector3d& like);
 

@@ -63,8 +63,10 @@ std::string body_cause(const Golden& golden, const GoldenRun& run, std::size_t i
     return who + "the mesh is unchanged, but its LRB-rep was built differently: " + built;
   if (i < golden.meshes.size() && golden.meshes[i])
     return who + "its mesh changed: " + mesh_difference(*golden.meshes[i], mesh);
-  return who + "its mesh changed: " + render::group_digits(expected.real_faces) + " -> " +
-         render::group_digits(found.real_faces) + " faces";
+  const std::string faces = render::group_digits(found.real_faces);
+  if (found.real_faces == expected.real_faces)
+    return who + "its mesh changed: " + faces + " faces as before, with other corners";
+  return who + "its mesh changed: " + render::group_digits(expected.real_faces) + " -> " + faces + " faces";
 }
 
 /// Names the fields of the request that differ from the approved one.

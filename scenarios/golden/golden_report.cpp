@@ -404,11 +404,13 @@ std::string result_text(const GoldenResult& r) {
     return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it after fixing that: " + r.approve +
            "\n";
   const bool more_work = !v.more_work.empty() && !v.divergence;
-  std::string head = v.answers_differ                 ? "answers " + answers_text(r)
-                     : v.divergence                   ? "events or counters differ"
-                     : more_work                      ? "more work than allowed"
-                     : r.spec.compares(Level::events) ? event_count(r) + " equal"
-                                                      : "answers of " + answers_text(r);
+  std::string head = v.answers_differ                  ? "answers " + answers_text(r)
+                     : v.divergence                    ? "events or counters differ"
+                     : more_work                       ? "more work than allowed"
+                     : r.spec.compares(Level::events)  ? event_count(r) + " equal"
+                     : r.spec.compares(Level::answers) ? "answers of " + answers_text(r)
+                     : r.spec.compares(Level::work)    ? "work " + work_text(r)
+                                                       : "answers not compared";
   std::string out =
       (v.passed() ? "ok    " : "FAIL  ") + r.name + ": " + head + "; images: " + images_text(r) + "\n";
   if (v.passed()) return out;

@@ -350,18 +350,19 @@ Document& Document::view(const std::string& json, std::string_view html,
   return add(html);
 }
 
-Document& Document::scene(const std::string& json) {
+Document& Document::run_view(const std::string& json, std::string_view html, const char* script) {
   of_run_ = true;
-  return view(json, io::embedded_file("scene.html"),
-              {"scene_run.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js", "scene_view.js",
-               "scene_controls.js", "scene_page.js", "scene.js"});
+  return view(json, io::embedded_file(html),
+              {"scene_run.js", "scene_attempts.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js",
+               "scene_view.js", "scene_controls.js", "scene_page.js", script});
+}
+
+Document& Document::scene(const std::string& json) {
+  return run_view(json, "scene.html", "scene.js");
 }
 
 Document& Document::crowd_view(const std::string& json) {
-  of_run_ = true;
-  return view(json, io::embedded_file("crowd.html"),
-              {"scene_run.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js", "scene_view.js",
-               "scene_controls.js", "scene_page.js", "crowd.js"});
+  return run_view(json, "crowd.html", "crowd.js");
 }
 
 Document& Document::tree_view(const std::string& json) {

@@ -208,6 +208,8 @@ class Document {
   void use(const std::string& style, std::string_view script);
   /// Adds a 3D view: its data and the scripts that draw it, each after those that it depends on.
   Document& view(const std::string& json, std::string_view html, std::initializer_list<const char*> scripts);
+  /// Adds the 3D view of a run, of two bodies or of a crowd.
+  Document& run_view(const std::string& json, std::string_view html, const char* script);
 
   std::string title_, purpose_, summary_, verdict_, footer_, command_, tab_;
   std::string_view (*meaning_of_)(std::string_view) = nullptr;

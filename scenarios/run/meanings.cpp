@@ -113,7 +113,14 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
 
 }  // namespace
 
-std::string_view meaning_of(std::string_view name) {
+std::string_view meaning_for_engines(std::string_view name) {
+  if (name == "Faces") return "faces of both bodies";
+  if (name == "depth") return "steps to the root of the tree";
+  if (name == "faces") return "faces of the bodies";
+  return meaning_of_column(name);
+}
+
+std::string_view meaning_of_column(std::string_view name) {
   const auto* const end = std::end(kMeaningOfNames);
   const auto* const at =
       std::find_if(std::begin(kMeaningOfNames), end, [&](const auto& entry) { return entry.first == name; });

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "scenarios/frames/frame_state.hpp"
+#include "scenarios/record/attempts.hpp"
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/counters.hpp>
 
@@ -109,6 +111,35 @@ report::Table rejection_table(const Passes& passes) {
   return t;
 }
 
+/// Returns the regions where most caps were refused first, and how each was made.
+report::Table region_table(const RecordedRun& p) {
+  constexpr std::size_t kMaxRows = 200;
+  const LrbRep& rep = *p.reps[0];
+  const std::vector<Attempt> attempts = attempts_of(*p.trace);
+  const auto of_region = attempts_by_region(*p.trace, rep, attempts);
+  std::vector<VerdictCounts> verdicts;
+  std::vector<RegionId> order;
+  for (RegionId r(0); r < rep.region_count(); ++r) {
+    verdicts.push_back(verdicts_of(attempts, of_region[r]));
+    order.push_back(r);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](RegionId x, RegionId y) { return refused(verdicts[x]) > refused(verdicts[y]); });
+  report::Table t{"Regions, by the caps refused there",
+                  {"region", "pass", "lids", "floor", "attempts", "refused", "reasons"}};
+  for (const RegionId r : std::span(order).first(std::min(order.size(), kMaxRows))) {
+    t.rows.push_back({group_digits(r), std::to_string(rep.layer(r) + 1), group_digits(rep.lids(r).size()),
+                      group_digits(rep.floor(r).size()), group_digits(of_region[r].size()),
+                      group_digits(refused(verdicts[r])), trace::rejection_text(verdicts[r])});
+    t.targets.push_back("region 0 " + std::to_string(r));
+  }
+  t.note =
+      "Attempts: caps that could have covered a vertex that the region covers. A click selects the region and lists them.";
+  if (order.size() > kMaxRows)
+    t.note += " The first " + std::to_string(kMaxRows) + " of " + group_digits(order.size()) + " regions.";
+  return t;
+}
+
 report::Chart chart_of(const trace::Chart& chart, const char* title, const char* y, report::Line line) {
   report::Chart out{title, {std::string(chart.x_name)}, {y}};
   for (const trace::Series& s : chart.series)
@@ -117,6 +148,10 @@ report::Chart chart_of(const trace::Chart& chart, const char* title, const char*
 }
 
 }  // namespace
+
+std::string_view meaning_of(CapVerdict verdict) {
+  return kMeanings[static_cast<std::size_t>(verdict)];
+}
 
 void add_construction(report::Document& doc, const RecordedRun& p) {
   const Passes passes = trace::passes_of(*p.trace);
@@ -138,6 +173,7 @@ void add_construction(report::Document& doc, const RecordedRun& p) {
   }
   doc.tab("Passes").table(pass_table(passes));
   if (tried) doc.tab("Caps").table(rejection_table(passes));
+  if (p.reps[0]->region_count() > 0) doc.tab("Regions").table(region_table(p));
 }
 
 namespace {

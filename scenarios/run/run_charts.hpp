@@ -11,10 +11,15 @@
 namespace lrb::run {
 
 /// Returns the meaning of a column or a key figure of a run's page; empty: unknown.
-std::string_view meaning_of(std::string_view name);
+std::string_view meaning_of_column(std::string_view name);
+/// The same for the page of another engine's run, without terms of lrbscope's wrappers.
+std::string_view meaning_for_engines(std::string_view name);
 
-/// Adds a construction: its key figures, charts of the front and of caps, and tables of passes and of
-/// verdicts on caps.
+/// Returns what a verdict on a cap means, as a clause.
+std::string_view meaning_of(CapVerdict verdict);
+
+/// Adds a construction: its key figures, charts of the front and of caps, and tables of passes, of verdicts
+/// on caps and of regions.
 void add_construction(report::Document& doc, const RecordedRun& recorded);
 
 /// Returns true if any step of a trace has this measurement.

@@ -118,7 +118,7 @@ std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace:
   if (p.trace->header.engine.empty())
     out.push_back({"Refined regions", render::group_digits(r.counters.regions_opened),
                    "of " + render::group_digits(regions) + ", " + at});
-  out.push_back({"Real faces", render::group_digits(faces), each});
+  out.push_back({p.trace->header.engine.empty() ? "Real faces" : "Faces", render::group_digits(faces), each});
   return out;
 }
 
@@ -163,8 +163,8 @@ std::string step_sentence(const RecordedRun& p, const trace::Step& step) {
          counted(tests, "test", "tests");
   if (tests > c.face_tests)
     out += " (" + whole_percent(c.box_tests, tests) + " of boxes, " +
-           whole_percent(c.prefilter_tests, tests) + " of planes, " + whole_percent(c.face_tests, tests) +
-           " of faces)";
+           (p.trace->header.engine.empty() ? whole_percent(c.prefilter_tests, tests) + " of planes, " : "") +
+           whole_percent(c.face_tests, tests) + " of faces)";
   const std::uint64_t all = std::uint64_t{p.reps[0]->real_simplex_count()} * p.reps[1]->real_simplex_count();
   return out + " of " + counted(all, "possible pair", "possible pairs") + ".";
 }
@@ -236,8 +236,9 @@ std::string colour_of(std::string_view curve) {
   return {};
 }
 
-/// Returns true for the curve of a wrapper if its body has no wrapper.
+/// Returns true for the curve of a wrapper if its body has no wrapper, or another engine was recorded.
 bool is_of_no_wrapper(const trace::Series& s, const RecordedRun& p) {
+  if (s.unit == "faces" && !p.trace->header.engine.empty()) return true;
   return s.unit == "faces" &&
          ((s.name.ends_with(" A") && p.reps[0]->region_count() == 0) ||
           (s.name.ends_with(" B") && p.reps.size() > 1 && p.reps[1]->region_count() == 0));
@@ -313,10 +314,12 @@ report::Table steps_table(const trace::Trace& trace) {
   const bool timed = !trace.wall_ns.empty();
   const bool has_trees = request.recursion == Recursion::complete;
   if (timed) t.columns.emplace_back("microseconds");
-  if (has_trees) t.columns.insert(t.columns.end(), {"box tests", "plane tests"});
-  const bool has_wrappers = trace.header.engine.empty();
+  const bool is_ours =
+      trace.header.engine.empty();  // other engines have neither wrappers nor tests of planes
+  if (has_trees) t.columns.emplace_back("box tests");
+  if (has_trees && is_ours) t.columns.emplace_back("plane tests");
   t.columns.emplace_back("face tests");
-  if (has_wrappers) t.columns.emplace_back("refinements");
+  if (is_ours) t.columns.emplace_back("refinements");
   t.columns.emplace_back("fingerprint");
   if (request.is_coarse()) t.columns.insert(t.columns.end(), {"error bound", "finished"});
   if (request.separation) t.columns.emplace_back("proof of separation");
@@ -339,11 +342,10 @@ report::Table steps_table(const trace::Trace& trace) {
     std::vector<std::string>& row = t.rows.back();
     constexpr double kMicros = 1e6;
     if (timed) row.push_back(render::short_number(kMicros * std::fmax(0, trace::seconds_of_step(trace, i))));
-    if (has_trees)
-      row.insert(row.end(),
-                 {render::group_digits(counters.box_tests), render::group_digits(counters.prefilter_tests)});
+    if (has_trees) row.push_back(render::group_digits(counters.box_tests));
+    if (has_trees && is_ours) row.push_back(render::group_digits(counters.prefilter_tests));
     row.push_back(render::group_digits(counters.face_tests));
-    if (has_wrappers) row.push_back(render::group_digits(counters.refinements));
+    if (is_ours) row.push_back(render::group_digits(counters.refinements));
     row.push_back(trace::to_hex(s.result.fingerprint));
     if (request.is_coarse())
       row.insert(row.end(), {s.result.error_bound == 0 ? "0" : error_bound_text(s.result.error_bound),
@@ -421,7 +423,8 @@ void add_tables(report::Document& doc, const RecordedRun& p) {
   if (p.results != nullptr && !p.results->empty() && !p.results->back().regions.empty())
     doc.tab("Contacts").table(contact_table(p.results->back(), p.trace->steps.back().index));
   doc.tab("Work").each(work_tables(p), &report::Document::table);
-  if (p.trace->header.engine.empty()) doc.tab("Regions").each(group_tables(p), &report::Document::table);
+  if (!p.trace->header.engine.empty()) return;  // the bodies' own trees and regions were not used
+  doc.tab("Regions").each(group_tables(p), &report::Document::table);
   doc.tab("Bodies").table(quality_table(p));
 }
 
@@ -442,7 +445,8 @@ void add_frames(report::Document& doc, const DrawnFrames& drawn, const std::stri
 report::Document run_page(const RecordedRun& p, const DrawnFrames& drawn, const std::string& folder,
                           const ReportText& text) {
   report::Document doc(text.title, text.purpose);
-  doc.explain(meaning_of).summary(sentence_of(p));
+  doc.explain(p.trace->header.engine.empty() ? meaning_of_column : meaning_for_engines)
+      .summary(sentence_of(p));
   add_answer(doc, p, text);
   doc.scene(scene_json(p, {text.trace_file, text.why}));
   doc.each(text.links, &report::Document::link);

@@ -254,7 +254,6 @@ report::Table quality_table(const RecordedRun& run) {
   }
   t.columns.emplace_back("best");
   for (const Quality& q : qualities()) {
-    if (!run.trace->header.engine.empty() && std::string_view(q.name).starts_with("LRB-rep")) continue;
     t.rows.push_back({q.name});
     for (std::size_t i = 0; i < run.reps.size(); ++i)
       t.rows.back().push_back(q.value(*run.reps[i], trees[i]));

@@ -16,6 +16,7 @@
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"
 #include "scenarios/run/explanations.hpp"
+#include "scenarios/run/run_charts.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/render/style.hpp>
@@ -495,8 +496,29 @@ json passes_json(const trace::Trace& trace) {
   if (!trace.header.construction) return nullptr;
   json out = json::array();
   for (const trace::PassSummary& p : trace::passes_of(trace))
-    out.push_back({{"first", p.first}, {"last", p.last}, {"words", pass_text(p)}});
+    out.push_back({{"first", p.first},
+                   {"last", p.last},
+                   {"words", pass_text(p)},
+                   {"stage", name_of(p.stage)},
+                   {"limit", p.max_deviation}});
   return out;
+}
+
+/// Returns the data of attempts to cover the front: the vertices of each patch among the kept
+/// events, and the meaning of verdicts; null for other runs than constructions.
+json attempts_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
+  if (!trace.header.construction) return nullptr;
+  Numbers counts, vertices;
+  for (const trace::EventId id : kept) {
+    if (trace.events[id].kind != EventKind::patch) continue;
+    const std::span<const VertexId> own = trace.vertices_of(trace.events[id]);
+    counts.push_back(static_cast<std::uint32_t>(own.size()));
+    vertices.insert(vertices.end(), own.begin(), own.end());
+  }
+  json verdicts = json::object();
+  for (const auto& [verdict, name] : kEnumNames<CapVerdict>)
+    verdicts[std::string(name)] = meaning_of(verdict);
+  return {{"counts", packed(counts)}, {"vertices", packed(vertices)}, {"verdicts", std::move(verdicts)}};
 }
 
 std::string too_large_text(std::size_t faces, const SceneLimits& limits) {
@@ -547,6 +569,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"phases", words_json<Phase>()},
                     {"engine", trace.header.engine},
                     {"passes", passes_json(trace)},
+                    {"attempts", attempts_json(trace, events.kept)},
                     {"relations", words_json<Relation>()},
                     {"meets", words_json<exact::Meet>()},
                     {"allEvents", trace.events.size()},

@@ -67,6 +67,15 @@ for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${web
 drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-software-rasterizer
 page "$here/build.json"
 drive 1400 1000 'page.html?drive=build' "${webgl[@]}"
+# Another engine's run, if its recording program is built.
+echo '1 0 0 0.7  0 1 0 0  0 0 1 0' >"$work/poses.txt"
+for method in fcl cgal; do
+  if "$lrbscope" --quiet xray "$work/out/a.lrb" "$work/out/a.lrb" --method "$method" --poses "$work/poses.txt" -o "$work/xray" >/dev/null 2>&1; then
+    with_scripts "$work/xray/$method/index.html" drive.js >"$work/page.html"
+    drive 1400 900 'page.html?drive=engine' "${webgl[@]}"
+    rm -rf "$work/xray"
+  fi
+done
 page "$here/plane.json"
 drive 1400 1000 'page.html?drive=plane' "${webgl[@]}"
 page "$here/near.json"

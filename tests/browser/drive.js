@@ -654,6 +654,120 @@
     check(rejections > 3, "and say why caps were rejected", rejections);
   }
 
+  /** The page of another engine's run has no word of what only lrbscope has, in texts or tooltips. */
+  async function namesOnlyItsOwn() {
+    const { events, selection, view } = run,
+      strange = /.{0,30}(wrapper|pseudo|refine|\blids?\b|real face|\blayers?\b|\bplanes? of faces|region).{0,30}/i,
+      found = new Set();
+    const look = () => {
+      for (const part of document.querySelectorAll("body *")) {
+        if (["SCRIPT", "STYLE"].includes(part.tagName) || part.closest(".of-regions[hidden], [data-tab=Contacts]")) continue;
+        const own = [...part.childNodes].filter((n) => n.nodeType === Node.TEXT_NODE).map((n) => n.data);
+        for (const text of [...own, part.title || "", part.getAttribute("aria-label") || ""]) {
+          const word = strange.exec(text.replace(/contact regions?/gi, ""));
+          if (word) found.add(word[0].trim());
+        }
+      }
+    };
+    check(events.engine, "another engine was recorded");
+    look();
+    selection.goTo(events.kind.indexOf(events.CONTACT));
+    selection.pickFace(0, events.faces(selection.event)[0].face);
+    await frame();
+    look();
+    for (const by of ["tests", "kind"]) {
+      input("colour-by", by);
+      await frame();
+      look();
+    }
+    equal([...found].join(" | "), "", "no word of wrappers, regions and their faces");
+    check(view && !view.now.lids, "and none is drawn");
+  }
+
+  /** The attempts at a vertex, a face and a region, as the trace has them; by clicks, keys and the address. */
+  async function listsAttempts() {
+    const { events, selection, view, address, table } = run,
+      slices = JSON.parse(byId("trace-data").textContent).traceEvents.filter((e) => e.ph === "X" && e.args.event !== undefined),
+      patches = new Map(slices.filter((e) => e.name === "patch").map((e) => [e.args.event, e.args])),
+      caps = slices.filter((e) => e.name === "cap").map((e) => e.args),
+      rows = () => [...byId("attempt-rows").children],
+      capsAt = (v) => caps.filter((c) => (patches.get(c.cause).vertices || []).includes(v)),
+      shown = () => rows().map((r) => events.id(r.attempt.cap)).join(" ");
+    check([...patches.values()].every((p) => !p.vertices || p.vertices.length === p["interior vertices"]), "the trace has the vertices of patches");
+    const busiest = [...Array(events.bodies[0].vertices.length / 3).keys()].reduce((p, q) => (capsAt(q).length > capsAt(p).length ? q : p));
+    check(capsAt(busiest).length > 2, "several caps were tried at one vertex", capsAt(busiest).length);
+    selection.pickVertex(0, busiest);
+    equal(shown(), capsAt(busiest).map((c) => c.event).join(" "), "the panel lists the attempts at a vertex, in order");
+    const words = rows().map((r) => r.cells[3].textContent);
+    check(capsAt(busiest).every((c, i) => words[i].startsWith(c.verdict) && words[i].length > c.verdict.length + 12), "with the reasons in words", words.join("; "));
+    // A refused attempt: the patch on the front, which stays as it is.
+    const refused = capsAt(busiest).findIndex((c) => c.verdict !== "stands");
+    rows()[refused].click();
+    await frame();
+    equal(events.id(selection.event), capsAt(busiest)[refused].event, "a click on a row goes to its cap");
+    const patch = patches.get(capsAt(busiest)[refused].cause);
+    equal(view.attemptFaces(events.attempts.ofEvent.get(selection.event)).length, patch.faces, "the view shows the patch with all its faces");
+    check(view.marks.shown.get("start") && view.marks.shown.get("vertex") && view.marks.shown.get("attempt").parts.length, "with its start vertex and the selected one");
+    check(byId("attempt-after").disabled && byId("attempt-kept").textContent, "and says that the front stays as it is");
+    equal(rows()[refused].getAttribute("aria-current"), "true", "the row is marked");
+    // An accepted one: before and after.
+    const region = events.bodies[0].regionCount >> 1,
+      made = slices.find((e) => e.name === "region" && e.args.region === region).args;
+    selection.pickRegion(0, region);
+    check(shown().split(" ").includes(String(made.cause)), "a region lists the attempt that made it", shown());
+    events.attempts.coveredBy(region).forEach((v) => {
+      const missing = capsAt(v).filter((c) => !shown().split(" ").includes(String(c.event)));
+      if (missing.length) check(false, "and all those at the vertices that it covers", missing.length);
+    });
+    rows().find((r) => events.id(r.attempt.cap) === made.cause).click();
+    await frame();
+    equal(events.id(selection.event) >= made.event, true, "an accepted attempt is shown with its regions");
+    const after = run.wrappers.sizes[0];
+    press("b");
+    await frame();
+    check(run.wrappers.sizes[0] > after, "B shows the front before it", `${run.wrappers.sizes[0]} ${after}`);
+    equal(view.attemptFaces(events.attempts.ofEvent.get(selection.event)).length, patches.get(caps.find((c) => c.event === made.cause).cause).faces, "with its patch");
+    press("b");
+    equal(run.wrappers.sizes[0], after, "and again the front after it");
+    press("h", true);
+    check(rows().length < 2 || events.id(selection.event) < made.cause, "H goes to the attempt before", events.id(selection.event));
+    // The place of an event, by key; of a row of the table, by a click.
+    selection.goTo(events.find(caps[0].event));
+    press("p");
+    equal(selection.picked.vertex, patches.get(caps[0].cause).vertex, "P selects the start vertex of the event");
+    table.body.querySelector("[aria-selected=true]").click();
+    equal(selection.picked.vertex, patches.get(caps[0].cause).vertex, "as does a click on the event's row");
+    equal(/pick=A\.vertex\.\d+/.exec(address.text())[0], `pick=A.vertex.${selection.picked.vertex}`, "the address has the vertex");
+    selection.pick(null);
+    location.hash = `#e0&pick=A.vertex.${busiest}`;
+    address.read();
+    equal(selection.picked && selection.picked.vertex, busiest, "and leads to it");
+    press("l");
+    equal(table.rows.length, events.attempts.eventsAt(selection.picked).size, "L lists the events there");
+    run.form.clear();
+    // A click on a corner of a face selects the vertex; in the middle of it, the face.
+    selection.goTo(0);
+    view.frameAll();
+    await frame();
+    const box = view.canvas.getBoundingClientRect(),
+      [body] = events.bodies,
+      at = (points) => {
+        const p = points.map((v) => view.views[0].toWorld(view.views[0].point(v)).project(view.camera.camera));
+        return [0, 1].map((k) => p.reduce((s, q) => s + q.getComponent(k), 0) / p.length).map((c, k) => (k ? box.top + ((1 - c) / 2) * box.height : box.left + ((1 + c) / 2) * box.width));
+      };
+    const [x, y] = [box.left + box.width / 2, box.top + box.height / 2],
+      face = view.picker.under(x, y).face,
+      clickAt = ([cx, cy]) => {
+        for (const type of ["pointerdown", "pointerup", "click"]) view.canvas.dispatchEvent(new PointerEvent(type, { clientX: cx, clientY: cy, bubbles: true, button: 0 }));
+      };
+    clickAt(at([...body.face(face)]));
+    equal(selection.picked && selection.picked.face, face, "a click in a face selects it");
+    const corner = body.face(face)[0],
+      inside = at([corner, corner, corner, corner, corner, corner, corner, corner, corner, ...body.face(face)]);
+    clickAt(inside);
+    equal(selection.picked && selection.picked.vertex, corner, "a click next to its corner, the vertex");
+  }
+
   /** The fill of A alone has as many pixels as its loops have inside. */
   function fillsInside(view, camera) {
     const [a] = view.views,
@@ -786,7 +900,8 @@
     measured: [measures, fitsTheWidth],
     open: [opensAtFirstContact, showsTheOpenBody, looksAsFramesDo, fitsTheWidth],
     plane: [opensAtFirstContact, replaysAsRecorded, liesFlat, fitsTheWidth],
-    build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, fitsTheWidth],
+    build: [opensAtTheBody, replaysAsRecorded, buildsPassByPass, listsAttempts, fitsTheWidth],
+    engine: [namesOnlyItsOwn, fitsTheWidth],
     reload: [opensAtItsAddress],
     screen: [fitsOneScreen],
     all: [

@@ -29,13 +29,19 @@ for file in fig.pdf titled.pdf; do # 85 mm are 240.945 points
   "$pdf_text" <"$file" | grep -aE '/MediaBox \[ 0 0 240\.94[0-9]* ' >/dev/null || { echo "$file: expected a width of 85 mm"; exit 1; }
 done
 grep -q 'width="85mm"' tests.svg || { echo "tests.svg: expected a width of 85 mm"; exit 1; }
-# The archive makes the same figure, from its own copies of the inputs.
-mkdir archive
-(cd archive && python3 -m zipfile -e ../fig.zip .)
+# The archives make the same figures, from their own copies of the inputs; options that are given twice are kept.
+lrbscope figure out/mine --steps 0,20 --inset b:contact --callout "a:face:3=a, b" --callout b:face:b3 --artifact twice.zip -o twice.svg
+for name in fig twice; do
+  mkdir "archive_$name"
+  (cd "archive_$name" && python3 -m zipfile -e "../$name.zip" .)
+done
 mv out/mine moved
 printf '#!/bin/sh\nexec "%s" -q "$@"\n' "$program" >program.sh
 chmod +x program.sh
-LRBSCOPE=$work/program.sh sh archive/make.sh | grep -qx 'made/fig.pdf: the same, byte for byte' || { echo "fig.zip makes another figure"; exit 1; }
+for figure in fig.pdf twice.svg; do
+  LRBSCOPE=$work/program.sh sh "archive_${figure%.*}/make.sh" | grep -qx "made/$figure: the same, byte for byte" ||
+    { echo "${figure%.*}.zip makes another figure"; exit 1; }
+done
 [ -s fig.caption.txt ] || { echo "fig.caption.txt is empty"; exit 1; }
 if command -v pdflatex >/dev/null; then
   block tex >paper.tex

@@ -273,6 +273,22 @@ class Matrix:
         self.run(["export", file, "-o", f"{out}.ply"], made=f"{out}.ply")
         self.run(["close", file, "-o", f"{out}-closed.obj"], None, (0, 1, 2))
 
+    def check_run(self, cell, out):
+        """Corners of B in the summary of a run: all are there, and none is nearer to A than B."""
+        with open(os.path.join(self.folder, f"{cell['b']}.points.txt"), encoding="utf-8") as file:
+            corners = len(file.readlines())
+        try:
+            with open(os.path.join(self.folder, out, "summary.json"), encoding="utf-8") as file:
+                found = [step["points"] for step in json.load(file)["steps"]]
+            expect(len(found) == len(cell["steps"]), f"{len(found)} steps")
+            for points, step in zip(found, cell["steps"]):
+                expect(points["count"] == corners, f"{points['count']} points of {corners}")
+                if not step["pairs"]:
+                    nearest = min(abs(x) for p in points["smallest"] for x in p[2:4])
+                    expect(nearest >= step["distance"] * (1 - 1e-7), "a point of B is nearer than B")
+        except (Wrong, OSError, KeyError) as e:
+            self.wrong.append(f"{out}\n    {e!r}")
+
     def python(self, kind):
         """Has the kind asked about from Python, in a process of its own."""
         python, package = self.options.python
@@ -292,6 +308,7 @@ class Matrix:
                 self.questions(cell, a, a if cell["a"] == cell["b"] else f"{cell['b']}.obj")
             if self.options.all or i == 0:
                 self.run(["run", f"{cell['name']}.json", "-o", f"out/{cell['name']}"])
+                self.check_run(cell, f"out/{cell['name']}")
         for a in files.values() if self.options.all else [files["obj"]] * (i == 0):
             self.body_pages(kind, a)
             self.pages(cells[0], a, f"{cells[0]['b']}.obj")

@@ -76,7 +76,8 @@ Json scenario_of(const Matrix& m, const Cell& cell, const std::string& name) {
         {"distance", true},
         {"clash", m.kinds[cell.a].mesh.dim == 3},
         {"near", 0},
-        {"manifold", cell.size / 20}}},
+        {"manifold", cell.size / 20},
+        {"points", m.kinds[cell.b].name + ".points.txt"}}},
       {"frames", {{"at", "step"}, {"size", {640, 480}}, {"supersampling", 1}}},
       {"expect", expect}};
 }

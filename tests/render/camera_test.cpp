@@ -136,6 +136,29 @@ TEST_CASE("the depth bias is a distance in the world, in shares of the picture's
   }
 }
 
+TEST_CASE("a shifted camera shows a part of the picture, at any scale") {
+  std::mt19937 random(7);
+  const std::vector<Vector3d> points = cloud(random, {1, 2, 3}, {2, 1, 3});
+  for (const bool orthographic : {false, true}) {
+    render::FitOptions fit;
+    fit.orthographic = orthographic;
+    const render::Camera whole = render::fit_camera(points, 400, 400, fit);
+    // The quarter at the top right, twice as large.
+    render::Camera part = whole;
+    const double tangent = std::tan(0.5 * whole.fov_y);
+    part.half_height = 0.5 * whole.half_height;
+    part.fov_y = 2 * std::atan(0.5 * tangent);
+    part.shift = Eigen::Vector2d(0.5, 0.5) * (orthographic ? whole.half_height : tangent);
+    const Eigen::AlignedBox3d box = box_of(points);
+    const render::Projection small(whole, 400, 400, box), large(part, 400, 400, box);
+    for (const Vector3d& p : points) {
+      const Eigen::Vector2d expected = 2 * (*small.to_pixel(p) - Eigen::Vector2d(200, 0));
+      CHECK((*large.to_pixel(p) - expected).norm() < 1e-9);
+      CHECK((small.towards_viewer(p) - large.towards_viewer(p)).norm() < 1e-12);
+    }
+  }
+}
+
 TEST_CASE("a side view shows both ends of the axis side by side") {
   for (const Vector3d& up : {Vector3d(0, 0, 1), Vector3d(0, 1, 0)}) {
     for (const Vector3d& axis :

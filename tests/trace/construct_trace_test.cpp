@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bit>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -140,6 +141,52 @@ TEST_CASE(
       summary_json(t);
     }
   }
+}
+
+TEST_CASE("patches name the vertices that their caps may cover") {
+  for (const Mesh& mesh : meshes()) {
+    CAPTURE(mesh.name);
+    const Built built = build(mesh);
+    const Trace& t = built.trace;
+    std::size_t named = 0;
+    for (const Event& e : t.events) {
+      const auto vertices = t.vertices_of(e);
+      if (vertices.empty()) continue;
+      ++named;
+      CHECK(vertices.size() == e.patch().interior);
+      CHECK(std::set(vertices.begin(), vertices.end()).size() == vertices.size());
+      for (const VertexId v : vertices) CHECK(v < built.rep.vertices().size());
+    }
+    CHECK(named > 0);
+    // Where one cap made one region, that covers vertices of the cap's patch alone.
+    for (const Event& e : t.events) {
+      if (e.kind != EventKind::region || t.events[e.cause].kind != EventKind::cap) continue;
+      const auto vertices = t.vertices_of(t.events[t.events[e.cause].cause]);
+      if (vertices.empty()) continue;
+      const std::set<VertexId> inside(vertices.begin(), vertices.end());
+      std::set<VertexId> kept;
+      for (const FaceId f : built.rep.lids(e.region()))
+        for (const VertexId v : built.rep.face(f)) kept.insert(v);
+      for (const FaceId f : built.rep.floor(e.region()))
+        for (const VertexId v : built.rep.face(f)) CHECK((kept.contains(v) || inside.contains(v)));
+    }
+  }
+  Trace other = rock().trace;
+  other.patch_vertices.back() = VertexId(other.patch_vertices.back() + 1);
+  const auto difference = first_divergence(rock().trace, other);
+  REQUIRE(difference);
+  CHECK(difference->what == "vertices");
+  CHECK_FALSE((rock().trace == other));
+  // Traces of before have none.
+  std::string old = trace_to_json(rock().trace);
+  CHECK(old.find("\"version\": 5") != std::string::npos);
+  Json json = Json::parse(old);
+  for (Json& e : json["traceEvents"])
+    if (e.contains("args")) e["args"].erase("vertices");
+  json["metadata"]["version"] = 3;
+  const Trace read = trace_from_json(json.dump(), "t.json");
+  CHECK(read.patch_vertices.empty());
+  CHECK(read.events.size() == rock().trace.events.size());
 }
 
 TEST_CASE("a body loaded with regions reports its layers") {

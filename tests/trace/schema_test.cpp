@@ -103,7 +103,7 @@ TEST_CASE("broken traces do not satisfy the schema") {
       {"no region", [&](Json& d) { refine(d)["args"].erase("region"); }},
       {"an unknown argument", [&](Json& d) { refine(d)["args"]["colour"] = 1; }},
       {"another format", [](Json& d) { d["metadata"]["format"] = "other"; }},
-      {"a newer version", [](Json& d) { d["metadata"]["version"] = 5; }},
+      {"a newer version", [](Json& d) { d["metadata"]["version"] = 6; }},
       {"a negative tolerance", [](Json& d) { d["metadata"]["request"]["tolerance"] = -1; }},
       {"a contact without simplex",
        [&](Json& d) { find(d, "contact", "X")["args"].erase("real simplex of A"); }},

@@ -278,7 +278,7 @@ TEST_CASE("invalid files are rejected with location and reason in one line") {
   names("{\"traceEvents\": [{\"ph\": 1}]}", "/traceEvents/0/ph");
   names("{\"traceEvents\": [{}]}", "/traceEvents/0/ph: expected a string, found nothing");
   names(std::string(100000, '['), "nested");
-  names(replaced(good, "\"version\": 3", "\"version\": 5"), "/metadata/version: written in format 5");
+  names(replaced(good, "\"version\": 3", "\"version\": 6"), "/metadata/version: written in format 6");
   names(replaced(good, "\"version\": 3", "\"version\": 0"), "/metadata/version");
   names(replaced(good, "\"version\": 3", "\"version\": \"1\""), "expected an integer");
   names(replaced(good, "lrbscope trace", "another trace"), "found another file format");

@@ -115,6 +115,8 @@ struct GrownPatch {
   VertexId vertex{};           ///< start vertex
   std::uint32_t faces = 0;     ///< number of triangles or segments
   std::uint32_t interior = 0;  ///< number of vertices all of whose faces belong to the patch
+  /// These vertices, until the callback returns; empty for a whole component, and where they are not known.
+  std::span<const VertexId> vertices = {};
 };
 
 /// A cap that was tried over the patch reported last.

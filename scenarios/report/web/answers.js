@@ -28,36 +28,6 @@ class Answers {
   }
 }
 
-/** Returns round points of a size in pixels, with a pale rim. */
-function roundPoints(positions, colour, size) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(positions), 3));
-  const points = new THREE.Points(
-    geometry,
-    new THREE.ShaderMaterial({
-      uniforms: { colour: { value: new THREE.Color(...colour) }, size: { value: size } },
-      vertexShader: `
-        uniform float size;
-        void main() {
-          gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-          gl_PointSize = size;
-        }`,
-      fragmentShader: `
-        uniform vec3 colour;
-        void main() {
-          float r = length(gl_PointCoord - 0.5);
-          if (r > 0.5) discard;
-          gl_FragColor = vec4(r > 0.36 ? vec3(1.0) : colour, 1.0);
-        }`,
-      transparent: true,
-      depthTest: false,
-      depthWrite: false,
-    }),
-  );
-  points.frustumCulled = false;
-  return points;
-}
-
 class AnswersView extends BodiesCanvas {
   constructor(json, body, answers) {
     super(json, [body]);

@@ -34,6 +34,18 @@ let seek = (key, value) => {
   if (frame >= 0) show(frame);
 };
 
+/** Makes a row of a table lead somewhere: by a click, or by Enter. */
+function linkRow(row, follow) {
+  row.className = "leads";
+  row.tabIndex = 0;
+  row.addEventListener("click", follow);
+  row.addEventListener("keydown", (e) => {
+    if (e.key !== "Enter") return;
+    e.preventDefault();
+    follow();
+  });
+}
+
 function startPlayer() {
   const image = byId("frame"), link = byId("frame-link"), scrub = byId("scrub"), play = byId("play");
   const images = data.frames.map((f) => { const i = new Image(); i.src = f.src; return i; }); // decoded ahead of use

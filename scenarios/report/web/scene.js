@@ -81,8 +81,13 @@ class TraceReader {
       if (slice.args["time step"] !== undefined) steps.push([slice.args["time step"], i]);
     }
     steps.sort((p, q) => p[1] - q[1]);
+    const patches = slices.filter((s) => s.name === "patch").sort((p, q) => p.args.event - q.args.event);
     return {
       ...out,
+      patches: {
+        counts: Uint32Array.from(patches, (s) => (s.args.vertices || []).length),
+        vertices: Uint32Array.from(patches.flatMap((s) => s.args.vertices || [])),
+      },
       count: slices.length,
       ids: null,
       outcomes: this.words,
@@ -104,7 +109,7 @@ class TraceReader {
       b: this.number(args, b.words),
       cause: orNone(args.cause),
       boundary: orNone(args["wrapper faces"]),
-      depthA: args["depth of A"] || 0,
+      depthA: args["depth of A"] || args["interior vertices"] || 0,
       depthB: args["depth of B"] || 0,
       outcome: this.word(args.meet || args.where || args.verdict || args.stage || args.step),
       work: this.part(slice, this.kinds[kind].name),
@@ -142,7 +147,7 @@ class TraceReader {
     const of = (phase, outcome) => this.parts.get(`${phase}: ${outcome}`) ?? NONE;
     switch (kind) {
       case "node pair":
-        return of(this.walk, args.step === "leaves" ? "boxes and planes of faces" : "boxes of nodes");
+        return of(this.walk, args.step === "leaves" ? (this.scene.engine ? "boxes of leaves" : "boxes and planes of faces") : "boxes of nodes");
       case "plane test":
         return of(this.walk, "boxes and planes of faces");
       case "face test":
@@ -188,7 +193,12 @@ function startScene() {
     return null;
   }
   leaveOut(events.passes ? ".of-query" : ".of-build");
-  if (events.engine) leaveOut(".of-wrappers"); // another engine has none
+  if (events.engine) {
+    leaveOut(".of-wrappers"); // another engine has none
+    for (const part of document.querySelectorAll(".of-regions")) part.hidden = true;
+    byId("scene").classList.add("of-engine");
+    document.querySelector(".row.head span:nth-child(6)").removeAttribute("title"); // levels, not shown
+  }
   byId("scene").classList.toggle("building", Boolean(events.passes));
   const selection = new Selection(events),
     wrappers = complete ? new Wrappers(bodies, events, scene.wrapper) : null;
@@ -203,6 +213,7 @@ function startScene() {
     form = new FilterForm(events, filter, table);
   const work = new WorkIcicle(scene.work, events, filter, form, selection);
   const why = new WhyPanel(new Explanations(scene.why, events.stepNumbers.slice()), events, selection);
+  const attempts = events.attempts ? new AttemptPanel(events.attempts, selection) : null;
   const view = openView(scene, selection, wrappers, why),
     controls = view ? new ViewControls(view, selection) : null;
   byId("thinned").textContent = scene.thinned;
@@ -227,6 +238,7 @@ function startScene() {
     timeline.measure();
     table.refilter();
     selection.goTo(events.at(shownId));
+    if (attempts) selection.pick(selection.picked);
   });
   selection.listeners.push((what) => {
     if (what === "event") shownId = events.id(selection.event);
@@ -240,7 +252,7 @@ function startScene() {
   byId("picked-events").onclick = listPicked;
   byId("help-open").onclick = toggleHelp;
   followPage(events, selection);
-  listenToKeys({ ...keysOf(timeline, table, selection, controls), ...keysOfTabs(tabs, listPicked) });
+  listenToKeys({ ...keysOf(timeline, table, selection, controls), ...keysOfTabs(tabs, listPicked), ...(attempts ? keysOfAttempts(attempts) : {}) });
   if (controls && events.passes) {
     controls.colourBy("region");
     view.opened = { ...view.now };
@@ -250,7 +262,7 @@ function startScene() {
   const address = new PageAddress({ events, selection, view, controls, tabs });
   if (location.hash.length > 1) address.read();
   if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events);
-  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, view, controls, loader, strip, tabs, address };
+  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, attempts, view, controls, loader, strip, tabs, address };
 }
 
 /** Removes the elements about queries if a construction is shown, and vice versa. */
@@ -304,6 +316,14 @@ function toggleHelp() {
   const help = byId("help");
   if (help.open) help.close();
   else help.showModal();
+}
+
+function keysOfAttempts(panel) {
+  return {
+    p: () => panel.attempts.pickPlace(panel.selection.event, panel.selection),
+    h: (shift) => panel.step(shift ? -1 : 1),
+    b: () => panel.flip(),
+  };
 }
 
 function keysOfTabs(tabs, listPicked) {

@@ -310,6 +310,40 @@ function thickMaterial(colour, width, size, opacity = 1) {
   });
 }
 
+/** Returns round points of a size in pixels with a rim, white or of another colour, seen through everything. */
+function roundPoints(positions, colour, size, rim = WHITE) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(positions), 3));
+  const points = new THREE.Points(
+    geometry,
+    new THREE.ShaderMaterial({
+      uniforms: {
+        colour: { value: new THREE.Color(...colour) },
+        rim: { value: new THREE.Color(...rim) },
+        size: { value: size },
+      },
+      vertexShader: `
+        uniform float size;
+        void main() {
+          gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+          gl_PointSize = size;
+        }`,
+      fragmentShader: `
+        uniform vec3 colour, rim;
+        void main() {
+          float r = length(gl_PointCoord - 0.5);
+          if (r > 0.5) discard;
+          gl_FragColor = vec4(r > 0.36 ? rim : colour, 1.0);
+        }`,
+      transparent: true,
+      depthTest: false,
+      depthWrite: false,
+    }),
+  );
+  points.frustumCulled = false;
+  return points;
+}
+
 /** Returns the twelve edges of boxes, six numbers each. `places`: centre and three half axes of each box. */
 function boxEdges(places, boxes) {
   const out = [],

@@ -158,7 +158,6 @@ class ViewControls {
   constructor(view, selection) {
     Object.assign(this, { view, selection });
     this.listDepths();
-    for (const id of ["lids", "isolate"]) byId(id).hidden = Boolean(view.events.engine); // another engine has no wrappers
     const change = (id, action) => byId(id).addEventListener("input", () => action(byId(id)));
     change("colour-by", (e) => this.colourBy(e.value));
     change("colour-per", (e) => this.change({ per: e.value }));

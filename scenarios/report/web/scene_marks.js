@@ -46,6 +46,20 @@ class Marks {
     this.shown.set(name, { key, parts });
   }
 
+  /** Shows a vertex, {side, vertex}, as a disc of a colour; null: none. */
+  setPoint(name, at, colour) {
+    const key = at ? `${at.side} ${at.vertex}` : "",
+      before = this.shown.get(name);
+    if (before ? before.key === key : !key) return;
+    this.clear(name);
+    if (!at) return;
+    const view = this.views[at.side],
+      disc = roundPoints(view.point(at.vertex), colour, 14 * Math.min(2, window.devicePixelRatio || 1), mixed(colour, this.colours.ink, 0.75));
+    disc.renderOrder = 8;
+    view.group.add(disc);
+    this.shown.set(name, { key, parts: [{ group: view.group, object: disc }] });
+  }
+
   /** As in BodyView, a little wider. */
   widen(pixel) {
     for (const { parts } of this.shown.values())
@@ -339,7 +353,7 @@ class Legend {
         colour = colours.bodies[b.side];
       items.push([
         css(key ? mixed(colour, WHITE, colours.shares.noValue) : colour),
-        `${name}, real faces${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
+        `${name}${this.view.events?.engine ? "" : ", real faces"}${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
         key ? css(colours.edge(b.side)) : "",
       ]);
       if (!key && now.by === "kind" && b.regionCount && !this.view.events?.engine)
@@ -347,7 +361,11 @@ class Legend {
     });
     if (now.by === "region")
       items.push([css(colours.categories[0]), `pseudo faces, a colour for each region${passes ? "; pale: of earlier passes" : ""}`, ""]);
-    if (this.view.events.passes) items.push([css(colours.refining), "lids that are new in this pass", ""]);
+    if (this.view.events.passes)
+      items.push(
+        [css(colours.refining), "lids that are new in this pass", ""],
+        [css(colours.underTest), "patch of this attempt", ""],
+      );
     else
       items.push(
         [css(colours.contact), "intersecting faces", ""],

@@ -146,7 +146,7 @@ function printView(view) {
 // ---- the sorts of work, as the picture at the top and the icicle colour them
 const WORK_SORTS = [
   { name: "boxes", of: /^boxes( of nodes)?$/, colour: "var(--work-boxes)" },
-  { name: "boxes and planes of faces", of: /planes/, colour: "var(--work-planes)" },
+  { name: "boxes and planes of faces", of: /planes|leaves/, colour: "var(--work-planes)" },
   { name: "face tests", of: /^face tests/, colour: "var(--work-tests)" },
   { name: "refinements", of: /^wrappers refined/, colour: "var(--work-refined)" },
   { name: "others", of: /./, colour: "var(--work-others)" },
@@ -305,7 +305,7 @@ class PageAddress {
       { picked, chosen } = selection;
     if (tabs.shown !== tabs.names[0]) parts.push(`tab=${encodeURIComponent(tabs.shown)}`);
     if (picked)
-      parts.push(`pick=${SIDES[picked.side]}.${picked.face !== NONE ? `face.${picked.face}` : `region.${picked.region}`}`);
+      parts.push(`pick=${SIDES[picked.side]}.${["vertex", "face", "region"].filter((sort) => picked[sort] !== NONE).map((sort) => `${sort}.${picked[sort]}`)[0]}`);
     if (chosen.every((s) => s !== NONE)) parts.push(`pair=${chosen.join(",")}`);
     if (view && !view.camera.fitted) {
       const { projection, eye, target } = view.camera.json();
@@ -338,7 +338,7 @@ class PageAddress {
       event = /^e(\d+)$/.exec(first);
     if (event) selection.goTo(events.at(Number(event[1])));
     if (value.tab) tabs.show(value.tab);
-    const pick = /^([AB])\.(face|region)\.(\d+)$/.exec(value.pick || "");
+    const pick = /^([AB])\.(face|region|vertex)\.(\d+)$/.exec(value.pick || "");
     if (pick) this.pick(SIDES.indexOf(pick[1]), pick[2], Number(pick[3]));
     const pair = (value.pair || "").split(",").map(Number);
     if (pair.length === 2 && this.exist(pair)) selection.choose(pair);
@@ -361,6 +361,7 @@ class PageAddress {
     if (!body || !body.complete) return;
     if (sort === "face" && number < body.faceCount) this.selection.pickFace(side, number);
     if (sort === "region" && number < body.regionCount) this.selection.pickRegion(side, number);
+    if (sort === "vertex" && this.events.attempts && number < body.vertices.length / 3) this.selection.pickVertex(side, number);
   }
 
   show(words, controls) {

@@ -65,7 +65,8 @@ class Selection {
   constructor(events) {
     this.events = events;
     this.event = 0;
-    // {side, face, region}: face NONE: a region as a whole; region NONE: a face that no region hides.
+    // {side, face, region, vertex}: face NONE: a region as a whole; region NONE: a face that no region hides;
+    // vertex: of a construction, with neither; otherwise NONE.
     this.picked = null;
     this.chosen = [NONE, NONE]; // simplices of A and B that were picked in succession
     this.listeners = [];
@@ -97,6 +98,9 @@ class Selection {
   pickRegion(side, region) {
     this.pick({ side, face: NONE, region });
   }
+  pickVertex(side, vertex) {
+    this.pick({ side, face: NONE, region: NONE, vertex });
+  }
   /** Picks a simplex of A and one of B. */
   choose(simplices) {
     this.chosen = simplices.slice();
@@ -107,7 +111,7 @@ class Selection {
     this.pickOnly(picked);
   }
   pickOnly(picked) {
-    this.picked = picked;
+    this.picked = picked && { vertex: NONE, ...picked };
     this.tell("pick");
   }
 }
@@ -125,6 +129,7 @@ class EventFilter {
     this.leastLevel = 0;
     this.mostLevel = Infinity;
     this.work = null; // {name, phase, parts: numbers of parts of the work}; null: any
+    this.place = null; // {name, events: indices}, of a construction; null: any
     this.pair = [NONE, NONE]; // faces of A and B; NONE: any
   }
 
@@ -160,6 +165,7 @@ class EventFilter {
       { side, region, leastLevel, mostLevel, pair } = this;
     if (this.kind >= 0) out.push((i) => events.kind[i] === this.kind);
     if (this.work) out.push((i) => this.work.parts.has(events.work[i]));
+    if (this.place) out.push((i) => this.place.events.has(i));
     if (side >= 0) out.push((i) => events.concerns(i, side));
     if (region !== NONE) out.push((i) => this.concernsRegion(events, i));
     if (leastLevel > 0 || mostLevel < Infinity)
@@ -192,9 +198,15 @@ function concernsRegion(events, i, side, region) {
   });
 }
 
-/** Returns true if an event concerns the selected face or region. */
+/** Returns the name of a selected vertex, face or region. */
+const placeText = (body, { vertex, face, region }) =>
+  vertex !== NONE ? `vertex ${digits(vertex)}` : face !== NONE ? body.faceText(face) : `region ${digits(region)}`;
+
+/** Returns true if an event concerns the selected vertex, face or region; of a construction, if it is of an attempt
+    there. */
 function concernsPicked(events, i, picked) {
   if (!picked) return false;
+  if (events.attempts) return events.attempts.eventsAt(picked).has(i);
   if (picked.face === NONE) return concernsRegion(events, i, picked.side, picked.region);
   return events.faces(i).some((f) => f.side === picked.side && f.face === picked.face);
 }
@@ -219,7 +231,9 @@ class EventTable {
     });
     this.body.addEventListener("click", (e) => {
       const row = e.target.closest("[data-event]");
-      if (row) this.selection.goTo(Number(row.dataset.event));
+      if (!row) return;
+      this.selection.goTo(Number(row.dataset.event));
+      if (events.attempts) events.attempts.pickPlace(this.selection.event, selection);
     });
     selection.listeners.push((what) => {
       if (what === "event") this.follow();
@@ -363,14 +377,15 @@ class FilterForm {
     this.filter.region = /^\d+$/.test(value("region")) ? Number(value("region")) : NONE;
     valid("level", this.filter.setLevel(value("level")));
     valid("pair", this.filter.setPair(value("pair")));
-    byId("filter-work").hidden = !this.filter.work;
-    byId("filter-work").textContent = this.filter.work ? `part: ${this.filter.work.name}` : "";
+    const { work, place } = this.filter;
+    byId("filter-work").hidden = !work && !place;
+    byId("filter-work").textContent = work ? `part: ${work.name}` : place ? `attempts at ${place.name}` : "";
     this.table.refilter();
     for (const listener of this.listeners) listener();
   }
 
   clear() {
-    this.filter.work = null;
+    this.filter.work = this.filter.place = null;
     byId("filter-kind").value = byId("filter-side").value = "-1";
     for (const field of ["region", "level", "pair"]) byId(`filter-${field}`).value = "";
     this.read();
@@ -386,7 +401,9 @@ class FilterForm {
   /** Lists the events of a face, or of a region. */
   showPicked(picked) {
     this.clear();
-    if (picked.face !== NONE)
+    const { attempts } = this.events;
+    if (attempts) this.filter.place = { name: placeText(attempts.body, picked), events: attempts.eventsAt(picked) };
+    else if (picked.face !== NONE)
       byId("filter-pair").value = picked.side === 0 ? `${picked.face},` : `,${picked.face}`;
     else {
       byId("filter-side").value = String(picked.side);
@@ -427,7 +444,9 @@ class Panel {
       ["what", eventText(events, i)],
     ];
     if (outcomeText(events, i)) rows.push(["result", outcomeText(events, i)]);
-    if (level >= 0) rows.push(["level", level, "number of regions between it and the outside"]);
+    const attempt = events.attempts && events.attempts.ofEvent.get(i);
+    if (attempt && i === attempt.cap) rows.push([attempt.refused ? "refused" : "accepted", events.attempts.reason(attempt)]);
+    if (level >= 0 && !events.engine) rows.push(["level", level, "number of regions between it and the outside"]);
     if (cause >= 0)
       rows.push([
         "cause",
@@ -458,6 +477,10 @@ class Panel {
           ),
         ),
     ];
+    if (attempt && this.bodies[0].complete)
+      parts.push(
+        textButton(`vertex ${digits(attempt.vertex)}`, () => this.selection.pickVertex(0, attempt.vertex), "Start vertex of the patch (P)"),
+      );
     byId("event-parts").replaceChildren(...parts);
   }
 
@@ -479,11 +502,11 @@ class Panel {
     document.querySelector(".panel").scrollTop = 0;
     const body = this.bodies[picked.side],
       hasFace = picked.face !== NONE;
-    const name = hasFace ? body.faceText(picked.face) : `region ${digits(picked.region)}`;
+    const name = placeText(body, picked);
     byId("picked-title").textContent = name[0].toUpperCase() + name.slice(1) + this.name(picked.side);
     fillList(byId("picked-facts"), [
-      ...(hasFace ? this.faceRows(body, picked.face) : []),
-      ...this.regionRows(body, picked.region),
+      ...(hasFace && !this.events.engine ? this.faceRows(body, picked.face) : []),
+      ...(picked.vertex !== NONE ? this.vertexRows(body, picked.vertex) : this.regionRows(body, picked.region)),
       ...(this.events.passes ? [] : this.countRows(body, picked)),
     ]);
     byId("picked-isolate").disabled = picked.region === NONE;
@@ -498,7 +521,23 @@ class Panel {
     ];
   }
 
+  /** Of a construction. */
+  vertexRows(body, vertex) {
+    const region = this.events.attempts.coverOf(vertex),
+      made = this.events.attempts.around(vertex).every((f) => !body.isReal(f));
+    return [
+      ["sort", made ? "of pseudo faces alone" : "the body's own", "vertices of pseudo faces are made by caps"],
+      [
+        "covered by",
+        region === NONE
+          ? "no region: it is on the outermost wrapper"
+          : textButton(`region ${digits(region)}`, () => this.selection.pickRegion(body.side, region)),
+      ],
+    ];
+  }
+
   regionRows(body, region) {
+    if (this.events.engine) return [];
     if (region === NONE) return [["region", "none hides it"]];
     const parent = body.parent[region],
       side = body.side;

@@ -37,18 +37,6 @@ function oncePerFrame(action) {
   return soon;
 }
 
-/** Makes a row of a table lead somewhere: by a click, or by Enter. */
-function linkRow(row, follow) {
-  row.className = "leads";
-  row.tabIndex = 0;
-  row.addEventListener("click", follow);
-  row.addEventListener("keydown", (e) => {
-    if (e.key !== "Enter") return;
-    e.preventDefault();
-    follow();
-  });
-}
-
 /** Returns the largest index whose value is at most `value`, in an ascending array; -1: none. */
 function lastAtMost(ascending, value) {
   let low = 0,
@@ -186,6 +174,8 @@ class Events {
     /** Passes of a construction, which begins with the body itself: [{first, last, words}], ids of events;
         else null. */
     this.passes = json.passes;
+    /** What the builder tried where; null for other runs. */
+    this.attempts = json.attempts ? new Attempts(this, json.attempts) : null;
   }
 
   /** Replaces the events by others of the same run: all of them. */
@@ -193,6 +183,7 @@ class Events {
     const wrong = new Map([...this.stepNumbers].map((number, step) => [number, this.wrong[step]]));
     Object.assign(this, columns);
     this.wrong = [...this.stepNumbers].map((number) => wrong.get(number) || []);
+    if (this.attempts) this.attempts.take(columns.patches);
   }
 
   id(i) {

@@ -228,14 +228,32 @@ class Picker {
     this.view = view;
     const { canvas, selection } = view;
     onClick(canvas, (e) => {
-      const hit = this.under(e.clientX, e.clientY, e.altKey);
-      if (hit) selection.pickFace(hit.side, hit.face, hit.simplex);
+      const hit = this.under(e.clientX, e.clientY, e.altKey),
+        vertex = hit && selection.events.attempts ? this.vertexNear(hit, e.clientX, e.clientY) : NONE;
+      if (vertex !== NONE) selection.pickVertex(hit.side, vertex);
+      else if (hit) selection.pickFace(hit.side, hit.face, hit.simplex);
       else selection.pick(null);
     });
     canvas.addEventListener("dblclick", (e) => {
       if (this.under(e.clientX, e.clientY, e.altKey)) view.frameSelection();
       else view.frameAll();
     });
+  }
+
+  /** Returns the corner of a face next to a point of the screen, at most a third of an edge away; NONE: none. */
+  vertexNear({ side, face }, x, y) {
+    const { view } = this,
+      body = view.bodies[side],
+      box = view.canvas.getBoundingClientRect(),
+      most = 9; // pixels
+    const corners = [...body.face(face)].map((vertex) => {
+      const at = view.views[side].toWorld(view.views[side].point(vertex)).project(view.camera.camera);
+      return { vertex, x: box.left + ((1 + at.x) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
+    });
+    const edges = corners.map((p, i) => Math.hypot(p.x - corners.at(i - 1).x, p.y - corners.at(i - 1).y));
+    const reach = Math.min(most, Math.min(...edges) / 3);
+    const near = corners.find((p) => Math.hypot(p.x - x, p.y - y) <= reach);
+    return near ? near.vertex : NONE;
   }
 
   /** Returns the face under a point of the screen, {side, face, simplex}; `through`: lids are ignored. */
@@ -537,6 +555,7 @@ class SceneView extends BodiesCanvas {
         through: !events.passes,
       },
     );
+    if (events.attempts) this.markAttempt();
     const wrong = events.wrong[events.step(i)];
     this.marks.set("wrong", wrong.length ? events.step(i) : -1, this.facesOfPairs(wrong), {
       colour: colours.wrong,
@@ -547,12 +566,37 @@ class SceneView extends BodiesCanvas {
     const nodes = events.about(i, "node");
     this.marks.setBoxes("nodes", nodes.length ? i : -1, nodes, colours.underTest);
     const p = this.selection.picked;
-    this.marks.set("picked", p ? `${p.side} ${p.face} ${p.region}` : "", this.pickedFaces(), {
+    if (events.attempts) this.marks.setPoint("vertex", p && p.vertex !== NONE ? { side: p.side, vertex: p.vertex } : null, colours.selected);
+    const picked = this.pickedFaces();
+    this.marks.set("picked", p ? `${p.side} ${p.face} ${p.region} ${events.attempts ? picked.map((f) => f.face) : ""}` : "", picked, {
       colour: colours.selected,
       opacity: 0.65,
       width: 2.5,
       over: p && p.face !== NONE,
     });
+  }
+
+  /** Shows the attempt of the event: its patch on the front with the start vertex, or the lids that cover it. */
+  markAttempt() {
+    const { events, colours } = this,
+      i = this.selection.event,
+      attempt = events.attempts.ofEvent.get(i),
+      covers = attempt && events.kind[i] === events.REGION,
+      faces = this.attemptFaces(attempt);
+    this.marks.set("attempt", attempt ? `${i} ${faces.length}` : "", faces, {
+      colour: covers ? colours.refining : colours.underTest,
+      opacity: 0.45,
+      width: 3,
+      over: true,
+    });
+    this.marks.setPoint("start", attempt && !covers && !attempt.whole ? { side: 0, vertex: attempt.vertex } : null, colours.underTest);
+  }
+  /** Returns the faces that show an attempt after the current event. */
+  attemptFaces(attempt) {
+    const { events, bodies, wrappers } = this;
+    if (!attempt) return [];
+    if (events.kind[this.selection.event] !== events.REGION) return events.attempts.facesOf(attempt, wrappers);
+    return attempt.regions.flatMap(({ region }) => [...bodies[0].lids(region)].map((face) => ({ side: 0, face })));
   }
 
   /** Returns the two faces that were chosen, or else those of the event: [{side, face}]. */
@@ -582,7 +626,12 @@ class SceneView extends BodiesCanvas {
 
   pickedFaces() {
     const p = this.selection.picked;
-    if (!p || this.now.isolate) return [];
+    if (!p || this.now.isolate || p.vertex !== NONE) return [];
+    // In a construction: its faces on the front now.
+    if (this.events.attempts && p.face === NONE && !this.wrappers.included(p.side, p.region, false))
+      return this.events.attempts.ofEvent.has(this.selection.event)
+        ? []
+        : [...this.bodies[p.side].floor(p.region)].map((face) => ({ side: p.side, face })).filter((f) => this.wrappers.onBoundary(f.side, f.face));
     return p.face !== NONE
       ? [{ side: p.side, face: p.face }]
       : [...this.bodies[p.side].lids(p.region)].map((face) => ({ side: p.side, face }));
@@ -607,13 +656,19 @@ class SceneView extends BodiesCanvas {
   frameSelection() {
     const { picked, event } = this.selection,
       compared = this.comparedFaces();
+    const { attempts } = this.events,
+      tried = attempts ? this.attemptFaces(attempts.ofEvent.get(event)) : [];
     const faces = picked
       ? picked.face !== NONE
         ? [picked]
-        : this.collector(picked)
+        : picked.vertex !== NONE
+          ? [...attempts.around(picked.vertex).map((face) => ({ side: picked.side, face })), ...tried]
+          : this.collector(picked)
       : compared.length
         ? compared
-        : this.events.regions(event).flatMap((r) => this.collector(r));
+        : tried.length
+          ? tried
+          : this.events.regions(event).flatMap((r) => this.collector(r));
     this.frame(faces);
   }
 
@@ -665,10 +720,26 @@ class Together {
     if (!this.listening) parent.postMessage({ lrbscope: what }, "*");
   }
 
-  hear({ camera, step }) {
+  hear({ camera, step, region }) {
+    if (region !== undefined) return this.showRegion(region);
     this.listening = true;
     if (camera) this.view.camera.set(camera);
     if (step !== undefined && step !== this.step) seek("step", step);
     this.listening = false;
+  }
+
+  /** Selects a region, and fills the view with it, just after it was made or before it is refined; null: none is
+      selected. */
+  showRegion(region) {
+    const { events, selection, view } = this;
+    if (region === null) return selection.pick(null);
+    if (!view.bodies[0].complete || region >= view.bodies[0].regionCount) return;
+    for (let i = 0; i < events.count; i++)
+      if (events.kind[i] === (events.passes ? events.REGION : events.REFINE) && events.a[i] === region) {
+        selection.goTo(events.passes ? i : Math.max(0, i - 1));
+        break;
+      }
+    selection.pickRegion(0, region);
+    view.frameSelection();
   }
 }

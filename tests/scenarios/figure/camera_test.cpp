@@ -1,10 +1,15 @@
 /// Cameras: chosen, given, and kept in traces.
 
+#include <cmath>
+
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "render/pictures/panel.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "scenarios/frames/animation.hpp"
 #include "scenarios/frames/framing.hpp"
+#include "scenarios/io/poses.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tests/support/pixels.hpp"
 #include <lrbscope/error.hpp>
@@ -43,6 +48,28 @@ TEST_CASE("a long body is viewed from its long side, whatever the up direction")
   const Vector3d y_up = run::broadside(along_x, {0, 1, 0});
   CHECK(std::abs(y_up.z()) > 2 * std::abs(y_up.x()));
   CHECK(y_up.y() > 0);
+}
+
+TEST_CASE("a thin upright body is drawn from its broad side, unless a view is given") {
+  const auto view = [](const Vector3d& size, const render::Look& look = {}) {
+    Mesh mesh = shapes::box();
+    for (Vector3d& v : mesh.vertices) v = v.cwiseProduct(size);
+    const LrbRep rep = LrbRep::without_regions(mesh, true, false);
+    trace::Trace trace;
+    trace.steps.emplace_back();
+    run::RecordedRun recorded;
+    recorded.reps = {&rep};
+    recorded.trace = &trace;
+    return run::view_of_thin_body(recorded, look);
+  };
+  const auto plate = view({0.1, 2, 2}), rod = view({0.1, 2, 0.1});
+  REQUIRE((plate && rod));
+  for (const auto& from : {*plate, *rod}) CHECK(std::abs(from.x()) > 2 * std::abs(from.y()));
+  CHECK_FALSE(view({1, 2, 2}));
+  CHECK_FALSE(view({2, 2, 0.1}));  // lies flat: seen from above by default
+  render::Look given;
+  given.views.emplace_back();
+  CHECK_FALSE(view({0.1, 2, 2}, given));
 }
 
 TEST_CASE("render draws a trace as run does: view, projection, size") {
@@ -156,6 +183,39 @@ TEST_CASE("--animate to a PNG: all frames in one file, without ffmpeg") {
   render::write_png(render::Image(5, 5), folder / "small.png");
   CHECK_THROWS_AS(run::animated_png({frames[0], test::slurp(folder / "small.png")}), InputError);
   CHECK_THROWS_AS(run::animated_png({}), InputError);
+}
+
+TEST_CASE("collide looks across the approach, with the axis up on which A is most stable") {
+  const test::Folder folder;
+  // A plate that lies across y, and a box.
+  const auto box = [](double x, double y, double z) {
+    std::string obj;
+    for (int i = 0; i < 8; ++i)
+      obj += "v " + std::to_string(i & 1 ? x : 0) + " " + std::to_string(i & 2 ? y : 0) + " " +
+             std::to_string(i & 4 ? z : 0) + "\n";
+    return obj + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  };
+  // Wide at y = 0, narrow at the other ends.
+  folder.write("wedge.obj",
+               "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0.05 1 0.02\nf 1 2 3 4\nf 5 2 1\nf 5 3 2\nf 5 4 3\n"
+               "f 5 1 4\n");
+  folder.write("box.obj", box(0.5, 0.6, 0.7));
+  for (const std::string approach : {"1,0.3,0.2", "0,1,0", "0.2,-1,0.6"}) {
+    CAPTURE(approach);
+    const test::Outcome o = test::run(folder, {"collide", "wedge.obj", "box.obj", "--approach", approach,
+                                               "--frames", "step", "--most", "1", "-o", "run"});
+    CAPTURE(o.err);
+    REQUIRE(o.code == 0);
+    CHECK(o.err.find("up is y, on which wedge.obj is most stable") != std::string::npos);
+    const auto trace = nlohmann::json::parse(test::slurp(folder / "run/trace.json"));
+    const auto view = spec::read_pictures(trace["metadata"]["pictures"].dump(), "x").views.at(0);
+    CHECK(view.up == Vector3d(0, 1, 0));
+    const Vector3d from = view.from.normalized(), along = io::parse_vector(approach, "").normalized();
+    CHECK(std::abs(from.dot(along)) < (std::abs(along.y()) > 0.97 ? 0.25 : 0.02));
+    CHECK(from.y() > 0.1);
+  }
+  test::succeed(folder,
+                {"collide", "wedge.obj", "box.obj", "--frames", "none", "--from", "0,1,0", "-o", "run"});
 }
 
 TEST_CASE("collide stores its chosen view in the trace") {

@@ -1,10 +1,14 @@
 #include "scenarios/figure/figure.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <doctest/doctest.h>
 
+#include "render/occlusion.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "scenarios/figure/callouts.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -345,6 +349,140 @@ TEST_CASE("--up auto: the axis on which the body is most stable, as a note") {
   test::check_rejected(folder, {"inspect", "table.obj", "--render", "--up", "auto", "-o", "no.png"});
 }
 
+TEST_CASE("callouts and insets are read, and wrong ones rejected with their option") {
+  const Callout callout = parse_callout("c:face:b12=a: tooth = sharp");
+  CHECK(callout.panel == "c");
+  CHECK(callout.target.kind == Target::Kind::face);
+  CHECK(callout.target.body == 1);
+  CHECK(callout.target.number == 12);
+  CHECK(callout.text == "a: tooth = sharp");
+  CHECK(parse_callout("region:3").panel.empty());
+  CHECK(name_of(parse_callout("region:a3").target, 2) == "region 3 of A");
+  const Inset inset = parse_inset("b:region:7:2.5");
+  CHECK(inset.target.kind == Target::Kind::region);
+  CHECK(inset.magnification == 2.5);
+  CHECK(parse_inset("a:contact").magnification == 0);
+  for (const char* bad :
+       {"", "face", "face:", "face:c3", "face:3:4", "edge:3", "3:face:3", "face:3=", "contact", "face:-1"})
+    CHECK_THROWS_AS(parse_callout(bad), InputError);
+  for (const char* bad :
+       {"", "face:3", "a", "a:face", "a:face:x", "a:face:3:0", "a:face:3:4:5", "a:contact:b", "A:face:3"})
+    CHECK_THROWS_AS(parse_inset(bad), InputError);
+}
+
+TEST_CASE("the outline of a region: closed chains of the edges that only one lid has") {
+  for (const char* name : {"figure2_mesh", "figure1"}) {
+    const Shipped s(name);
+    const LrbRep& rep = *s.run.reps[0];
+    for (RegionId r = 0; r < rep.region_count(); ++r) {
+      std::map<std::pair<VertexId, VertexId>, int> lids_at;
+      for (const FaceId f : rep.dim() == 3 ? rep.lids(r) : rep.collector(r)) {
+        const std::span<const VertexId> corners = rep.face(f);
+        for (std::size_t i = 0; i < (rep.dim() == 2 ? 1 : corners.size()); ++i)
+          ++lids_at[std::minmax({corners[i], corners[(i + 1) % corners.size()]})];
+      }
+      const auto border =
+          std::count_if(lids_at.begin(), lids_at.end(), [](const auto& edge) { return edge.second == 1; });
+      std::ptrdiff_t found = 0;
+      for (const std::vector<Vector3d>& chain : outlines({Target::Kind::region, 0, r}, rep, {})) {
+        CHECK(chain.front() == chain.back());
+        found += static_cast<std::ptrdiff_t>(chain.size()) - 1;
+      }
+      CHECK(found == border);
+    }
+  }
+}
+
+TEST_CASE("texts of callouts are inside their panel, beside its content, and apart") {
+  const AlignedBox2d box(Vector2d(10, 20), Vector2d(110, 120));
+  render::Image content(100, 100, render::kTransparent);
+  for (int y = 30; y < 70; ++y)
+    for (int x = 30; x < 70; ++x) content.at(x, y) = render::kBlack;
+  const std::vector<Vector2d> anchors = {{50, 60}, {52, 60}, {70, 80}}, sizes(3, Vector2d(25, 8));
+  const std::vector<CalloutPlace> places = place_callouts(box, content, anchors, sizes);
+  const AlignedBox2d centre(Vector2d(40, 50), Vector2d(80, 90));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const AlignedBox2d text(places[i].text - sizes[i] / 2, places[i].text + sizes[i] / 2);
+    CHECK(box.contains(text));
+    CHECK(centre.intersection(text).isEmpty());
+    CHECK(text.exteriorDistance(places[i].leader) < 1e-9);
+    for (std::size_t k = 0; k < i; ++k)
+      CHECK((places[i].text - places[k].text).cwiseAbs().cwiseQuotient(sizes[i]).maxCoeff() >= 1);
+  }
+}
+
+TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in the panel as well") {
+  const Shipped s("stick_through_wall");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  spec.choice.panels = 2;
+  const double height = lay_out({squares(1)}, {}, {}, "", at_width(200)).height;
+  Block with_inset = squares(1);
+  with_inset.insets = {2};
+  const FigureLayout layout = lay_out({with_inset}, {}, {}, "", at_width(200));
+  REQUIRE(layout.blocks[0].panels[0].insets.size() == 2);
+  for (const AlignedBox2d& inset : layout.blocks[0].panels[0].insets) {
+    CHECK(inset.min().y() > height);
+    CHECK(inset.max().y() <= layout.height);
+    CHECK(inset.sizes().x() == doctest::Approx(inset.sizes().y()));
+  }
+  const Figure plain = draw_figure(s.run, {}, spec, run::kSilent);
+  spec.insets = {parse_inset("b:contact:3"), parse_inset("a:region:b0")};
+  spec.callouts = {parse_callout("face:b2"), parse_callout("a:region:b0=end")};
+  const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
+  CHECK(svg.notes.empty());
+  CHECK(count(svg.bytes, "<clipPath") == count(plain.bytes, "<clipPath") + 2);
+  CHECK(count(svg.bytes, "aria-label=\"face 2 of B\"") == 2);
+  CHECK(count(svg.bytes, "aria-label=\"end\"") == 1);
+  CHECK(count(svg.caption, " (inset: contact, 3 times as large)") == 1);
+  CHECK(count(svg.caption, " (inset: region 0 of B, ") == 1);
+  spec.vector_faces = 10;
+  spec.dpi = 100;
+  CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).bytes, "<image") == 4);
+  const auto rejected = [&](const char* option, const char* inset) {
+    spec.insets = {parse_inset(inset)};
+    CHECK_THROWS_WITH_AS(draw_figure(s.run, {}, spec, run::kSilent), option, InputError);
+  };
+  rejected("--inset c:contact: expected a panel of the figure, which has a to b", "c:contact");
+  rejected("--inset a:contact: expected a panel with a contact, found none in it", "a:contact");
+  spec.insets.clear();
+  spec.callouts = {
+      parse_callout("face:b2=a text that is much wider than a panel of half the width of the figure")};
+  CHECK_THROWS_AS(draw_figure(s.run, {}, spec, run::kSilent), InputError);
+}
+
+TEST_CASE("--occlusion darkens faces in a gap, and leaves those of a convex body") {
+  const auto plates = [](double gap) {
+    render::DrawList list;
+    for (const double z : {0.0, gap}) {
+      const Mesh box = shapes::box({0, 0, z}, {1, 1, z + 0.1});
+      for (FaceId f = 0; f < box.face_count(); ++f) {
+        std::vector<Vector3d> corners;
+        for (const VertexId v : box.face(f)) corners.push_back(box.vertices[v]);
+        render::DrawTriangle like;
+        like.colour = {200, 100, 50, 255};
+        list.add_polygon(corners, like);
+      }
+    }
+    return list;
+  };
+  render::Rasterizer rasterizer;
+  render::DrawList list = plates(0.2);
+  render::add_ambient_occlusion(list, rasterizer);
+  int dark = 0;
+  for (const render::DrawTriangle& t : list.triangles) {
+    const double z = (t.x[0] + t.x[1] + t.x[2]).z() / 3;
+    const bool in_gap = t.x[0].z() == t.x[1].z() && t.x[1].z() == t.x[2].z() && z > 0.05 && z < 0.25;
+    if (in_gap) CHECK(t.colour.r < 120);
+    if (in_gap) ++dark;
+    if (z < 1e-9 || z > 0.3 - 1e-9) CHECK(t.colour == render::Rgba{200, 100, 50, 255});
+  }
+  CHECK(dark == 4);
+  const test::Folder folder;
+  test::check_rejected(
+      folder, {"-q", "figure", "collision", "--occlusion", "--colour-by", "face_tests", "-o", "no.pdf"});
+}
+
 TEST_CASE("two bodies: one view unless more are requested") {
   const test::Folder folder;
   const auto panels = [&](const std::vector<std::string>& more) {
@@ -390,6 +528,11 @@ TEST_CASE("lrbscope figure: files, and errors before it writes anything") {
       {"figure", "figure2", "-o", "fig.pdf", "--steps", "3"},
       {"figure", "figure2", "-o", "fig.pdf", "--colour-by", "box_tests"},
       {"figure", "cube.obj", "-o", "fig.pdf", "--from", "0,0,1"},
+      {"figure", "cube.obj", "-o", "fig.pdf", "--callout", "face:12"},
+      {"figure", "cube.obj", "-o", "fig.pdf", "--callout", "face:b0"},
+      {"figure", "cube.obj", "-o", "fig.pdf", "--inset", "a:contact"},
+      {"figure", "figure2", "-o", "fig.pdf", "--inset", "a:region:9999"},
+      {"figure", "figure2", "-o", "fig.pdf", "--callout", "z:face:0"},
       {"figure", "no such scenario", "-o", "fig.pdf"},
       {"figure", ".", "-o", "fig.pdf"},
       {"figure", "missing.obj", "-o", "fig.pdf"},

@@ -577,6 +577,7 @@ TEST_CASE("goldens: work has a budget") {
     return golden::test_golden(golden, run, "approve", false);
   };
   CHECK(approve_sum(sum).verdict.passed());
+  CHECK(has(golden::result_text(approve_sum(sum)), "ok    balls: work within budget; images: not compared"));
   CHECK(approve_sum(10 * sum).verdict.passed());  // less work than approved
   golden.spec.work = 0.5;
   CHECK(approve_sum(sum * 2 / 3 + 1).verdict.passed());

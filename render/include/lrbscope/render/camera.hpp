@@ -17,6 +17,10 @@ struct Camera {
   bool orthographic = false;
   double fov_y = 0.6;      ///< perspective: full vertical angle, radians
   double half_height = 1;  ///< orthographic: from the centre to the top edge, world units
+  /// Offset of the picture's centre from the target, to the right and up, in the plane of the picture: in
+  /// units of the distance to it (perspective) or of the world (orthographic). Other than zero for a part of
+  /// a picture.
+  Eigen::Vector2d shift{0, 0};
 };
 
 /// Returns the box around points, or an empty box without points.
@@ -76,7 +80,8 @@ class Projection {
   double height() const { return height_; }
   bool orthographic() const { return orthographic_; }
   /// Maps the world to the eye's frame: x right, y up, z = distance in front of the eye.
-  Eigen::Vector3d to_eye(const Eigen::Vector3d& world) const { return axes_ * (world - eye_); }
+  /// Perspective with Camera::shift: sheared, so that the picture's centre is at x = y = 0.
+  Eigen::Vector3d to_eye(const Eigen::Vector3d& world) const { return to_eye_ * (world - eye_); }
   /// Maps the eye's frame to pixels from the bottom left, y up, and depth in [-1, 1]. z must be at least
   /// near_depth().
   Eigen::Vector3d to_screen(const Eigen::Vector3d& eye) const;
@@ -95,7 +100,7 @@ class Projection {
   Eigen::Vector3d towards_viewer(const Eigen::Vector3d& world) const;
 
  private:
-  Eigen::Matrix3d axes_;
+  Eigen::Matrix3d axes_, to_eye_;
   Eigen::Vector3d eye_;
   double width_, height_, focal_, near_, far_;
   bool orthographic_;

@@ -105,6 +105,9 @@ struct DepthImage {
   int width = 0, height = 0;
   std::vector<float> depths;  ///< 1 on the background
   float at(int x, int y) const { return depths[static_cast<std::size_t>(y) * width + x]; }
+  /// Returns true if nothing hides a point in the world, seen by the projection that drew this image, or
+  /// hides it only by up to `heights`: see Projection::nearer(). Outside the image, the closest pixel counts.
+  bool shows(const Projection& projection, const Eigen::Vector3d& point, double heights) const;
 };
 
 /// Keeps the context, programs and buffers between frames. One thread at a time may use it.

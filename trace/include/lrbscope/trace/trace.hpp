@@ -187,9 +187,9 @@ struct EngineReport {
 
 /// Newest version of the trace format that is written and read. Readers accept older versions and reject
 /// newer ones. Version 3 added step names that state the result, a flow to each face test, the events at
-/// EventLevel::nodes and above, and construction events. Version 4 added reports of other engines; a trace
-/// without them is written as version 3.
-inline constexpr std::uint32_t kTraceVersion = 4;
+/// EventLevel::nodes and above, and construction events. Version 4 added reports of other engines, version 5
+/// the vertices of patches; a trace without either is written as version 3.
+inline constexpr std::uint32_t kTraceVersion = 5;
 
 /// Name of the format in a trace's metadata.
 inline constexpr std::string_view kTraceFormat = "lrbscope trace";
@@ -283,7 +283,8 @@ struct Pass {
 struct Patch {
   VertexId vertex{};
   std::uint32_t faces = 0;
-  std::uint16_t interior = 0;  ///< as GrownPatch::interior; saturates at 65535
+  std::uint16_t interior = 0;   ///< as GrownPatch::interior; saturates at 65535
+  std::uint32_t first = kNull;  ///< of its interior vertices in Trace::patch_vertices; kNull: not recorded
 };
 struct Cap {
   std::uint32_t faces = 0, covered = 0;
@@ -387,7 +388,12 @@ struct Event {
             .detail = static_cast<std::uint8_t>(p.stage)};
   }
   static Event of(const payload::Patch& p, EventId cause) {
-    return {.a = p.vertex, .b = p.faces, .cause = cause, .depth_a = p.interior, .kind = EventKind::patch};
+    return {.a = p.vertex,
+            .b = p.faces,
+            .cause = cause,
+            .boundary = p.first,
+            .depth_a = p.interior,
+            .kind = EventKind::patch};
   }
   static Event of(const payload::Cap& p, EventId cause) {
     return {.a = p.faces,
@@ -433,7 +439,7 @@ struct Event {
   payload::PhaseBegin phase_begin() const { return {phase(), depth_a, depth_b}; }
   payload::PhaseEnd phase_end() const { return {phase(), b}; }
   payload::Pass pass() const { return {stage(), a, b, off()}; }
-  payload::Patch patch() const { return {VertexId(a), b, depth_a}; }
+  payload::Patch patch() const { return {VertexId(a), b, depth_a, boundary}; }
   payload::Cap cap() const { return {a, b, verdict(), depth_a != 0, off()}; }
   payload::Merged merged() const { return {RegionId(a), b}; }
   payload::PassEnd pass_end() const { return {a, b, depth_a != 0, boundary}; }
@@ -546,7 +552,8 @@ struct Trace {
   std::vector<Event> events;
   std::vector<std::uint64_t>
       wall_ns;  ///< (|events|), strictly ascending, since the recorder was made; empty on the event clock
-  std::uint64_t events_seen = 0;  ///< more than events.size() if the cap truncated the recording
+  std::uint64_t events_seen = 0;         ///< more than events.size() if the cap truncated the recording
+  std::vector<VertexId> patch_vertices;  ///< of a construction: the interior vertices of its patches
 
   bool truncated() const { return events_seen > events.size(); }
   /// Returns true if another engine reported its answers.
@@ -555,6 +562,9 @@ struct Trace {
   std::span<const Event> events_of(std::size_t step) const;
   /// Returns the step (index into `steps`) that contains an event.
   std::size_t step_of(EventId event) const;
+  /// Returns the interior vertices of a patch event, the start vertex first in 3D; empty if they were not
+  /// recorded.
+  std::span<const VertexId> vertices_of(const Event& patch) const;
 };
 
 /// Returns true if the traces are equal in every bit that a file stores (poses: the bits of the doubles).
