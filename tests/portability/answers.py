@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""answers.py write MATRIX OUT PROGRAM...: the answers of lrbscope, started by the words PROGRAM (an emulator first, if any), to every
-cell of the matrix that matrix_bodies wrote to the folder MATRIX: LRB-reps of all bodies, queries at 112 poses of each cell, and all
+"""answers.py write MATRIX OUT NTH PROGRAM...: the answers of lrbscope, started by the words PROGRAM (an emulator first, if any), to every
+NTH cell of the matrix that matrix_bodies wrote to the folder MATRIX: LRB-reps of all bodies, queries at 112 poses of each cell, and all
 other queries that draw nothing at some of them.
 answers.py compare EXPECTED FOUND: prints a table of the answers in two such folders; exit code 1 if they differ."""
 
@@ -8,8 +8,10 @@ import json
 import math
 import os
 import random
+import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 POSES = 112  # of a cell: 10,080 of 90 cells
 SOME = 4  # of them, for queries that take longer
@@ -57,34 +59,39 @@ class Answers:
         return run.returncode
 
 
-def write(matrix_folder, out, program):
+def write(matrix_folder, out, nth, program):
     with open(os.path.join(matrix_folder, "matrix.json")) as file:
         matrix = json.load(file)
     answers = Answers(out, program)
     os.makedirs(out)
-    body = {}
-    for kind in matrix["kinds"]:
-        name = kind["name"]
-        with open(os.path.join(matrix_folder, name + ".obj"), "rb") as source, open(os.path.join(out, name + ".obj"), "wb") as copy:
-            copy.write(source.read())
+    cells = matrix["cells"][::nth]
+    used = {cell[side] for cell in cells for side in "ab"}
+    kinds = {kind["name"]: kind["dim"] for kind in matrix["kinds"] if kind["name"] in used}
+
+    def build(name):
+        """The file that queries load: many bodies have no LRB-rep; queries answer all the same."""
+        shutil.copy(os.path.join(matrix_folder, name + ".obj"), out)
         built = answers.ask("build", name, ["--quiet", "build", name + ".obj", "-o", name + ".lrb", "--no-validate"]) == 0
         answers.ask("inspect", name, ["inspect", name + ".obj", "--json"])
-        body[name] = name + (".lrb" if built else ".obj")  # many bodies have no LRB-rep; queries answer all the same
-    dims = {kind["name"]: kind["dim"] for kind in matrix["kinds"]}
-    for cell in matrix["cells"]:
+        return name + (".lrb" if built else ".obj")
+
+    def ask(cell):
         rng = random.Random(cell["name"])
-        lines = [pose(rng, dims[cell["a"]], cell["size"]) for _ in range(POSES)]
-        files = {"many.txt": lines, "some.txt": lines[:SOME], "motions.txt": [a + " " + b for a, b in zip(lines[:SOME], lines[SOME:])]}
+        lines = [pose(rng, kinds[cell["a"]], cell["size"]) for _ in range(POSES)]
+        files = {"many": lines, "some": lines[:SOME], "motions": [a + " " + b for a, b in zip(lines[:SOME], lines[SOME:])]}
         for file_name, content in files.items():
-            with open(os.path.join(out, file_name), "w", newline="\n") as file:
+            with open(os.path.join(out, f"{cell['name']}-{file_name}.txt"), "w", newline="\n") as file:
                 file.write("\n".join(content) + "\n")
         for subject, options in SUBJECTS.items():
-            poses = {"query": "many.txt", "sweep": "motions.txt"}.get(subject, "some.txt")
-            command = subject.split("_")[0]
+            poses = {"query": "many", "sweep": "motions"}.get(subject, "some")
             if subject == "clash" and cell["a"] == cell["b"]:
                 continue  # takes minutes
-            arguments = [command, body[cell["a"]], body[cell["b"]], *options, poses]
+            arguments = [subject.split("_")[0], body[cell["a"]], body[cell["b"]], *options, f"{cell['name']}-{poses}.txt"]
             answers.ask(subject, cell["name"], [repr(cell["size"] / 20) if a == "LENGTH" else a for a in arguments])
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:  # each thread waits for one program
+        body = dict(zip(kinds, pool.map(build, kinds)))
+        list(pool.map(ask, cells))
 
 
 def contents(folder):
@@ -120,8 +127,8 @@ def compare(expected_folder, found_folder):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 4 and sys.argv[1] == "write":
-        write(sys.argv[2], os.path.abspath(sys.argv[3]), sys.argv[4:])
+    if len(sys.argv) > 5 and sys.argv[1] == "write":
+        write(sys.argv[2], os.path.abspath(sys.argv[3]), int(sys.argv[4]), sys.argv[5:])
     elif len(sys.argv) == 4 and sys.argv[1] == "compare":
         sys.exit(compare(*sys.argv[2:]))
     else:

@@ -14,7 +14,7 @@ build fingerprints
 build_native fingerprints
 
 export WINEPREFIX=$top/wine WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml="
-"$native/tests/reproducibility/fingerprints" >"$top/native.txt"
+"$native/tests/reproducibility/fingerprints" "$(nproc)" >"$top/native.txt"
 for vectors in best avx2 baseline; do
   LRB_SIMD=$vectors wine "$build/reproducibility/fingerprints.exe" 2 >"$top/$name.txt" # on two threads
   same_lines "fingerprints, $vectors" "$top/native.txt" "$top/$name.txt"
