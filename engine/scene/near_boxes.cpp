@@ -4,6 +4,7 @@
 // 3. For each box, visit the following ones until they begin beyond its upper end plus the limit.
 
 #include "engine/scene/near_boxes.hpp"
+#include "engine/core/geometry.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -24,7 +25,7 @@ double gap(const Box& a, const Box& b) {
   // Larger gaps count as half the largest double: still a lower bound, and the norm stays finite.
   if (!(gaps.maxCoeff() <= kMax / 2)) return kMax / 2;
   // Rounded down, because callers prune pairs by it.
-  return gaps.stableNorm() * kRoundedDown;
+  return stable_norm3(gaps) * kRoundedDown;
 }
 
 SortedBoxes::SortedBoxes(std::span<const Box> boxes, int axis) : boxes_(boxes), axis_(axis) {

@@ -37,6 +37,7 @@ constexpr std::size_t kEachNth = 11;    // case of a class, for queries that tak
 
 void print(const std::string& what, std::uint64_t hash) {
   std::printf("%016llx %s\n", static_cast<unsigned long long>(hash), what.c_str());
+  std::fflush(stdout);  // under an emulator, a line may take minutes
 }
 
 std::uint64_t hash_of_bytes(const std::string& bytes) {
