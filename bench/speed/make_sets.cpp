@@ -10,6 +10,7 @@
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/chart_page.hpp"
 #include "bench/speed/data_set.hpp"
+#include "bench/workers/worker_json.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/shapes.hpp"

@@ -223,9 +223,9 @@ std::vector<Missing> missing_answers(const std::string& folder, const std::vecto
   };
   std::vector<Missing> out;
   bool any = false;
-  for (const auto& name : plan["sets"]) {
+  for (const std::string name : plan["sets"]) {
     const auto set = std::find_if(sets.begin(), sets.end(), [&](const DataSet& s) { return s.name == name; });
-    Missing m{name.get<std::string>(), 0, 0};
+    Missing m{name, 0, 0};
     if (set == sets.end()) {  // its poses were not chosen yet
       m.planned = m.missing = 1;
     } else {

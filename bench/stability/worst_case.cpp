@@ -233,7 +233,7 @@ std::optional<LonePair> lone_pair(const CasePicture& s, const Verdict& verdict) 
   c.b = alone(1, pair.b);
   Verdict one;
   one.listed = true;
-  (verdict.missed.empty() ? one.extra : one.missed) = {{SimplexId(0), SimplexId(0)}};
+  (verdict.missed.empty() ? one.extra : one.missed).push_back({SimplexId(0), SimplexId(0)});
   const char* what = s.flat() ? "segments " : "triangles ";
   return LonePair{c, CasePicture(c, one),
                   std::string("one pair, ") + (verdict.missed.empty() ? "extra: " : "missed: ") + what +

@@ -7,6 +7,7 @@
 
 #include "bench/speed/data_set.hpp"
 #include "bench/tails/tails.hpp"
+#include "bench/workers/worker_json.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/core/file.hpp>

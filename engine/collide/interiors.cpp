@@ -38,6 +38,7 @@ EnclosedVertices::EnclosedVertices(QueryContext& context, Side side, const Colli
   if (!holder_.rep().closed()) return;
   collect_cuts();
   join_near();
+  buffers_.part.assign(buffers_.near.size(), kNull);
 }
 
 /// Collects where the edges of each simplex in contact meet the other surface. They do if and only if they
@@ -50,6 +51,10 @@ void EnclosedVertices::collect_cuts() {
   b.near.begin(rep.vertices().size());
   b.cuts.clear();
   b.location.clear();
+  b.reached.begin(rep.vertices().size());
+  b.part_begin.clear();
+  b.part_listed.clear();
+  b.inside.clear();
   for (std::uint32_t i = 0; i < result_.pairs.size(); ++i) {
     VertexId v[3];
     rep.simplex(simplex(i), v);
@@ -109,12 +114,8 @@ SimplexId EnclosedVertices::simplex(std::uint32_t pair) const {
   return side_ == Side::a ? result_.pairs[pair].a : result_.pairs[pair].b;
 }
 
-bool EnclosedVertices::is_inside(VertexId v) {
+bool EnclosedVertices::is_inside(std::uint32_t near, VertexId v) {
   using Location = EnclosedBuffers::Location;
-  const std::uint32_t near = buffers_.near(v);
-  // Only edges of simplices in contact can cross the other surface, so that only their corners need to be
-  // located. All other vertices reached from an inside vertex are inside.
-  if (near == kNull) return true;
   if (buffers_.location[near] == Location::on_surface) return false;
   const auto [leader, differs] = buffers_.sides.find(near);
   Location& known = buffers_.location[leader];
@@ -125,25 +126,62 @@ bool EnclosedVertices::is_inside(VertexId v) {
   return (known == Location::inside) != differs;
 }
 
-std::span<const VertexId> EnclosedVertices::from(std::span<const std::uint32_t> pairs) {
-  std::vector<VertexId>& inside = buffers_.inside;
-  inside.clear();
-  if (!holder_.rep().closed()) return inside;
-  buffers_.seen.begin(body_.rep().vertices().size());
+std::uint32_t EnclosedVertices::find_part(std::uint32_t near, VertexId seed) {
+  EnclosedBuffers& b = buffers_;
+  if (!is_inside(near, seed)) return b.part[near] = EnclosedBuffers::kOutside;
+  // Breadth-first search over surface edges; each vertex is visited once.
+  const auto part = static_cast<std::uint32_t>(b.part_begin.size());
   const auto visit = [&](VertexId v) {
-    if (buffers_.seen.add(v).second && is_inside(v)) inside.push_back(v);
+    if (!b.reached.add(v).second) return;
+    // Only edges of simplices in contact can cross the other surface, so that only their corners need to be
+    // located. All other vertices reached from an inside vertex are inside.
+    if (const std::uint32_t n = b.near(v); n != kNull) {
+      if (!is_inside(n, v)) return;
+      b.part[n] = part;
+    }
+    b.inside.push_back(v);
   };
+  std::size_t next = b.inside.size();
+  b.part_begin.push_back(static_cast<std::uint32_t>(next));
+  b.part_listed.push_back(0);
+  visit(seed);
+  const SurfaceGraph& graph = body_.rep().surface_graph();
+  for (; next < b.inside.size(); ++next)
+    for (const VertexId v : graph.neighbours(b.inside[next])) visit(v);
+  return part;
+}
+
+std::span<const VertexId> EnclosedVertices::from(std::span<const std::uint32_t> pairs) {
+  EnclosedBuffers& b = buffers_;
+  if (!holder_.rep().closed()) return {};
+  // The parts of the enclosed corners of the simplices in these pairs.
+  b.listed.clear();
+  ++searches_;
+  std::uint32_t last = EnclosedBuffers::kOutside;
   for (const std::uint32_t i : pairs) {
-    // Seeds: the enclosed corners of the simplices in these pairs.
     VertexId v[3];
     body_.rep().simplex(simplex(i), v);
-    for (int k = 0; k < body_.rep().simplex_size(); ++k) visit(v[k]);
+    for (int k = 0; k < body_.rep().simplex_size(); ++k) {
+      const std::uint32_t near = b.near(v[k]);
+      std::uint32_t part = b.part[near];
+      if (part == kNull) part = find_part(near, v[k]);
+      if (part == EnclosedBuffers::kOutside || part == last || b.part_listed[part] == searches_) continue;
+      b.part_listed[part] = searches_;
+      b.listed.push_back(last = part);
+    }
   }
-  // Breadth-first search over surface edges; each vertex is visited once.
-  const SurfaceGraph& graph = body_.rep().surface_graph();
-  for (std::size_t next = 0; next < inside.size(); ++next)
-    for (const VertexId v : graph.neighbours(inside[next])) visit(v);
-  return inside;
+  const auto vertices = [&](std::uint32_t part) {
+    const std::size_t end = part + 1 < b.part_begin.size() ? b.part_begin[part + 1] : b.inside.size();
+    return std::span<const VertexId>(b.inside).subspan(b.part_begin[part], end - b.part_begin[part]);
+  };
+  if (b.listed.empty()) return {};
+  if (b.listed.size() == 1) return vertices(b.listed[0]);
+  b.joined.clear();
+  for (const std::uint32_t part : b.listed) {
+    const std::span<const VertexId> more = vertices(part);
+    b.joined.insert(b.joined.end(), more.begin(), more.end());
+  }
+  return b.joined;
 }
 
 namespace {

@@ -37,13 +37,18 @@ class EnclosedVertices {
   SimplexId simplex(std::uint32_t pair) const;
   void collect_cuts();
   void join_near();
-  bool is_inside(VertexId v);
+  /// Returns whether a near vertex, given with its number, is inside the holder.
+  bool is_inside(std::uint32_t near, VertexId v);
+  /// Searches the part of a near vertex: the vertices inside the holder that edges inside it connect. Returns
+  /// kOutside if the vertex is not inside.
+  std::uint32_t find_part(std::uint32_t near, VertexId seed);
 
   QueryBody& body_;
   QueryBody& holder_;
   Side side_;
   const CollideResult& result_;
   EnclosedBuffers& buffers_;
+  std::uint32_t searches_ = 0;
 };
 
 /// Returns the side of the line p q on which r lies, as the sign of an orientation. All three points are in

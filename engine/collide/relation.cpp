@@ -8,6 +8,7 @@
 #include "engine/collide/relation.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -57,8 +58,7 @@ class RayWalk {
   Where run() {
     const TreeNode& root = tree_.nodes()[0];
     const Frame f = frame_of(root);
-    const Bounds whole = bounds_of(
-        root, f, [](int) { return 0; }, [](int) { return kQuantizedMost; });
+    const Bounds whole = bounds_of(root, f);
     // Points outside the root's box need no ray: first the world AABB, then the tighter OBB.
     if (is_beside(whole) || (dim_ == 3 && is_beside_oriented(root, f))) return Where::outside;
     if constexpr (kMayTurn) choose_direction(whole);
@@ -96,15 +96,12 @@ class RayWalk {
     return f;
   }
 
-  /// Returns the world AABB of a box with quantized ends `lo` and `hi`. Conservative, as the kernel's boxes
-  /// are.
-  template <class Lo, class Hi>
-  static Bounds bounds_of(const TreeNode& n, const Frame& f, const Lo& lo, const Hi& hi) {
+  /// Returns the world AABB of all boxes of a node. Conservative, as the kernel's boxes are.
+  static Bounds bounds_of(const TreeNode& n, const Frame& f) {
     Vector3d centre, half;
     for (int i = 0; i < 3; ++i) {
-      const double base = n.base[i], scale = n.scale[i];
-      centre[i] = base + scale * 0.5 * (lo(i) + hi(i));
-      half[i] = scale * 0.5 * (hi(i) - lo(i));
+      half[i] = n.scale[i] * 0.5 * kQuantizedMost;
+      centre[i] = n.base[i] + half[i];
     }
     // World AABB of an OBB: |axes| half (Arvo, "Transforming Axis-Aligned Bounding Boxes", 1990).
     return {f.origin + f.axes * centre, f.axes.cwiseAbs() * half + Vector3d::Constant(f.grow)};
@@ -158,30 +155,47 @@ class RayWalk {
     direction_.see(point_, dim_, seen_);
   }
 
-  /// Returns true if the ray is proven to miss a box.
-  bool misses(const Bounds& b) const {
-    bool missed = false;
-    for (int k = 0; k < dim_; ++k) {
-      const double off = b.centre[k] - p_[k];  // > 0: the box lies ahead on this axis
+  /// Returns a bit for each child or simplex of a node that the ray may meet: it is proven to miss the world
+  /// AABBs of the boxes of all others.
+  std::uint32_t met(const TreeNode& n) const {
+    const Frame f = frame_of(n);
+    // All boxes at once, in structure-of-arrays layout.
+    double centre[3][kTreeWidth], half[3][kTreeWidth];
+    for (int i = 0; i < 3; ++i)
+      for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
+        const double step = 0.5 * n.scale[i];
+        centre[i][k] = n.base[i] + step * (n.lo[i][k] + n.hi[i][k]);
+        half[i][k] = step * (n.hi[i][k] - n.lo[i][k]);
+      }
+    double beyond[kTreeWidth];  // the largest distance to the interval of a box on an axis
+    std::fill(std::begin(beyond), std::end(beyond), -std::numeric_limits<double>::infinity());
+    for (int axis = 0; axis < dim_; ++axis) {
+      const double x = f.axes(axis, 0), y = f.axes(axis, 1), z = f.axes(axis, 2);
+      double off[kTreeWidth];  // > 0: the centre of the box lies ahead on this axis
+      for (std::uint32_t k = 0; k < kTreeWidth; ++k)
+        off[k] = f.origin[axis] - p_[axis] + x * centre[0][k] + y * centre[1][k] + z * centre[2][k];
       // Across the ray, the point must lie within the box's interval; along it, the box must not lie behind.
-      missed |= (k != direction_.axis ? std::abs(off) : direction_.backward ? off : -off) > b.half[k];
+      const double sign = direction_.backward ? 1 : -1;
+      for (std::uint32_t k = 0; k < kTreeWidth; ++k)
+        off[k] = axis != direction_.axis ? std::abs(off[k]) : sign * off[k];
+      for (std::uint32_t k = 0; k < kTreeWidth; ++k)
+        beyond[k] = std::max(beyond[k], off[k] - (std::abs(x) * half[0][k] + std::abs(y) * half[1][k] +
+                                                  std::abs(z) * half[2][k] + f.grow));
     }
-    return missed;
+    std::uint32_t bits = 0;
+    for (std::uint32_t k = 0; k < n.count; ++k) bits |= static_cast<std::uint32_t>(!(beyond[k] > 0)) << k;
+    return bits;
   }
 
   void visit(std::uint32_t index) {
     const TreeNode& n = tree_.nodes()[index];
-    if (n.is_leaf) {
-      const LeafBlock& block = tree_.blocks()[n.first];
-      for (int k = 0; k < n.count && !on_surface_; ++k) cross(block.simplex[k]);
-      return;
-    }
-    const Frame f = frame_of(n);
-    for (std::uint32_t k = 0; k < n.count && !on_surface_; ++k)
-      // A box that the ray misses contains no crossing.
-      if (!misses(bounds_of(
-              n, f, [&](int i) { return n.lo[i][k]; }, [&](int i) { return n.hi[i][k]; })))
+    for (std::uint32_t bits = met(n); bits != 0 && !on_surface_; bits &= bits - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (n.is_leaf)
+        cross(tree_.blocks()[n.first].simplex[k]);
+      else
         visit(n.first + k);
+    }
   }
 
   void cross(SimplexId s) {

@@ -255,10 +255,9 @@ QueryVerdict Checker::check(const Query& query, const QueryWalk* walk) {
 std::vector<TrianglePair> Checker::exact_pairs(const Posed& posed) {
   std::vector<TrianglePair> out;
   if (posed.bodies[0] == nullptr || posed.bodies[1] == nullptr) return out;
-  const CollideResult& result = collide(*posed.bodies[0], posed.poses[0], *posed.bodies[1], posed.poses[1],
-                                        CollideRequest{}, workspace_)
-                                    .value();
-  for (const SimplexPair& pair : result.pairs) {
+  const Expected<CollideResult&> found = collide(*posed.bodies[0], posed.poses[0], *posed.bodies[1],
+                                                 posed.poses[1], CollideRequest{}, workspace_);
+  for (const SimplexPair& pair : found.value().pairs) {
     const TrianglePair triangles{pair.a, pair.b};
     if (posed.is_self() && (triangles.a >= triangles.b || share_a_vertex(*posed.meshes[0], triangles)))
       continue;

@@ -480,7 +480,7 @@ TEST_CASE("inspect --self-intersections: a JSON line for each pair, and exit cod
 
 TEST_CASE("--cache and LRBSCOPE_CACHE keep LRB-reps for commands that need them") {
   const Folder folder;
-  lrb::write_mesh(lrb::shapes::bumpy_sphere(3, 1), folder / "rock.obj");
+  lrb::write_mesh(lrb::shapes::bumpy_sphere(2, 1), folder / "rock.obj");
   std::vector<std::string> coarse = {"levels", "rock.obj"};
   const Outcome plain = run(folder, coarse);
   CHECK(plain.code == 0);
