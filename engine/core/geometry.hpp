@@ -36,9 +36,9 @@ inline double stable_norm3(const Eigen::Vector3d& a) {
   const double largest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
   if (!(largest > 0)) return std::abs(a[0] + a[1] + a[2]);  // 0 or NaN
   // The inverse of a subnormal number overflows, that of an infinite one makes NaN.
-  constexpr double kMost = std::numeric_limits<double>::max();
-  const double inverse = largest > kMost ? 1 : std::min(1 / largest, kMost);
-  const double scale = inverse < kMost ? largest : 1 / kMost;
+  constexpr double kMax = std::numeric_limits<double>::max();
+  const double inverse = largest > kMax ? 1 : std::min(1 / largest, kMax);
+  const double scale = inverse < kMax ? largest : 1 / kMax;
   return scale * std::sqrt(squared_norm3(a * inverse));
 }
 /// Returns a vector of length 1, or zero if the vector is.

@@ -4,10 +4,11 @@
 // 3. For each box, visit the following ones until they begin beyond its upper end plus the limit.
 
 #include "engine/scene/near_boxes.hpp"
-#include "engine/core/geometry.hpp"
 
 #include <algorithm>
 #include <limits>
+
+#include "engine/core/geometry.hpp"
 
 namespace lrb::scene {
 namespace {
