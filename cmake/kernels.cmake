@@ -9,6 +9,11 @@ function(lrb_kernel target name file)
   string(TOUPPER "${name}" macro)
   set(options_avx2 -mavx2)
   set(options_avx512 -mavx2 -mbmi -mbmi2 -mpopcnt -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=256)
+  if(MINGW AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # gcc does not align the stack to 32 bytes on Windows (gcc bug 54412), so its aligned moves would fail.
+    list(APPEND options_avx2 -Wa,-muse-unaligned-vector-move)
+    list(APPEND options_avx512 -Wa,-muse-unaligned-vector-move)
+  endif()
   foreach(set IN LISTS sets)
     set(out "${CMAKE_CURRENT_BINARY_DIR}/kernels/${name}_${set}.cpp")
     file(CONFIGURE OUTPUT "${out}" @ONLY CONTENT

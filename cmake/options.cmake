@@ -11,7 +11,11 @@ target_include_directories(lrb_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOU
 
 # The compiler must not contract a * b + c into a fused multiply-add: the engine's answer is defined for coordinates that
 # are rounded after every operation, and its error bounds are derived for that. With contraction, compilers would disagree.
-target_compile_options(lrb_options INTERFACE -ffp-contract=off)
+set(lrb_unfused -ffp-contract=off)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64|ARM64)$")
+  list(APPEND lrb_unfused -U__ARM_FEATURE_FMA)  # with this macro, Eigen calls NEON's fused operations
+endif()
+target_compile_options(lrb_options INTERFACE ${lrb_unfused})
 
 add_library(lrb_own_options INTERFACE)
 if(PROJECT_IS_TOP_LEVEL)

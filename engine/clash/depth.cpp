@@ -41,7 +41,7 @@ Vector3d normal_of(const UnitBody& body, std::uint32_t triangle) {
 class Directions {
  public:
   void add(const Vector3d& normal) {
-    const double area = normal.stableNorm();
+    const double area = stable_norm3(normal);
     // A degenerate face has no direction.
     if (!(area > 0)) return;
     const Vector3d n = normal / area;
@@ -106,7 +106,7 @@ std::optional<ConvexPoints> DepthFinder::shrunken(Side side) {
   double area = 0;
   for (std::uint32_t i = 0; i < body.triangles.size(); ++i) {
     const auto& t = body.triangles[i];
-    const double share = normal_of(body, i).stableNorm();
+    const double share = stable_norm3(normal_of(body, i));
     centre += share / 3 * (body.points[t[0]] + body.points[t[1]] + body.points[t[2]]);
     area += share;
   }

@@ -9,6 +9,7 @@
 
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/collide/collide_into.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 
 namespace lrb::penetration {
@@ -67,7 +68,7 @@ std::optional<SeparatingTranslation> SeparationSearch::prove(const Vector3d& n, 
   // Add a margin that grows by a factor of 8 until the proof succeeds.
   for (double more = kSeparationMargin + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
     const Moved m = moved(n, s + more);
-    if (is_proved(m, 0)) return SeparatingTranslation{m.by, m.by.stableNorm() * (1 + 0x1p-50)};
+    if (is_proved(m, 0)) return SeparatingTranslation{m.by, stable_norm3(m.by) * (1 + 0x1p-50)};
   }
   return std::nullopt;
 }

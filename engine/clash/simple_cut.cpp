@@ -9,6 +9,7 @@
 
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/clash/surface_pieces.hpp"
+#include "engine/core/geometry.hpp"
 
 namespace lrb::penetration {
 
@@ -19,7 +20,7 @@ SimpleCut::End SimpleCut::End::on_border(int edge, const Eigen::Vector3d& x, con
                                          SimplexId by) {
   const Eigen::Map<const Eigen::Vector3d> from(corners[edge]), to(corners[(edge + 1) % 3]);
   const Eigen::Vector3d way = to - from;
-  const double length = way.stableNorm();
+  const double length = stable_norm3(way);
   End end{{by.value(), 0}, edge};
   // Divide before the product, so that squares cannot overflow.
   end.share = (x - from).dot(way / length) / length;

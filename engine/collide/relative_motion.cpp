@@ -13,6 +13,7 @@
 
 #include <Eigen/LU>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/kernel_setup.hpp"
 
@@ -73,7 +74,7 @@ bool RelativeMotion::see(const Pose& pose_a, const Pose& pose_b) {
 /// Returns a bound on |dm x + dt| for points x of B, where |dm| <= turn.
 double RelativeMotion::farthest(const Matrix3d& dm, const Vector3d& dt, double turn) const {
   // The displacement of B's centre, and the effect of the rotation over B's radius.
-  return ((dm * centre_ + dt).stableNorm() + turn * radius_) * (1 + kWorldRounding) + rounding_;
+  return (stable_norm3(dm * centre_ + dt) + turn * radius_) * (1 + kWorldRounding) + rounding_;
 }
 
 double RelativeMotion::motion(const RelativePose& from, const RelativePose& to) const {

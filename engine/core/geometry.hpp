@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,6 +29,17 @@ inline double squared_norm3(const Eigen::Vector3d& a) {
 }
 inline double norm3(const Eigen::Vector3d& a) {
   return std::sqrt(dot3(a, a));
+}
+/// Returns the length without overflow or underflow of squares. Eigen's stableNorm() would add the squares in
+/// an order that depends on the address of its argument, and so on compiler and processor.
+inline double stable_norm3(const Eigen::Vector3d& a) {
+  const double largest = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
+  if (!(largest > 0)) return std::abs(a[0] + a[1] + a[2]);  // 0 or NaN
+  // The inverse of a subnormal number overflows, that of an infinite one makes NaN.
+  constexpr double kMax = std::numeric_limits<double>::max();
+  const double inverse = largest > kMax ? 1 : std::min(1 / largest, kMax);
+  const double scale = inverse < kMax ? largest : 1 / kMax;
+  return scale * std::sqrt(squared_norm3(a * inverse));
 }
 /// Returns a vector of length 1, or zero if the vector is.
 inline Eigen::Vector3d normalized3(const Eigen::Vector3d& a) {

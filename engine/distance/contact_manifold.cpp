@@ -16,6 +16,7 @@
 
 #include "engine/collide/interiors.hpp"
 #include "engine/collide/relation.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/distance/manifold_context.hpp"
 #include "engine/tree/kernel_setup.hpp"
@@ -543,7 +544,7 @@ double moved_on_bodies(const ManifoldPoint& now, const ManifoldResult& result, c
     // The location of the old point if it had moved with the body.
     const Pose &from = previous.pose[side], &to = result.pose[side];
     const Vector3d carried = to.r * (from.r.inverse() * (before.point[side] - from.t)) + to.t;
-    const double distance = (now.point[side] - carried).stableNorm();
+    const double distance = stable_norm3(now.point[side] - carried);
     if (distance < least) least = distance;
   }
   return least;

@@ -282,7 +282,7 @@ double scaled_down(double x, int exponent) {
 
 /// Returns axes whose first one points along `way`, or the world's axes if `way` has no direction.
 Matrix3d axes_along(const Vector3d& way) {
-  const double length = way.stableNorm();
+  const double length = stable_norm3(way);
   if (!(length > 0) || !std::isfinite(length)) return Matrix3d::Identity();
   // Householder reflection that maps the x axis to `way`. It is symmetric, so its first row is `way`.
   const Vector3d mirror = Vector3d::UnitX() - way / length;

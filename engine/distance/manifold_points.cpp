@@ -16,6 +16,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 
 namespace lrb {
@@ -59,7 +60,7 @@ void VertexStars::begin(const LrbRep& rep) {
       box.extend(x[v[k]]);
     }
   }
-  diagonal_ = box.isEmpty() ? 0 : box.sizes().stableNorm();
+  diagonal_ = box.isEmpty() ? 0 : stable_norm3(box.sizes());
 }
 
 namespace {

@@ -21,6 +21,7 @@
 #include <limits>
 
 #include "engine/collide/tree_query.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 
 namespace lrb {
@@ -405,7 +406,7 @@ void FirstContactSearch::write_features(double t, SimplexPair pair) {
   if (!std::isfinite(at.upper)) return;
   result_.witness = {witness_of(*rep_[0], pair.a, at.on[0], at.point[0]),
                      witness_of(*rep_[1], pair.b, at.on[1], at.point[1])};
-  const double length = at.direction.stableNorm();
+  const double length = stable_norm3(at.direction);
   // The closest points coincide up to rounding: the normal is unknown.
   if (!(length > 0)) return;
   result_.normal = at.direction / length;

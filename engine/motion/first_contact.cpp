@@ -12,6 +12,7 @@
 #include <string>
 
 #include "engine/collide/collide_into.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/motion/contact_search.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/first_contact.hpp>
@@ -32,7 +33,7 @@ std::uint64_t max_steps(const LrbRep& a, const Motion& motion_a, const LrbRep& b
     for (const Motion::Piece& piece : motion->pieces())
       // Half a piece for each body, so that `parts` is the mean number of pieces plus the number of full
       // turns.
-      parts += 0.5 + std::min(piece.turn.stableNorm() / (2 * std::numbers::pi), kMaxRevolutions);
+      parts += 0.5 + std::min(stable_norm3(piece.turn) / (2 * std::numbers::pi), kMaxRevolutions);
   const double simplices = 1.0 * a.real_simplex_count() + b.real_simplex_count();
   return static_cast<std::uint64_t>(std::min((kSteps + kStepsOfSimplex * simplices) * parts, kMax));
 }

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/extended.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/motion/motion_bounds.hpp"
 #include "engine/tree/kernel_setup.hpp"
@@ -189,7 +190,7 @@ void for_each_ball(const ObbTree& tree, See&& see) {
 }  // namespace
 
 MovingBody::MovingBody(const LrbRep& rep, const Motion::Piece& piece) : rep_(&rep), piece_(&piece) {
-  const double time = piece.end - piece.begin, angle = piece.turn.stableNorm() * kWorldUp;
+  const double time = piece.end - piece.begin, angle = stable_norm3(piece.turn) * kWorldUp;
   // Velocities per unit of t. The rotation does not affect the travel.
   travel_ = (piece.to - piece.from) / time;
   rate_ = piece.turn / time;
@@ -200,8 +201,8 @@ MovingBody::MovingBody(const LrbRep& rep, const Motion::Piece& piece) : rep_(&re
   // In the terms of motion_bounds.hpp: size = X, turned = N X + P, path = Q.
   const double size = std::sqrt(3.0) * rep.tree().extent();
   const double frobenius = std::sqrt(3.0) * stretch(piece.first);
-  const double turned = stretch_ * (frobenius * size + piece.first.t.stableNorm());
-  const double path = std::max(piece.from.stableNorm(), piece.to.stableNorm());
+  const double turned = stretch_ * (frobenius * size + stable_norm3(piece.first.t));
+  const double path = std::max(stable_norm3(piece.from), stable_norm3(piece.to));
   // 8 u (1 + 2^-10 |turn|), the bound derived there, for positions; four times that for velocities.
   const double share = kMotionRounding * (1 + 0x1p-10 * angle);
   rounding_ = share * (turned + path) * kWorldUp + kWorldUnderflow;
@@ -216,9 +217,9 @@ double MovingBody::farthest_from_axis() const {
     const Vector3d z = piece_->first.r * origin + piece_->first.t;
     // Rounding of z and of the cross product.
     const double rounding =
-        4 * kMotionRounding * (2 * size * rep_->tree().extent() + piece_->first.t.stableNorm());
+        4 * kMotionRounding * (2 * size * rep_->tree().extent() + stable_norm3(piece_->first.t));
     // The speed of the ball's centre, plus at most |w| times the radius.
-    most = std::max(most, rate_.cross(z).stableNorm() + turn_rate_ * (size * radius + rounding));
+    most = std::max(most, stable_norm3(rate_.cross(z)) + turn_rate_ * (size * radius + rounding));
   });
   return most * kWorldUp;
 }

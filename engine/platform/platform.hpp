@@ -1,5 +1,5 @@
 #pragma once
-/// What differs between POSIX and Windows: descriptors of files, locks of folders.
+/// What differs between POSIX and Windows: descriptors of files, temporary folders, locks of folders.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +25,10 @@ std::uint64_t process();
 /// Returns true if a FIFO has a name. Anonymous pipes, as created by <(...) and |, are filled by the process
 /// at the other end. Opening a named pipe blocks until a process writes to it.
 bool has_name(const char* fifo);
+
+/// Creates a folder with an unused name that begins with `start`, for this user. Returns its name, or nothing
+/// and sets errno.
+std::string create_folder(const std::string& start);
 
 /// Returned by lock_folder().
 inline constexpr int kNotLockable = -1, kOthersLock = -2;

@@ -1,6 +1,7 @@
 #if !defined(_WIN32)
 
 #include <cerrno>
+#include <cstdlib>
 #include <string_view>
 
 #include <fcntl.h>
@@ -43,6 +44,11 @@ bool has_name(const char* fifo) {
 #else
   return !std::string_view(fifo).starts_with("/dev/fd/");
 #endif
+}
+
+std::string create_folder(const std::string& start) {
+  std::string name = start + "XXXXXX";
+  return mkdtemp(name.data()) != nullptr ? name : std::string();
 }
 
 int lock_folder(const std::string& folder) {

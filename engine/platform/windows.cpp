@@ -1,10 +1,15 @@
 #if defined(_WIN32)
 
+#include <cerrno>
+
+#include <direct.h>
 #include <fcntl.h>
 #include <io.h>
 #include <sys/stat.h>
 #define WIN32_LEAN_AND_MEAN
+#if !defined(NOMINMAX)  // MinGW's standard library defines it
 #define NOMINMAX
+#endif
 #include <windows.h>
 
 #include "engine/platform/platform.hpp"
@@ -34,6 +39,14 @@ std::uint64_t process() {
 
 bool has_name(const char*) {
   return true;
+}
+
+std::string create_folder(const std::string& start) {
+  for (unsigned i = 0;; ++i) {
+    const std::string name = start + std::to_string(process()) + "-" + std::to_string(i);
+    if (_mkdir(name.c_str()) == 0) return name;
+    if (errno != EEXIST) return {};
+  }
 }
 
 int lock_folder(const std::string& folder) {

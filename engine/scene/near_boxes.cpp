@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "engine/core/geometry.hpp"
+
 namespace lrb::scene {
 namespace {
 
@@ -24,7 +26,7 @@ double gap(const Box& a, const Box& b) {
   // Larger gaps count as half the largest double: still a lower bound, and the norm stays finite.
   if (!(gaps.maxCoeff() <= kMax / 2)) return kMax / 2;
   // Rounded down, because callers prune pairs by it.
-  return gaps.stableNorm() * kRoundedDown;
+  return stable_norm3(gaps) * kRoundedDown;
 }
 
 SortedBoxes::SortedBoxes(std::span<const Box> boxes, int axis) : boxes_(boxes), axis_(axis) {

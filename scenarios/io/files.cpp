@@ -1,7 +1,6 @@
 #include "scenarios/io/files.hpp"
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -92,10 +91,11 @@ FolderLock::~FolderLock() {
 
 TemporaryFolder::TemporaryFolder() {
   std::error_code error;
-  std::string pattern = (fs::temp_directory_path(error) / "lrbscope-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr)
-    throw EnvironmentError(pattern + ": cannot create a folder: " + std::strerror(errno) + "; set TMPDIR");
-  path = pattern;
+  const std::string start = (fs::temp_directory_path(error) / "lrbscope-").string();
+  path = platform::create_folder(start);
+  if (path.empty())
+    throw EnvironmentError(start + "XXXXXX: cannot create a folder: " + std::strerror(errno) +
+                           "; set TMPDIR");
 }
 
 TemporaryFolder::~TemporaryFolder() {
