@@ -52,7 +52,7 @@ awk '/^```c$/ { on = 1; next } /^```/ { on = 0 } on' "$tree/docs/capture.md" >bl
 [ -s block.c ] || fail "docs/capture.md has no C block"
 
 builds=0
-for compiler in gcc clang aarch64-linux-gnu-gcc; do
+for compiler in gcc clang aarch64-linux-gnu-gcc x86_64-w64-mingw32-gcc; do
   command -v "$compiler" >/dev/null || { echo "without $compiler, which is not installed"; continue; }
   for how in "c c99" "c c11" "cpp c++11" "cpp c++17" "cpp c++20"; do
     read -r language standard <<<"$how"

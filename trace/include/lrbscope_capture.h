@@ -12,7 +12,7 @@
  *   LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree_a, pose_a, tree_b, pose_b);   12 doubles each: 3x4, row by row
  *     LRBCAP_NODE(i, j, met, axis);                                   two bounding volumes were tested
  *     LRBCAP_PRIM(f, g, met);                                         two triangles were tested
- *   LRBCAP_END(LRBCAP_INTERSECTING, n_pairs);                                 the engine's own answer
+ *   LRBCAP_END(LRBCAP_INTERSECTING, n_pairs);                         the engine's own answer
  *   LRBCAP_CLOSE();
  *
  * Threads: each has its own buffer (215 kB). Open, describe and close while no query runs; everything else
@@ -25,8 +25,7 @@
  *   LRBCAP_QUERIES=40-60       only these queries, numbered from 1 (also 40 or 40-)
  *   LRBCAP_SLOWER_US=N         events only of queries that take at least N microseconds, or have over 8,192
  *   LRBCAP_EVENTS=0            no tests of nodes and triangles: queries, times, counters and phases only
- *   LRBCAP_MAX_MB=N            after N megabytes no events, after N + N/8 no queries; default 4096, 0: no
- * limit
+ *   LRBCAP_MAX_MB=N            after N megabytes no events, after N + N/8 no queries; 0: no limit; default 4096
  *
  * docs/capture.md of lrbscope describes calls and file format. Versions 0.x may change both.
  *
@@ -216,7 +215,7 @@ LRBCAP_INLINE void lrbcap_push(uint8_t kind, uint32_t a, uint32_t b, uint8_t tes
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#if defined(__unix__) || defined(__APPLE__)
+#if defined(__unix__) || defined(__APPLE__) || defined(__MINGW32__)
 #include <sys/time.h>
 #endif
 #ifdef _MSC_VER
@@ -228,7 +227,7 @@ LRBCAP_INLINE void lrbcap_push(uint8_t kind, uint32_t a, uint32_t b, uint8_t tes
 /* ---- Time: a fast counter of the processor, and the wall clock to which the reader relates it. */
 
 static uint64_t lrbcap_wall_ns(void) {
-#if defined(__unix__) || defined(__APPLE__)
+#if defined(__unix__) || defined(__APPLE__) || defined(__MINGW32__)
   struct timeval t; /* as strict C99 declares no finer clock */
   gettimeofday(&t, NULL);
   return LRBCAP_CAST(uint64_t, t.tv_sec) * 1000000000u + LRBCAP_CAST(uint64_t, t.tv_usec) * 1000u;
