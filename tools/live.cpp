@@ -166,7 +166,8 @@ class Live {
     setenv("LRBCAP_OUT", (folder_.path / "capture").c_str(), 1);
     Program program(options_.program);
     note(globals_, {"live: " + server_.url()});
-    while (!stop_.has_arrived() && !(is_over_ && options_.ends_with_program)) {
+    // A program may continue after the end of its capture.
+    while (!stop_.has_arrived() && !(is_over_ && options_.ends_with_program && program.has_ended())) {
       wait();
       server_.serve();
       if (!is_over_) {

@@ -71,6 +71,10 @@ awk -v fcl=$(($# - 1)) '/^```/ { if (inside && plain && (fcl || block !~ /FCL/))
 while IFS= read -r line; do
   grep -qxF -- "$line" shown || fail "$page: no command prints, and aabb.c does not contain: $line"
 done <blocks
+# `live --exit` ends with the program, not with its capture.
+"$program" live --exit -- sh -c './aabb tests/data/gear.obj tests/data/l_block.obj poses.txt; sleep 1; touch ended' >said 2>&1 ||
+  fail "live --exit, a program that continues: exit code $?: $(cat said)"
+[ -f ended ] || fail "live --exit ended a program that continues: $(cat said)"
 # The page of `live`, its events and the page of a query, while the server runs; then its end by a signal.
 "$program" live -- ./aabb tests/data/gear.obj tests/data/l_block.obj poses.txt >said 2>address &
 live=$!
