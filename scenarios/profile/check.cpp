@@ -80,8 +80,9 @@ report::Table wrong_table(std::span<const Check> checks) {
 }
 
 /// The prices of a bar, from the bottom.
-constexpr std::size_t kBarParts = 5;
-constexpr const char* kBarNames[kBarParts] = {"needed", "proof", "volumes", "order", "not split"};
+constexpr std::size_t kBarParts = 6;
+constexpr const char* kBarNames[kBarParts] = {"needed", "proof",     "volumes",
+                                              "order",  "not split", "unattributed"};
 
 report::Chart bars(const std::string& title, const std::string& x) {
   report::Chart out{title, {x}, {"visits"}};
@@ -111,7 +112,8 @@ report::Chart chart_by_query(const Check& c) {
   const std::size_t every = 1 + c.queries.size() / kMaxBars;
   for (std::size_t i = 0; i < c.queries.size(); i += every) {
     const Prices& p = c.queries[i].prices;
-    add_bar(out, c.queries[i].verdict.number, {p.needed, p.proof, p.volumes, p.order, p.unsplit});
+    add_bar(out, c.queries[i].verdict.number,
+            {p.needed, p.proof, p.volumes, p.order, p.unsplit, p.unattributed});
   }
   if (every > 1) out.note = "One of " + std::to_string(every) + " queries.";
   return without_empty(out);

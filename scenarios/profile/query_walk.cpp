@@ -68,7 +68,8 @@ QueryWalk::QueryWalk(CapturedBodies& bodies, const capture::Query& query,
                    [&](std::uint32_t x, std::uint32_t y) { return depth_of(x) < depth_of(y); });
 }
 
-/// Links visits whose parents come later in the list of events, as events of other threads may.
+/// Links visits whose parents come later in the list of events, as events of other threads may, and those of
+/// engines that skip levels.
 void QueryWalk::link_strays() {
   for (const std::uint32_t i : order_) {
     if (parent_[i] != kNone || visit_of(0, 0) == i) continue;
@@ -89,7 +90,24 @@ void QueryWalk::link_strays() {
       visits_[from].children += visits_[from].children < std::numeric_limits<std::uint8_t>::max();
       break;
     }
+    if (parent_[i] == kNone) parent_[i] = closest_above(e.a, e.b);
   }
+}
+
+std::uint32_t QueryWalk::closest_above(std::uint32_t a, std::uint32_t b) const {
+  std::uint32_t best = kNone, best_depth = 0;
+  const std::uint32_t depth_b = index_[1]->depth[b];
+  for (std::uint32_t x = a; x != kNull; x = index_[0]->parent[x]) {
+    if (best != kNone && index_[0]->depth[x] + depth_b <= best_depth) break;  // the rest is less deep
+    for (std::uint32_t y = x == a ? index_[1]->parent[b] : b; y != kNull; y = index_[1]->parent[y]) {
+      const std::uint32_t visit = visit_of(x, y);
+      if (visit == kNone || query_->events[visit].met == 0) continue;
+      const std::uint32_t depth = depth_of(visit);
+      if (best == kNone || depth > best_depth) best = visit, best_depth = depth;
+      break;  // pairs with the same x are less deep
+    }
+  }
+  return best;
 }
 
 bool QueryWalk::is_start(std::size_t event) const {

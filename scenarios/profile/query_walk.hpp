@@ -66,7 +66,8 @@ class QueryWalk {
   const TreeIndex& index(std::size_t side) const { return *index_[side]; }
 
   /// Returns the visit, the index of an event, that led to an event; kNone: the first pair, or unknown.
-  /// Parents are first visits.
+  /// Parents are first visits. An engine may skip levels: then the parent is the closest pair above whose
+  /// volumes overlap.
   std::uint32_t parent(std::size_t event) const { return parent_[event]; }
   /// Returns how the engine continued from a visit; nullopt: it did not.
   std::optional<NodeStep> step(std::size_t event) const { return visits_[event].step; }
@@ -97,6 +98,8 @@ class QueryWalk {
  private:
   void link_strays();
   std::uint32_t deepest_above(std::uint32_t a, std::uint32_t b) const;
+  /// Returns the deepest visited pair above two nodes whose volumes overlap, or kNone if there is none.
+  std::uint32_t closest_above(std::uint32_t a, std::uint32_t b) const;
   /// Returns the depths of an event's nodes added up; kNone: one does not hang under its root.
   std::uint32_t depth_of(std::size_t event) const;
 

@@ -283,8 +283,26 @@ TEST_CASE("Visits beside the descent are unattributed, and repeated ones are ord
   const Prices below = Priced(engine.capture).prices;
   CHECK(below.unattributed == 0);
   CHECK(below.needed == before.needed - 1);
-  // Without these, the rest hangs in the air.
+  // An engine that skips a level: the visits below belong to the closest pair above whose volumes overlap.
   const TreeIndex index(engine.capture.trees[a], 20);
+  const auto level_of = [&](const capture::Event& e) {
+    return e.kind == capture::EventKind::nodes ? index.depth[e.a] + index.depth[e.b] : 0;
+  };
+  q.events = events;
+  const std::uint64_t skipped = std::erase_if(q.events, [&](const auto& e) { return level_of(e) == 3; });
+  REQUIRE(skipped > 0);
+  FaultyEngine::close(q);
+  const Prices fewer = Priced(engine.capture).prices;
+  CHECK(fewer.unattributed == 0);
+  CHECK(fewer.visits == before.visits - skipped);
+  CHECK(sum_of(fewer) == fewer.visits);
+  CHECK(fewer.needed <= before.needed);
+  CHECK(fewer.needed + skipped >= before.needed);
+  for (capture::Event& e : q.events)
+    if (level_of(e) <= 2 && e.kind == capture::EventKind::nodes) e.met = 0;
+  CHECK(Priced(engine.capture).prices.unattributed > 0);
+  // Without the first levels, the rest hangs in the air.
+  q.events.assign(events.begin() + 1, events.end());
   std::uint64_t left = 0;
   std::erase_if(q.events, [&](const capture::Event& e) {
     return e.kind == capture::EventKind::nodes && index.depth[e.a] + index.depth[e.b] <= 2;
