@@ -66,7 +66,7 @@ struct NamedGolden {
   std::optional<golden::Source> source;  ///< nullopt until it has been opened
 };
 
-/// Finds a golden by its own name, or by its scenario: the name of a shipped one, or a file.
+/// Finds a golden by its own name, or by its source: the name of a shipped scenario, or a file.
 NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
   if (golden::has_golden(o.goldens, word)) return {word, std::nullopt};
   golden::Source source = golden::open_source(word);
@@ -393,7 +393,8 @@ void add_folder(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
 CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string& what,
                    const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
   CLI::App* app = golden.add_subcommand(name, what);
-  app->add_option("SCENARIO", o->scenarios, "Shipped scenarios and crowds, or JSON files [" + none + "]");
+  app->add_option("SCENARIO", o->scenarios,
+                  "Shipped scenarios and crowds, JSON files, or captures [" + none + "]");
   add_folder(*app, o);
   return app;
 }

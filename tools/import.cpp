@@ -12,7 +12,6 @@
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
-#include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/capture.hpp>
@@ -25,49 +24,6 @@ struct ImportOptions {
   bool no_check = false;
   PictureOptions picture;
 };
-
-/// Returns the name of a tree's mesh; of one that is named after its file, the file's name alone.
-std::string mesh_name(const capture::Capture& c, std::uint32_t tree) {
-  const std::filesystem::path name = c.meshes[c.trees[tree].mesh].name;
-  if (name.filename().empty()) return "mesh " + std::to_string(c.trees[tree].mesh + 1);
-  const std::string extension = name.extension().string();
-  const bool is_file =
-      extension == ".obj" || extension == ".stl" || extension == ".ply" || extension == ".off";
-  return printable_name((is_file ? name.stem() : name.filename()).string());
-}
-
-/// The scenario of a run: its title, its pictures and the hash of what defines it.
-spec::Scenario scenario_of(const ImportOptions& o, const capture::Capture& c, const profile::TreePair& pair,
-                           const std::vector<bodies::LoadedBody>& bodies) {
-  spec::Scenario s;
-  s.name = mesh_name(c, pair.trees[0]) + "-" + mesh_name(c, pair.trees[1]) + ", " + c.engine;
-  const capture::Query &first = c.queries[pair.queries.front()], &last = c.queries[pair.queries.back()];
-  s.purpose = "Recorded in " + c.engine + ": " + render::counted(pair.queries.size(), "query", "queries") +
-              " of " + printable_name(std::filesystem::path(o.file).filename().string()) + ", number " +
-              std::to_string(first.number) +
-              (pair.queries.size() > 1 ? " to " + std::to_string(last.number) : "") +
-              "; time steps have these numbers.";
-  if (const std::string more = profile::captured_words(c, pair); !more.empty()) s.purpose += " " + more;
-  s.bodies = {{}, {}};
-  s.event_cap = 5'000'000;  // a trace of about a gigabyte
-  s.events = EventLevel::nodes;
-  s.frames.views = whole_and_contact();
-  s.frames.views[0].wrapper = false;
-  s.frames.views[0].title = "Overview";
-  s.frames.views[1].title = "Contact";
-  s.frames.most = 12;
-  s.frames.colour_by = render::FrameSpec::ColourBy::box_tests;
-  Fnv64 hash;
-  for (const bodies::LoadedBody& body : bodies) hash.add_value(body.rep.hash());
-  for (const std::size_t i : pair.queries)
-    for (const Pose& pose : c.queries[i].poses) {
-      hash.add_bytes(pose.r.data(), sizeof(double) * 9);
-      hash.add_bytes(pose.t.data(), sizeof(double) * 3);
-    }
-  s.hash = hash.value();
-  apply(o.picture, s.frames);
-  return s;
-}
 
 /// The imported run of a pair of trees.
 struct Imported {
@@ -84,12 +40,13 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
     bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
   note(globals, bodies[0].notes);
   if (c.trees[pair.trees[0]].mesh != c.trees[pair.trees[1]].mesh) note(globals, bodies[1].notes);
-  spec::Scenario scenario = scenario_of(o, c, pair, bodies);
+  spec::Scenario scenario = profile::captured_scenario(c, pair, bodies, o.file);
+  apply(o.picture, scenario.frames);
   profile::CapturedRunSettings settings;
   settings.name = scenario.name;
   settings.hash = scenario.hash;
   for (std::size_t side = 0; side < 2; ++side)
-    settings.sources[side] = o.file + ", " + mesh_name(c, pair.trees[side]);
+    settings.sources[side] = o.file + ", " + profile::mesh_name(c, pair.trees[side]);
   settings.event_cap = scenario.event_cap;
   settings.check = !o.no_check;
   const run::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, {}, progress);

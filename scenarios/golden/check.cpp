@@ -100,7 +100,9 @@ std::vector<std::string> find_causes(const Golden& golden, const GoldenRun& run)
     const std::string keys = scenario_difference(golden.facts.scenario, compact_json(run.text));
     if (!keys.empty()) out.push_back("the scenario changed: " + keys);
   } else if (x.hash != run.scenario.hash) {
-    out.emplace_back("the scenario file changed since it was approved");
+    out.emplace_back(golden.spec.is_capture()
+                         ? "the bodies or the poses of the capture changed since it was approved"
+                         : "the scenario file changed since it was approved");
   }
   if (run.crowd)
     if (const std::string words = kinds_cause(*golden.crowd, run.crowd->trace); !words.empty())

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/io/files.hpp"
+#include "scenarios/profile/captured_run.hpp"
 #include "scenarios/spec/shipped.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
@@ -370,6 +371,13 @@ std::string scenario_reference(const std::string& goldens, const std::string& na
 }
 
 Source open_source(const std::string& name_or_path) {
+  if (name_or_path.ends_with(kCaptureEnding)) {
+    std::error_code error;
+    if (!fs::is_regular_file(name_or_path, error))
+      throw InputError(printable_name(name_or_path) +
+                       ": no such file; record it again: LRBCAP_OUT=" + printable_name(name_or_path));
+    return CapturedQueries{fs::path(name_or_path).stem().string(), name_or_path, profile::captured_frames()};
+  }
   if (spec::is_crowd(name_or_path)) return spec::open_crowd(name_or_path);
   return spec::open_scenario(name_or_path);
 }
@@ -391,19 +399,22 @@ std::string scenario_of(const std::string& goldens, const std::string& name, con
 }
 
 const char* noun_of(const GoldenSpec& spec) {
-  return spec.is_crowd ? "crowd" : "scenario";
+  return spec.is_crowd ? "crowd" : spec.is_capture() ? "capture" : "scenario";
 }
 
 }  // namespace
 
 std::string scenario_text(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
+  if (spec.is_capture()) return {};
   const std::string_view ending = spec.is_crowd ? spec::kCrowdEnding : spec::kScenarioEnding;
   return spec::open_named(scenario_of(goldens, name, spec), ending, noun_of(spec)).text;
 }
 
 Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
   const std::string file = scenario_of(goldens, name, spec);
-  Source source = spec.is_crowd ? Source(spec::open_crowd(file)) : Source(spec::open_scenario(file));
+  Source source = spec.is_crowd       ? Source(spec::open_crowd(file))
+                  : spec.is_capture() ? open_source(file)
+                                      : Source(spec::open_scenario(file));
   if (name_of(source) != name)
     throw InputError(printable_name(folder_of(goldens, name)) + ": " + kGoldenSpec + " refers to a " +
                      noun_of(spec) + " with the name " + name_of(source) +

@@ -1,6 +1,6 @@
 #pragma once
-/// Reads and writes goldens: what has been approved of a scenario's run, or of a crowd's. A folder of goldens
-/// has a folder for each scenario, with
+/// Reads and writes goldens: what has been approved of a scenario's run, of a crowd's, or of a capture. A
+/// folder of goldens has a folder for each of these, with
 ///
 ///   golden.json            which scenario, drawn how, compared how
 ///   trace.json.gz          the run, on the event clock
@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -41,9 +42,13 @@ constexpr auto enum_names(Level) {
 }
 inline constexpr int kLevels = 4;
 
+/// Files with this ending are captures.
+inline constexpr std::string_view kCaptureEnding = ".lrbcap";
+
 /// The contents of golden.json.
 struct GoldenSpec {
-  std::string scenario;   ///< name of a shipped one, or a file relative to the golden's folder
+  /// Name of a shipped one, or a file, also a capture, relative to the golden's folder.
+  std::string scenario;
   bool is_crowd = false;  ///< `scenario` is a crowd
   int width = 0, height = 0;
   std::uint32_t frames = 3;  ///< maximum number of pictures, evenly chosen from the scenario's frames
@@ -57,6 +62,7 @@ struct GoldenSpec {
   /// (empty: the whole picture).
   std::vector<render::PixelRect> ignore, only;
 
+  bool is_capture() const { return scenario.ends_with(kCaptureEnding); }
   bool compares(Level level) const { return levels[static_cast<std::size_t>(level)]; }
   friend bool operator==(const GoldenSpec&, const GoldenSpec&) = default;
 };
@@ -79,10 +85,16 @@ struct GoldenImage {
   std::string damage;  ///< why it cannot be read, in which case `png` is empty
 };
 
-/// The file that a golden belongs to.
-using Source = std::variant<spec::Scenario, spec::Crowd>;
+/// A capture of another engine, which is read when its golden is tested. Its golden has the file's name.
+struct CapturedQueries {
+  std::string name, file;
+  render::FrameSpec frames;
+};
 
-/// Opens a scenario or a crowd: a shipped one by name, or a file. Throws InputError.
+/// The file that a golden belongs to.
+using Source = std::variant<spec::Scenario, spec::Crowd, CapturedQueries>;
+
+/// Opens a scenario or a crowd, a shipped one by name, or a file; or a capture. Throws InputError.
 Source open_source(const std::string& name_or_path);
 const std::string& name_of(const Source& source);
 const render::FrameSpec& frames_of(const Source& source);
@@ -109,10 +121,10 @@ Golden load_golden(const std::string& goldens, const std::string& name);
 /// Removes a golden: the files that approving wrote, and its folder unless other files are in it. Throws
 /// InputError for a golden that does not exist.
 void remove_golden(const std::string& goldens, const std::string& name);
-/// Returns the scenario or the crowd of a golden.
+/// Returns the scenario, the crowd or the capture of a golden.
 Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
-/// Returns the JSON text of the scenario or the crowd of a golden.
+/// Returns the JSON text of the scenario or the crowd of a golden; of a capture an empty text.
 std::string scenario_text(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
 /// Returns the reference in golden.json to the scenario `name`, opened as `name_or_path`.

@@ -12,8 +12,12 @@
 #include "scenarios/crowd/crowd_frames.hpp"
 #include "scenarios/golden/crowd_difference.hpp"
 #include "scenarios/golden/golden.hpp"
+#include "scenarios/profile/captured_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
+#include <lrbscope/trace/capture.hpp>
 #include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>
@@ -217,6 +221,35 @@ GoldenRun record_scenario(spec::Scenario scenario, const GoldenSpec& spec,
   return run;
 }
 
+GoldenRun record_capture(const CapturedQueries& source, const GoldenSpec& spec,
+                         const run::ProgressReport& progress) {
+  const std::string name = printable_name(source.file);
+  const capture::Capture c = capture::read_capture(source.file);
+  const profile::TreePairs found = profile::tree_pairs(c);
+  if (found.pairs.size() != 1)
+    throw InputError(name + ": expected queries of one pair of trees, found " +
+                     std::to_string(found.pairs.size()) + "; record each pair in a file of its own");
+  const profile::TreePair& pair = found.pairs.front();
+  std::vector<bodies::LoadedBody> bodies;
+  for (const std::uint32_t tree : pair.trees)
+    bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
+  GoldenRun run;
+  run.scenario = profile::captured_scenario(c, pair, bodies, source.file);
+  run.scenario.name = source.name;
+  set_pictures(run.scenario.frames, spec);
+  profile::CapturedRunSettings settings;
+  settings.name = source.name;
+  settings.hash = run.scenario.hash;
+  for (std::size_t side = 0; side < 2; ++side)
+    run.scenario.bodies[side].file = settings.sources[side] =
+        without_folder(source.file) + ", " + profile::mesh_name(c, pair.trees[side]);
+  settings.event_cap = run.scenario.event_cap;
+  run.recording = profile::captured_run(c, pair, std::move(bodies), settings, {}, progress);
+  for (trace::Step& step : run.recording.trace.steps)  // times differ in every recording
+    if (step.result.engine) step.result.engine->begin_ns = step.result.engine->duration_ns = 0;
+  return run;
+}
+
 GoldenRun record_crowd(spec::Crowd crowd, const GoldenSpec& spec, const run::ProgressReport& progress,
                        std::uint32_t threads) {
   constexpr std::uint32_t kAllSlices = 50'000'000;  // of any crowd that fits in memory
@@ -247,6 +280,8 @@ GoldenRun record_golden(Source source, const GoldenSpec& spec, const run::Progre
                         std::uint32_t threads) {
   if (auto* crowd = std::get_if<spec::Crowd>(&source))
     return record_crowd(std::move(*crowd), spec, progress, threads);
+  if (const auto* captured = std::get_if<CapturedQueries>(&source))
+    return record_capture(*captured, spec, progress);
   return record_scenario(std::get<spec::Scenario>(std::move(source)), spec, progress);
 }
 

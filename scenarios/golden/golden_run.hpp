@@ -20,7 +20,7 @@ struct CrowdRecord {
   crowd::CrowdTrace trace;  ///< of the run, as read from its file
 };
 
-/// A scenario or a crowd, run and drawn with its golden's settings.
+/// A scenario, a crowd or a capture, run and drawn with its golden's settings.
 struct GoldenRun {
   spec::Scenario scenario;   ///< of a crowd: its name, purpose, hash and frames, and a body for each kind
   std::string text;          ///< its JSON, see scenario_text(); empty: not recorded in the golden
@@ -34,7 +34,8 @@ struct GoldenRun {
   }
 };
 
-/// Runs a scenario or a crowd, always on the event clock, regardless of its setting, and draws nothing.
+/// Runs a scenario or a crowd, always on the event clock, regardless of its setting, or reads a capture,
+/// without its times. Draws nothing.
 /// `threads` affects only the time of a crowd. Thread-safe.
 GoldenRun record_golden(Source source, const GoldenSpec& spec, const run::ProgressReport& progress,
                         std::uint32_t threads = 1);

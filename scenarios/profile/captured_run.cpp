@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "scenarios/record/engine_run.hpp"
 #include <lrbscope/body.hpp>
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/overlay.hpp>
@@ -312,6 +314,54 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
   if (const std::uint64_t n = count([](const auto& q) { return !q.complete(); }); n > 0)
     add("The capture does not contain all events of " + counted(n, "query.", "queries."));
   return out;
+}
+
+render::FrameSpec captured_frames() {
+  render::FrameSpec out;
+  render::FrameSpec::View whole, contact;
+  whole.title = "Overview";
+  contact.title = "Contact";
+  contact.camera = render::FrameSpec::Camera::contact;
+  whole.wrapper = contact.wrapper = false;
+  out.views = {whole, contact};
+  out.most = 12;
+  out.colour_by = render::FrameSpec::ColourBy::box_tests;
+  return out;
+}
+
+std::string mesh_name(const capture::Capture& c, std::uint32_t tree) {
+  const std::filesystem::path name = c.meshes[c.trees[tree].mesh].name;
+  if (name.filename().empty()) return "mesh " + std::to_string(c.trees[tree].mesh + 1);
+  const std::string extension = name.extension().string();
+  const bool is_file =
+      extension == ".obj" || extension == ".stl" || extension == ".ply" || extension == ".off";
+  return printable_name((is_file ? name.stem() : name.filename()).string());
+}
+
+spec::Scenario captured_scenario(const capture::Capture& c, const TreePair& pair,
+                                 const std::vector<bodies::LoadedBody>& bodies, const std::string& file) {
+  spec::Scenario s;
+  s.name = mesh_name(c, pair.trees[0]) + "-" + mesh_name(c, pair.trees[1]) + ", " + c.engine;
+  const capture::Query &first = c.queries[pair.queries.front()], &last = c.queries[pair.queries.back()];
+  s.purpose = "Recorded in " + c.engine + ": " + counted(pair.queries.size(), "query", "queries") + " of " +
+              printable_name(std::filesystem::path(file).filename().string()) + ", number " +
+              std::to_string(first.number) +
+              (pair.queries.size() > 1 ? " to " + std::to_string(last.number) : "") +
+              "; time steps have these numbers.";
+  if (const std::string more = captured_words(c, pair); !more.empty()) s.purpose += " " + more;
+  s.bodies = {{}, {}};
+  s.event_cap = 5'000'000;  // a trace of about a gigabyte
+  s.events = EventLevel::nodes;
+  s.frames = captured_frames();
+  Fnv64 hash;
+  for (const bodies::LoadedBody& body : bodies) hash.add_value(body.rep.hash());
+  for (const std::size_t i : pair.queries)
+    for (const Pose& pose : c.queries[i].poses) {
+      hash.add_bytes(pose.r.data(), sizeof(double) * 9);
+      hash.add_bytes(pose.t.data(), sizeof(double) * 3);
+    }
+  s.hash = hash.value();
+  return s;
 }
 
 CapturedTotals& CapturedTotals::operator+=(const CapturedTotals& o) {

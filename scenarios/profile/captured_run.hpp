@@ -10,6 +10,7 @@
 
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/record/recorded_run.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include <lrbscope/trace/capture.hpp>
 #include <lrbscope/trace/work.hpp>
 
@@ -64,6 +65,16 @@ run::Recording captured_run(const capture::Capture& capture, const TreePair& pai
 /// Returns sentences about the pictures of a pair's run: volumes drawn as boxes, queries of one body
 /// with itself, queries that were not kept or not compared. Empty if there is nothing to say.
 std::string captured_words(const capture::Capture& capture, const TreePair& pair);
+
+/// Returns the name of a tree's mesh; of one that is named after its file, the file's name alone.
+std::string mesh_name(const capture::Capture& capture, std::uint32_t tree);
+
+/// Returns the pictures of a captured run: the bodies and the contact, side by side.
+render::FrameSpec captured_frames();
+/// Returns the scenario of a pair's run: its title, its pictures and the hash of what defines it. `file`: of
+/// the capture.
+spec::Scenario captured_scenario(const capture::Capture& capture, const TreePair& pair,
+                                 const std::vector<bodies::LoadedBody>& bodies, const std::string& file);
 
 /// Totals of a run, for one line of text.
 struct CapturedTotals {

@@ -4,8 +4,10 @@
 #include "scenarios/profile/captured_run.hpp"
 
 #include <array>
+#include <filesystem>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -518,6 +520,59 @@ TEST_CASE("import: a run that other commands open, a line of totals, or one clea
     CAPTURE(bad.back());
     check_rejected(folder, bad);
   }
+}
+
+TEST_CASE("golden: a capture is approved, and a later one of another walk, answer or pose fails") {
+  const Folder folder;
+  const auto record = [&](double x, bool lies) {
+    ToyEngine engine = two_balls();
+    bool is_first = lies;
+    engine.wrong = [&](std::uint32_t, std::uint32_t, bool meets) {
+      return meets && !std::exchange(is_first, false);
+    };
+    engine.query(0, 1, {x, 0.5, 0.25});
+    engine.query(0, 1, {3, 0, 0});
+    write_capture(engine.capture, folder / "run.lrbcap");
+  };
+  const auto golden = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"--quiet", "golden"});
+    return run(folder, words);
+  };
+  record(1.25, false);
+  Outcome outcome = golden({"approve", "--goldens", "g", "run.lrbcap", "--size", "320x240", "--frames", "1"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.code == 0);
+  CHECK(outcome.out.find("approved g/run/golden.json") != std::string::npos);
+  CHECK(outcome.out.find("approved g/run/a.ply") != std::string::npos);
+  CHECK(golden({"list", "--goldens", "g"}).out.find("run: ../../run.lrbcap; ") == 0);
+  // The times of a recording are not compared.
+  record(1.25, false);
+  outcome = golden({"test", "--goldens", "g"});
+  CAPTURE(outcome.out);
+  CHECK(outcome.code == 0);
+  CHECK(golden({"test", "--goldens", "g", "run.lrbcap"}).code == 0);
+  record(1.25, true);
+  outcome = golden({"test", "--goldens", "g", "run"});
+  CHECK(outcome.code == 1);
+  CHECK(outcome.out.find("pairs") != std::string::npos);
+  record(1.26, false);
+  outcome = golden({"test", "--goldens", "g"});
+  CHECK(outcome.code == 1);
+  CHECK(outcome.out.find("the bodies or the poses of the capture changed") != std::string::npos);
+  CHECK(outcome.out.find("body B moved") != std::string::npos);
+  CHECK(golden({"approve", "--goldens", "g", "run"}).code == 0);
+  CHECK(golden({"test", "--goldens", "g"}).code == 0);
+  // Bad input.
+  check_rejected(folder, {"golden", "approve", "--goldens", "h", "none.lrbcap"});
+  folder.write("text.lrbcap", "solid x\n");
+  check_rejected(folder, {"golden", "approve", "--goldens", "h", "text.lrbcap"});
+  ToyEngine many;
+  for (const char* name : {"floor", "crate", "ball"}) many.add(captured(shapes::box(), name));
+  many.query(0, 1, {0.5, 0.5, 0.5});
+  many.query(1, 2, {0.5, 0.25, 0.5});
+  write_capture(many.capture, folder / "many.lrbcap");
+  check_rejected(folder, {"golden", "approve", "--goldens", "h", "many.lrbcap"});
+  CHECK_FALSE(std::filesystem::exists(folder / "h"));
 }
 
 TEST_CASE("import: many pairs of trees get a page that lists their runs") {
