@@ -107,7 +107,7 @@ def report(
     ...     _ = s.add(cube, shifted(x, 0.25, 0.125))
     >>> r = s.report(pictures=False)
     >>> r
-    <lrbscope.Report of 3 bodies: 1 pairs in contact>
+    <lrbscope.Report of 3 bodies: 1 pair in contact>
     >>> r.rows[0].kind, r.rows[0].depth[0] <= 0.25 <= r.rows[0].depth[1]
     ('protrudes', True)
     """

@@ -87,7 +87,7 @@ TEST_CASE("compare: two constructions of a body, pass by pass; one body with two
   CHECK(differ.code == 1);
   CHECK(differ.out.find("step 0, event ") != std::string::npos);
   for (const char* part : {"\nregions: ", " in few, ", " are in both (", " only in many", "\n  region ",
-                           ": lids ", ", refused "})
+                           ": lids ", ", rejected "})
     CHECK(differ.out.find(part) != std::string::npos);
   const std::string page = slurp(runs.folder / "built/index.html");
   for (const char* part : {"<h2>Passes</h2>", "regions, few", "The front by event", "outermost wrapper",
