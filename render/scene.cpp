@@ -170,11 +170,8 @@ void add_pair_under_test(std::span<const SceneBody> bodies, const SceneHighlight
     const SimplexId simplex = (*highlight.under_test)[i];
     std::array<VertexId, 3> ids{};
     body.rep->simplex(simplex, ids.data());
-    const CellId behind = body.rep->inner_cell(body.rep->face_of_simplex(simplex));
     const Eigen::Vector3d moved =
-        options.explode > 0 && is_region(behind)
-            ? exploded_way(*body.rep, body.pose, behind.as_region(), options.explode)
-            : Eigen::Vector3d::Zero();
+        exploded_way(*body.rep, body.pose, body.rep->face_of_simplex(simplex), options.explode);
     const auto corner = [&](int k) -> Eigen::Vector3d {
       return body.pose.apply(body.rep->vertices()[ids[static_cast<std::size_t>(k)]]) + moved;
     };
@@ -314,6 +311,12 @@ Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, do
   const double length = out.norm();
   const double way = length + kLayerStep * radius * (1 + rep.layer(r));
   return length > 0 ? Eigen::Vector3d(out * (explode * way / length)) : Eigen::Vector3d::Zero();
+}
+
+Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, FaceId f, double explode) {
+  const CellId behind = rep.inner_cell(f);
+  if (!(explode > 0) || !is_region(behind)) return Eigen::Vector3d::Zero();
+  return exploded_way(rep, pose, behind.as_region(), explode);
 }
 
 std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> contacts) {

@@ -86,7 +86,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   if (o.events) s.events = *o.events;
   if (o.clock) s.clock = *o.clock;
   s.frames.montage = 6;
-  s.frames.views = whole_and_contact();
+  s.frames.views = run::whole_and_contact();
   if (!o.poses.empty()) {
     s.motion.kind = spec::Motion::Kind::poses;
     s.motion.poses = io::open_poses(o.poses).poses;

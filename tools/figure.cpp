@@ -151,7 +151,7 @@ std::vector<render::FrameSpec::View> views_to_try(const std::string& up, const L
 
 render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const Globals& globals) {
   render::FrameSpec frames = source.frames;
-  if (o.close_up) frames.views = whole_and_contact(frames.views);
+  if (o.close_up) frames.views = run::whole_and_contact(frames.views);
   // Two bodies: one view by default, so that the figure takes at most half a page.
   const std::size_t views = o.views > 0                                         ? o.views
                             : source.recording.bodies.size() == 1 || o.close_up ? 26

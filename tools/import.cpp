@@ -35,19 +35,12 @@ struct Imported {
 Imported import_pair(const ImportOptions& o, const Globals& globals, const capture::Capture& c,
                      const profile::TreePair& pair, const std::string& folder) {
   const run::ProgressReport progress = progress_report(globals.quiet);
-  std::vector<bodies::LoadedBody> bodies;
-  for (const std::uint32_t tree : pair.trees)
-    bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
+  std::vector<bodies::LoadedBody> bodies = profile::captured_bodies(c, pair);
   note(globals, bodies[0].notes);
   if (c.trees[pair.trees[0]].mesh != c.trees[pair.trees[1]].mesh) note(globals, bodies[1].notes);
   spec::Scenario scenario = profile::captured_scenario(c, pair, bodies, o.file);
   apply(o.picture, scenario.frames);
-  profile::CapturedRunSettings settings;
-  settings.name = scenario.name;
-  settings.hash = scenario.hash;
-  for (std::size_t side = 0; side < 2; ++side)
-    settings.sources[side] = o.file + ", " + profile::mesh_name(c, pair.trees[side]);
-  settings.event_cap = scenario.event_cap;
+  profile::CapturedRunSettings settings = profile::captured_settings(scenario, c, pair, o.file);
   settings.check = !o.no_check;
   const run::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, {}, progress);
   const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);

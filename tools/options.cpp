@@ -316,20 +316,6 @@ std::uint32_t all_cores() {
   return std::max(1U, std::thread::hardware_concurrency());
 }
 
-std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as) {
-  render::FrameSpec::View whole, contact;
-  if (!as.empty() && as[0].camera != render::FrameSpec::Camera::fixed) {
-    whole.from = contact.from = as[0].from;
-    whole.up = contact.up = as[0].up;
-    whole.orthographic = contact.orthographic = as[0].orthographic;
-  }
-  whole.title = "Overview with wrappers";
-  contact.title = "Contact without wrappers";
-  contact.camera = render::FrameSpec::Camera::contact;
-  contact.wrapper = false;
-  return {whole, contact};
-}
-
 void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals) {
   if (camera.up != "auto") return;
   const std::optional<int> guess = run::likely_up(rep);

@@ -184,10 +184,6 @@ void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals
 /// Returns a view rotated so that an axis (0, 1, 2) points up instead of z.
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 
-/// Returns two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
-/// Both use the direction of the first given view.
-std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as = {});
-
 /// Selects the view direction across the line from A to B from which the bodies hide least of the contacts,
 /// unless one was given. Omits a close-up that would show almost the entire scene.
 void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Recording& recording);

@@ -7,6 +7,7 @@
 #include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/frames/frames.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_page.hpp"
@@ -98,7 +99,7 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
 /// Returns the drawing options: those of the run, `pictures`, overridden by the command line.
 render::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
   render::FrameSpec spec = spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
-  if (o.close_up) spec.views = whole_and_contact(spec.views);
+  if (o.close_up) spec.views = run::whole_and_contact(spec.views);
   apply(o.picture, spec);
   if (!o.events.empty()) {
     spec.at = render::FrameSpec::At::events;

@@ -3,6 +3,7 @@
 
 #include "scenarios/crowd/crowd_pair.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/shipped.hpp"
@@ -34,7 +35,7 @@ int run_pair(const CrowdOptions& o, const Globals& globals) {
   const lrb::BodyPair pair = crowd::find_pair(trace, o.pair);
   spec::Scenario scenario = crowd::scenario_of_pair(trace, pair, path);
   scenario.frames.montage = 6;
-  scenario.frames.views = whole_and_contact();
+  scenario.frames.views = run::whole_and_contact();
   if (o.no_frames) scenario.frames.at = render::FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   const run::ProgressReport progress = progress_report(globals.quiet);

@@ -5,6 +5,7 @@
 #include "bench/methods/triangles.hpp"
 #include "bench/xray/foreign_walk.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/poses.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
@@ -34,7 +35,7 @@ spec::Scenario scenario_of(const XrayOptions& o, const std::vector<bodies::Loade
   s.request.contacts = true;
   s.events = EventLevel::nodes;
   s.event_cap = 20'000'000;  // half a gigabyte
-  s.frames.views = whole_and_contact();
+  s.frames.views = run::whole_and_contact();
   s.frames.views[0].wrapper = false;
   s.frames.views[0].title = "Overview";
   s.frames.most = 12;

@@ -100,15 +100,18 @@ struct EnclosedBuffers {
   ParitySets sides;               ///< of the near vertices: joined if it is known whether their sides differ
   enum class Location : std::uint8_t { unknown, inside, outside, on_surface };
   std::vector<Location> location;  ///< of near vertices: those on the other surface, and leaders
-  // Enclosed vertices, in connected parts.
+  /// Enclosed vertices that edges connect: `inside` from `begin` to `end`.
+  struct Part {
+    std::size_t begin, end;
+    std::uint32_t call = 0;  ///< the last call of from() that returned it
+  };
   static constexpr std::uint32_t kOutside = kNull - 1;
-  std::vector<std::uint32_t> part;         ///< (|near|) kNull if not yet known
-  SparseNumbers reached;                   ///< by a search
-  std::vector<VertexId> inside;            ///< those of these that are inside, part by part
-  std::vector<std::uint32_t> part_begin;   ///< index into `inside`, by part
-  std::vector<std::uint32_t> part_listed;  ///< the last call of from() that returned it, by part
-  std::vector<std::uint32_t> listed;       ///< the parts of the current call
-  std::vector<VertexId> joined;            ///< their vertices, if there are several
+  std::vector<std::uint32_t> part;    ///< (|near|) kNull if not yet known
+  SparseNumbers reached;              ///< by a search
+  std::vector<VertexId> inside;       ///< those of these that are inside, part by part
+  std::vector<Part> parts;            ///< found so far
+  std::vector<std::uint32_t> listed;  ///< the parts of the current call
+  std::vector<VertexId> joined;       ///< their vertices, if there are several
 };
 
 /// The intersection of two surfaces as a graph: points, the segments between them, and coplanar polygons.

@@ -52,8 +52,7 @@ void EnclosedVertices::collect_cuts() {
   b.cuts.clear();
   b.location.clear();
   b.reached.begin(rep.vertices().size());
-  b.part_begin.clear();
-  b.part_listed.clear();
+  b.parts.clear();
   b.inside.clear();
   for (std::uint32_t i = 0; i < result_.pairs.size(); ++i) {
     VertexId v[3];
@@ -130,7 +129,7 @@ std::uint32_t EnclosedVertices::find_part(std::uint32_t near, VertexId seed) {
   EnclosedBuffers& b = buffers_;
   if (!is_inside(near, seed)) return b.part[near] = EnclosedBuffers::kOutside;
   // Breadth-first search over surface edges; each vertex is visited once.
-  const auto part = static_cast<std::uint32_t>(b.part_begin.size());
+  const auto part = static_cast<std::uint32_t>(b.parts.size());
   const auto visit = [&](VertexId v) {
     if (!b.reached.add(v).second) return;
     // Only edges of simplices in contact can cross the other surface, so that only their corners need to be
@@ -141,13 +140,12 @@ std::uint32_t EnclosedVertices::find_part(std::uint32_t near, VertexId seed) {
     }
     b.inside.push_back(v);
   };
-  std::size_t next = b.inside.size();
-  b.part_begin.push_back(static_cast<std::uint32_t>(next));
-  b.part_listed.push_back(0);
+  const std::size_t begin = b.inside.size();
   visit(seed);
   const SurfaceGraph& graph = body_.rep().surface_graph();
-  for (; next < b.inside.size(); ++next)
+  for (std::size_t next = begin; next < b.inside.size(); ++next)
     for (const VertexId v : graph.neighbours(b.inside[next])) visit(v);
+  b.parts.push_back({begin, b.inside.size()});
   return part;
 }
 
@@ -156,8 +154,7 @@ std::span<const VertexId> EnclosedVertices::from(std::span<const std::uint32_t> 
   if (!holder_.rep().closed()) return {};
   // The parts of the enclosed corners of the simplices in these pairs.
   b.listed.clear();
-  ++searches_;
-  std::uint32_t last = EnclosedBuffers::kOutside;
+  ++calls_;
   for (const std::uint32_t i : pairs) {
     VertexId v[3];
     body_.rep().simplex(simplex(i), v);
@@ -165,14 +162,14 @@ std::span<const VertexId> EnclosedVertices::from(std::span<const std::uint32_t> 
       const std::uint32_t near = b.near(v[k]);
       std::uint32_t part = b.part[near];
       if (part == kNull) part = find_part(near, v[k]);
-      if (part == EnclosedBuffers::kOutside || part == last || b.part_listed[part] == searches_) continue;
-      b.part_listed[part] = searches_;
-      b.listed.push_back(last = part);
+      if (part == EnclosedBuffers::kOutside || b.parts[part].call == calls_) continue;
+      b.parts[part].call = calls_;
+      b.listed.push_back(part);
     }
   }
   const auto vertices = [&](std::uint32_t part) {
-    const std::size_t end = part + 1 < b.part_begin.size() ? b.part_begin[part + 1] : b.inside.size();
-    return std::span<const VertexId>(b.inside).subspan(b.part_begin[part], end - b.part_begin[part]);
+    const auto& [begin, end, call] = b.parts[part];
+    return std::span<const VertexId>(b.inside).subspan(begin, end - begin);
   };
   if (b.listed.empty()) return {};
   if (b.listed.size() == 1) return vertices(b.listed[0]);

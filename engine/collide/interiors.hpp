@@ -48,7 +48,7 @@ class EnclosedVertices {
   Side side_;
   const CollideResult& result_;
   EnclosedBuffers& buffers_;
-  std::uint32_t searches_ = 0;
+  std::uint32_t calls_ = 0;  ///< of from()
 };
 
 /// Returns the side of the line p q on which r lies, as the sign of an orientation. All three points are in

@@ -53,8 +53,7 @@ class Report:
         self.rows, self.bodies = rows, bodies
 
     def __repr__(self) -> str:
-        pairs = f"{len(self.rows)} pair" + ("" if len(self.rows) == 1 else "s")
-        return f"<lrbscope.Report of {self.bodies} bodies: {pairs} in contact>"
+        return f"<lrbscope.Report of {self.bodies} bodies: {_counted(len(self.rows), 'pair', 'pairs')} in contact>"
 
     def __len__(self) -> int:
         return len(self.rows)

@@ -216,13 +216,13 @@ class FigureJob {
   /// Returns the pose of a target as drawn: exploded bodies show regions, with their lids, away from their
   /// places.
   Pose pose_of(const Target& target) const {
-    const Pose pose = state_.pose(static_cast<Side>(target.body));
+    Pose pose = state_.pose(static_cast<Side>(target.body));
     if (!(frames_.explode > 0) || target.kind == Target::Kind::contact) return pose;
     const LrbRep& rep = rep_of(target);
-    const CellId cell = target.kind == Target::Kind::face ? rep.inner_cell(FaceId(target.number))
-                                                          : CellId(RegionId(target.number));
-    if (!is_region(cell)) return pose;
-    return {pose.r, pose.t + render::exploded_way(rep, pose, cell.as_region(), frames_.explode)};
+    pose.t += target.kind == Target::Kind::face
+                  ? render::exploded_way(rep, pose, FaceId(target.number), frames_.explode)
+                  : render::exploded_way(rep, pose, RegionId(target.number), frames_.explode);
+    return pose;
   }
 
   /// Returns a target's box in a view of the current state.

@@ -147,7 +147,7 @@ std::vector<Vector3d> directions_across(const Vector3d& axis, const Vector3d& up
 Vector3d min_hidden_of(const RecordedRun& recorded, const std::vector<Vector3d>& candidates,
                        const Vector3d& up, const Vector3d& like) {
   const std::size_t step = last_contact(recorded);
-  if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return like;
+  if (step >= recorded.trace->steps.size()) return like;
   const trace::Step& s = recorded.trace->steps[step];
   const PosedBodies bodies{*recorded.reps[0], s.pose_a, *recorded.reps[1], s.pose_b};
   const render::DrawList list = render::build_scene(bodies.in_scene()).list;
@@ -229,6 +229,20 @@ Vector3d min_hidden(const RecordedRun& recorded, const Vector3d& up, const Vecto
     return min_hidden_of(recorded, directions(up), up, like);
   const std::vector<Vector3d> candidates = directions_across(axis, up);
   return min_hidden_of(recorded, candidates, up, candidates.front());
+}
+
+std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as) {
+  render::FrameSpec::View whole, contact;
+  if (!as.empty() && as[0].camera != render::FrameSpec::Camera::fixed) {
+    whole.from = contact.from = as[0].from;
+    whole.up = contact.up = as[0].up;
+    whole.orthographic = contact.orthographic = as[0].orthographic;
+  }
+  whole.title = "Overview with wrappers";
+  contact.title = "Contact without wrappers";
+  contact.camera = render::FrameSpec::Camera::contact;
+  contact.wrapper = false;
+  return {whole, contact};
 }
 
 void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views) {

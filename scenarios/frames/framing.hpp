@@ -26,6 +26,10 @@ std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& recorded, co
 Eigen::Vector3d min_hidden(const RecordedRun& recorded, const Eigen::Vector3d& up,
                            const Eigen::Vector3d& like);
 
+/// Returns two views side by side: the whole scene with the wrappers, and the contact with the bodies alone.
+/// Both use the direction of the first given view.
+std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as = {});
+
 /// Shows both bodies completely in close-ups of the contacts that would magnify little and only cut off
 /// parts.
 void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views);

@@ -230,20 +230,14 @@ GoldenRun record_capture(const CapturedQueries& source, const GoldenSpec& spec,
     throw InputError(name + ": expected queries of one pair of trees, found " +
                      std::to_string(found.pairs.size()) + "; record each pair in a file of its own");
   const profile::TreePair& pair = found.pairs.front();
-  std::vector<bodies::LoadedBody> bodies;
-  for (const std::uint32_t tree : pair.trees)
-    bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
+  std::vector<bodies::LoadedBody> bodies = profile::captured_bodies(c, pair);
   GoldenRun run;
   run.scenario = profile::captured_scenario(c, pair, bodies, source.file);
   run.scenario.name = source.name;
   set_pictures(run.scenario.frames, spec);
-  profile::CapturedRunSettings settings;
-  settings.name = source.name;
-  settings.hash = run.scenario.hash;
-  for (std::size_t side = 0; side < 2; ++side)
-    run.scenario.bodies[side].file = settings.sources[side] =
-        without_folder(source.file) + ", " + profile::mesh_name(c, pair.trees[side]);
-  settings.event_cap = run.scenario.event_cap;
+  const profile::CapturedRunSettings settings =
+      profile::captured_settings(run.scenario, c, pair, without_folder(source.file));
+  for (std::size_t side = 0; side < 2; ++side) run.scenario.bodies[side].file = settings.sources[side];
   run.recording = profile::captured_run(c, pair, std::move(bodies), settings, {}, progress);
   // Times and the numbers of threads differ from recording to recording.
   for (trace::Step& step : run.recording.trace.steps)

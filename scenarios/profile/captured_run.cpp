@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "render/pictures/panel.hpp"
+#include "scenarios/frames/framing.hpp"
 #include "scenarios/profile/volumes.hpp"
 #include "scenarios/profile/walk.hpp"
 #include "scenarios/record/engine_run.hpp"
@@ -318,12 +319,10 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
 
 render::FrameSpec captured_frames() {
   render::FrameSpec out;
-  render::FrameSpec::View whole, contact;
-  whole.title = "Overview";
-  contact.title = "Contact";
-  contact.camera = render::FrameSpec::Camera::contact;
-  whole.wrapper = contact.wrapper = false;
-  out.views = {whole, contact};
+  out.views = run::whole_and_contact();
+  out.views[0].wrapper = false;
+  out.views[0].title = "Overview";
+  out.views[1].title = "Contact";
   out.most = 12;
   out.colour_by = render::FrameSpec::ColourBy::box_tests;
   return out;
@@ -362,6 +361,23 @@ spec::Scenario captured_scenario(const capture::Capture& c, const TreePair& pair
     }
   s.hash = hash.value();
   return s;
+}
+
+std::vector<bodies::LoadedBody> captured_bodies(const capture::Capture& c, const TreePair& pair) {
+  std::vector<bodies::LoadedBody> out;
+  for (const std::uint32_t tree : pair.trees) out.push_back(captured_body(c.meshes[c.trees[tree].mesh]));
+  return out;
+}
+
+CapturedRunSettings captured_settings(const spec::Scenario& scenario, const capture::Capture& c,
+                                      const TreePair& pair, const std::string& file) {
+  CapturedRunSettings out;
+  out.name = scenario.name;
+  out.hash = scenario.hash;
+  for (std::size_t side = 0; side < 2; ++side)
+    out.sources[side] = file + ", " + mesh_name(c, pair.trees[side]);
+  out.event_cap = scenario.event_cap;
+  return out;
 }
 
 CapturedTotals& CapturedTotals::operator+=(const CapturedTotals& o) {

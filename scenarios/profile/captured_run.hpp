@@ -75,6 +75,11 @@ render::FrameSpec captured_frames();
 /// the capture.
 spec::Scenario captured_scenario(const capture::Capture& capture, const TreePair& pair,
                                  const std::vector<bodies::LoadedBody>& bodies, const std::string& file);
+/// Returns the bodies of a pair of trees.
+std::vector<bodies::LoadedBody> captured_bodies(const capture::Capture& capture, const TreePair& pair);
+/// Returns the settings of the run of a scenario. `file`: name of the capture in the sources of the bodies.
+CapturedRunSettings captured_settings(const spec::Scenario& scenario, const capture::Capture& capture,
+                                      const TreePair& pair, const std::string& file);
 
 /// Totals of a run, for one line of text.
 struct CapturedTotals {

@@ -94,20 +94,25 @@ void QueryWalk::link_strays() {
   }
 }
 
-std::uint32_t QueryWalk::closest_above(std::uint32_t a, std::uint32_t b) const {
+template <class Accept>
+std::uint32_t QueryWalk::deepest_from(std::uint32_t a, std::uint32_t b, const Accept& accept) const {
   std::uint32_t best = kNone, best_depth = 0;
   const std::uint32_t depth_b = index_[1]->depth[b];
   for (std::uint32_t x = a; x != kNull; x = index_[0]->parent[x]) {
     if (best != kNone && index_[0]->depth[x] + depth_b <= best_depth) break;  // the rest is less deep
-    for (std::uint32_t y = x == a ? index_[1]->parent[b] : b; y != kNull; y = index_[1]->parent[y]) {
+    for (std::uint32_t y = b; y != kNull; y = index_[1]->parent[y]) {
       const std::uint32_t visit = visit_of(x, y);
-      if (visit == kNone || query_->events[visit].met == 0) continue;
+      if (visit == kNone || !accept(query_->events[visit])) continue;
       const std::uint32_t depth = depth_of(visit);
       if (best == kNone || depth > best_depth) best = visit, best_depth = depth;
       break;  // pairs with the same x are less deep
     }
   }
   return best;
+}
+
+std::uint32_t QueryWalk::closest_above(std::uint32_t a, std::uint32_t b) const {
+  return deepest_from(a, b, [&](const capture::Event& e) { return e.met > 0 && (e.a != a || e.b != b); });
 }
 
 bool QueryWalk::is_start(std::size_t event) const {
@@ -134,17 +139,7 @@ std::uint32_t QueryWalk::deepest_above(const TrianglePair& pair) const {
 std::uint32_t QueryWalk::deepest_above(std::uint32_t a, std::uint32_t b) const {
   const std::uint32_t leaf_a = index_[0]->leaf[a], leaf_b = index_[1]->leaf[b];
   if (leaf_a == kNull || leaf_b == kNull) return kNone;
-  if (const std::uint32_t leaves = visit_of(leaf_a, leaf_b); leaves != kNone) return leaves;
-  std::uint32_t best = kNone, best_depth = 0;
-  for (std::uint32_t x = leaf_a; x != kNull; x = index_[0]->parent[x])
-    for (std::uint32_t y = leaf_b; y != kNull; y = index_[1]->parent[y]) {
-      const std::uint32_t visit = visit_of(x, y);
-      if (visit == kNone) continue;
-      const std::uint32_t depth = depth_of(visit);
-      if (best == kNone || depth > best_depth) best = visit, best_depth = depth;
-      break;  // pairs with the same x are less deep
-    }
-  return best;
+  return deepest_from(leaf_a, leaf_b, [](const capture::Event&) { return true; });
 }
 
 }  // namespace lrb::profile

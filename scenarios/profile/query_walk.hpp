@@ -98,6 +98,9 @@ class QueryWalk {
  private:
   void link_strays();
   std::uint32_t deepest_above(std::uint32_t a, std::uint32_t b) const;
+  /// Returns the deepest accepted visit of two nodes or of nodes above them, or kNone if there is none.
+  template <class Accept>
+  std::uint32_t deepest_from(std::uint32_t a, std::uint32_t b, const Accept& accept) const;
   /// Returns the deepest visited pair above two nodes whose volumes overlap, or kNone if there is none.
   std::uint32_t closest_above(std::uint32_t a, std::uint32_t b) const;
   /// Returns the depths of an event's nodes added up; kNone: one does not hang under its root.

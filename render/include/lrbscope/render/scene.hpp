@@ -158,6 +158,8 @@ std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose);
 /// Returns the displacement of a region of a posed body by SceneOptions::explode, away from the body's
 /// centre.
 Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, double explode);
+/// Returns that of a face, which is moved with the region whose lid it is; zero for real faces.
+Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, FaceId f, double explode);
 
 /// Returns all points of the contact regions.
 std::vector<Eigen::Vector3d> contact_points(std::span<const ContactRegion> contacts);
