@@ -49,6 +49,9 @@ endif()
 if(LRB_SANITIZE)
   target_compile_options(lrb_own_options INTERFACE -fsanitize=${LRB_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(lrb_own_options INTERFACE -fsanitize=${LRB_SANITIZE})
+  if(LRB_SANITIZE MATCHES "address")  # clang 14 defines no macro
+    target_compile_definitions(lrb_own_options INTERFACE LRB_ADDRESS_SANITIZER)
+  endif()
 endif()
 if(LRB_HARDEN)
   # Checked copies, stack protector, position-independent executables, and relocation tables read-only after loading.

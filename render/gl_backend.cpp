@@ -16,15 +16,7 @@
 #include <lrbscope/error.hpp>
 
 // For builds with the leak sanitizer: Mesa never frees about a kilobyte per process.
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define LRB_LEAK_SANITIZER 1
-#endif
-#elif defined(__SANITIZE_ADDRESS__)
-#define LRB_LEAK_SANITIZER 1
-#endif
-
-#ifdef LRB_LEAK_SANITIZER
+#ifdef LRB_ADDRESS_SANITIZER
 extern "C" const char* __lsan_default_suppressions();  // NOLINT: the sanitizer's name
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libOSMesa\nleak:libEGL\n";

@@ -34,8 +34,7 @@ std::vector<Triangle> triangles_of(const Model& model) {
 /// Returns the unit normal; zero for a triangle without area, as is common in STL.
 Eigen::Vector3d normal_of(const Triangle& t) {
   const Eigen::Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
-  const double length = n.stableNorm();
-  return length > 0 && std::isfinite(length) ? Eigen::Vector3d(n / length) : Eigen::Vector3d(0, 0, 0);
+  return n.allFinite() ? n.stableNormalized() : Eigen::Vector3d(0, 0, 0);
 }
 
 std::string text_of(const Eigen::Vector3d& x) {

@@ -22,7 +22,7 @@ using namespace lrb::test;
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef LRB_ADDRESS_SANITIZER
 constexpr bool kCountsMemory = false;  // shadow memory counts, too
 #else
 constexpr bool kCountsMemory = true;

@@ -10,7 +10,7 @@ namespace {
 
 std::vector<std::string> models() {
   std::vector<std::string> names = {"spot", "homer", "fandisk", "cheburashka", "rocker-arm"};
-#if !defined(__SANITIZE_ADDRESS__)  // 100,000 faces: the proof takes seconds, under the sanitizers a minute
+#ifndef LRB_ADDRESS_SANITIZER  // 100,000 faces: the proof takes seconds, under the sanitizers a minute
   names.push_back("nefertiti");
 #endif
   return names;

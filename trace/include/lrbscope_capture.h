@@ -181,7 +181,7 @@ void lrbcap_push(uint8_t kind, uint32_t a, uint32_t b, uint8_t tests, uint8_t me
 #else
 typedef struct lrbcap_event { /* 12 bytes; 3 to 14 in the file */
   uint32_t a, b;
-  uint8_t kind, tests, met, axis;
+  uint32_t what; /* from the lowest byte: kind, tests, met, axis */
 } lrbcap_event;
 typedef struct lrbcap_buffer {
   lrbcap_event *next, *last; /* where the next event goes; the last place */
@@ -196,10 +196,8 @@ LRBCAP_INLINE void lrbcap_push(uint8_t kind, uint32_t a, uint32_t b, uint8_t tes
     lrbcap_event* const e = buffer->next;
     e->a = a;
     e->b = b;
-    e->kind = kind;
-    e->tests = tests;
-    e->met = met;
-    e->axis = axis;
+    e->what = kind | LRBCAP_CAST(uint32_t, tests) << 8 | LRBCAP_CAST(uint32_t, met) << 16 |
+              LRBCAP_CAST(uint32_t, axis) << 24;
     if (kind >= LRBCAP_KIND_COUNT) ++buffer->notes;
     buffer->next = e + 1;
     if (LRBCAP_UNLIKELY(e == buffer->last)) lrbcap_full();
@@ -592,10 +590,13 @@ uint32_t lrbcap_name(const char* name) {
 
 /* ---- Events. */
 
-/* A number as the difference from the one before, its sign in the lowest bit, seven bits per byte. */
-static unsigned char* lrbcap_difference(unsigned char* p, uint32_t now, uint32_t before) {
+/* The difference of two numbers with its sign in the lowest bit. */
+static uint32_t lrbcap_difference(uint32_t now, uint32_t before) {
   const uint32_t d = now - before;
-  uint32_t z = (d << 1) ^ (0u - (d >> 31));
+  return (d << 1) ^ (0u - (d >> 31));
+}
+/* A number, seven bits per byte, from the lowest. */
+static unsigned char* lrbcap_varint(unsigned char* p, uint32_t z) {
   while (z >= 128) {
     *p++ = LRBCAP_CAST(unsigned char, (z & 127) | 128);
     z >>= 7;
@@ -619,17 +620,22 @@ static void lrbcap_store_events(lrbcap_state* s, int notes_only) {
   s->buffer.notes = 0;
   if (!any || lrbcap_writes() != LRBCAP_WRITES_EVENTS) return;
   for (; e != end; ++e) {
-    const unsigned kind = e->kind;
-    const unsigned counted = e->tests != 1 || e->met > 1, axis = e->axis != LRBCAP_NO_AXIS;
+    const uint32_t kind = e->what & 255, tests = e->what >> 8 & 255, met = e->what >> 16 & 255;
+    const uint32_t counted = tests != 1 || met > 1, axis = e->what >> 24 != LRBCAP_NO_AXIS;
     if (notes_only && kind < LRBCAP_KIND_COUNT) continue;
-    *p++ = LRBCAP_CAST(unsigned char, kind | (counted ? 8u : e->met * 4u) | axis << 4);
-    if (counted) {
-      *p++ = e->tests;
-      *p++ = e->met;
+    const uint32_t da = lrbcap_difference(e->a, a[kind]), db = lrbcap_difference(e->b, b[kind]);
+    *p = LRBCAP_CAST(unsigned char, kind | (counted ? 8u : met * 4u) | axis << 4);
+    p[1] = LRBCAP_CAST(unsigned char, tests); /* overwritten if not counted: most events need no branch */
+    p[2] = LRBCAP_CAST(unsigned char, met);
+    p += 1 + 2 * counted;
+    *p = LRBCAP_CAST(unsigned char, e->what >> 24);
+    p += axis;
+    if (LRBCAP_UNLIKELY((da | db) >= 128)) {
+      p = lrbcap_varint(lrbcap_varint(p, da), db);
+    } else {
+      *p++ = LRBCAP_CAST(unsigned char, da);
+      *p++ = LRBCAP_CAST(unsigned char, db);
     }
-    if (axis) *p++ = e->axis;
-    p = lrbcap_difference(p, e->a, a[kind]);
-    p = lrbcap_difference(p, e->b, b[kind]);
     a[kind] = e->a;
     b[kind] = e->b;
     ++stored;
