@@ -348,6 +348,8 @@ std::string counted(std::uint64_t n, const char* one, const char* many) {
 }
 
 std::string short_number(double value) {
+  constexpr double kWholeFrom = 999.5;  // three digits would show 1e+03
+  if (std::abs(value) >= kWholeFrom && std::abs(value) < 1e6) value = std::round(value);
   if (value == std::floor(value) && std::abs(value) < 1e6) {
     const std::string digits = group_digits(static_cast<std::uint64_t>(std::abs(value)));
     return value < 0 ? std::string("-").append(digits) : digits;

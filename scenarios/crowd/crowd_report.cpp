@@ -96,10 +96,7 @@ void add_numbers(report::Document& doc, const spec::Crowd& crowd, const CrowdRun
   }
   for (std::uint32_t i = 0; i < n; ++i) faces += run.rep(i).real_face_count();
   const auto a_step = [&](std::uint64_t x) {
-    const double mean = static_cast<double>(x) / static_cast<double>(run.steps.size());
-    constexpr double kWholeFrom = 1000;
-    return mean < kWholeFrom ? render::short_number(mean)
-                             : render::group_digits(static_cast<std::uint64_t>(std::round(mean)));
+    return render::short_number(static_cast<double>(x) / static_cast<double>(run.steps.size()));
   };
   doc.number({"Bodies", render::group_digits(n),
               "of " + render::counted(crowd.kinds.size(), "kind", "kinds") + ", " +

@@ -146,6 +146,7 @@ TEST_CASE("numbers are short and grouped") {
   CHECK(render::group_digits(999) == "999");
   CHECK(render::group_digits(1234567) == "1\u202f234\u202f567");
   CHECK(render::short_number(-1200) == "-1\u202f200");
+  CHECK(render::short_number(1653.4) == "1\u202f653");
   CHECK(render::short_number(0.12345) == "0.123");
   CHECK(render::short_number(3e9) == "3e+09");
 }

@@ -124,7 +124,7 @@ std::string group_digits(std::uint64_t n);
 /// Returns a number with its noun: "1 face", "2 faces".
 std::string counted(std::uint64_t n, const char* one, const char* many);
 
-/// Returns a value as printed on a scale: at most four digits.
+/// Returns a value as printed on a scale: whole from 1,000 to a million, otherwise three digits.
 std::string short_number(double value);
 /// Returns a share as a percentage: 0.125 as "12.5 %".
 std::string percent(double share);
