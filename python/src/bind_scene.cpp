@@ -41,7 +41,7 @@ void bind_boxes(py::module_& m) {
 >>> boxes = [cube.box(), cube.box(shifted(0.5, 0, 0)), cube.box(shifted(9, 0, 0))]
 >>> SweepAndPrune().update(boxes).tolist()
 [[0, 1]])")
-      .def(py::init<>())
+      .def(py::init<>(), "SweepAndPrune()\n\nStarts without boxes.")
       .def("update", &pairs_of, py::arg("boxes"),
            "update(boxes)\n\n"
            "Returns the pairs of boxes with a point in common, (p, 2) uint32 ascending. boxes: (n, "

@@ -1,6 +1,8 @@
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "python/src/arguments.hpp"
 #include "python/src/bind.hpp"
@@ -24,12 +26,48 @@ void reject_objects_without_value(const py::module_& m) {
         info->operator_new = reject_memory;
 }
 
+PyCFunctionWithKeywords dispatch = nullptr;  // of pybind11, for all functions
+
+/// Functions of the module by the first argument of `dispatch`. They live as long as the module.
+std::map<PyObject*, PyObject*>& functions() {
+  static std::map<PyObject*, PyObject*> all;
+  return all;
+}
+
+/// Calls a function. Arguments that do not fit raise a TypeError of one line, instead of pybind11's list of
+/// signatures.
+PyObject* call(PyObject* self, PyObject* arguments, PyObject* keywords) {
+  PyObject* const out = dispatch(self, arguments, keywords);
+  if (out != nullptr || PyErr_ExceptionMatches(PyExc_TypeError) == 0) return out;
+  const py::error_already_set error;
+  const std::string message = py::str(error.value());
+  if (message.find("(): incompatible ") == std::string::npos) {
+    py::error_already_set(error).restore();
+    return nullptr;
+  }
+  const auto positional = py::reinterpret_borrow<py::args>(arguments);
+  const auto named = keywords != nullptr ? py::reinterpret_borrow<py::kwargs>(keywords) : py::kwargs();
+  std::string wrong;
+  try {
+    const auto inspect = py::module_::import("inspect");
+    const py::object signature = inspect.attr("signature")(py::handle(functions().at(self)));
+    signature.attr("bind")(*positional, **named);
+    wrong = "expected " + std::string(py::str(signature)) + ", got an argument of another type";
+  } catch (const py::error_already_set& e) {
+    wrong = py::str(e.value());
+  }
+  std::string name = message.substr(0, message.find('('));
+  if (name == "__init__") name = py::str(py::type::of(positional[0]).attr("__name__"));
+  PyErr_SetString(PyExc_TypeError, (name + "(): " + wrong).c_str());
+  return nullptr;
+}
+
 /// Turns "name(a, b=None)", with which a docstring begins, into the form from which inspect and IPython read
 /// a signature: "name(self, a, b=None)" and a line "--". Python then shows the rest as __doc__.
 void state_signature(PyObject* member) {
   const bool is_method = PyInstanceMethod_Check(member) != 0;
   PyObject* const function = is_method ? PyInstanceMethod_GET_FUNCTION(member) : member;
-  if (PyCFunction_Check(function) == 0) return;
+  if (PyCFunction_Check(function) == 0 || functions().count(PyCFunction_GET_SELF(function)) != 0) return;
   PyMethodDef& def = *reinterpret_cast<PyCFunctionObject*>(function)->m_ml;
   if (def.ml_doc == nullptr) return;
   const std::string text = def.ml_doc;
@@ -41,9 +79,12 @@ void state_signature(PyObject* member) {
   char* const copy = strdup(stated.c_str());  // pybind11 frees it
   std::free(const_cast<char*>(def.ml_doc));
   def.ml_doc = copy;
+  dispatch = reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<void (*)()>(
+      std::exchange(def.ml_meth, reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&call)))));
+  functions().emplace(PyCFunction_GET_SELF(function), function);
 }
 
-/// Gives functions, constructors and methods of the module signatures.
+/// Gives functions, constructors and methods of the module signatures, and errors that use them.
 void state_signatures(const py::module_& m) {
   for (const auto& [name, member] : m.attr("__dict__").cast<py::dict>()) {
     state_signature(member.ptr());

@@ -208,13 +208,13 @@ Vector3d anchor(const Target& target, const LrbRep& rep, const Pose& pose) {
   return best;
 }
 
-std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const render::Image& content,
-                                         const std::vector<Vector2d>& anchors,
+std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const AlignedBox2d& panel,
+                                         const render::Image& content, const std::vector<Vector2d>& anchors,
                                          const std::vector<Vector2d>& sizes) {
   constexpr double kStep = 1.5, kFree = 3;  // between candidates; from a text to any anchor: points
   // Costs: of a text entirely over content; of a leader as long as the panel's diagonal; of leaders that
   // cross each other, or a text; of a text over an anchor; of a text over another.
-  constexpr double kCovering = 1, kLength = 0.8, kCrossing = 1, kOnAnchor = 4, kOnText = 20;
+  constexpr double kCovering = 12, kLength = 0.8, kCrossing = 1, kOnAnchor = 15, kOnText = 40;
   // Step 1: the sums of covered pixels above and to the left, for the share of content under any box.
   const int w = content.width(), h = content.height();
   std::vector<int> sums(static_cast<std::size_t>(w + 1) * (h + 1), 0);
@@ -222,17 +222,16 @@ std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const render::
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x)
       sum(x + 1, y + 1) = sum(x, y + 1) + sum(x + 1, y) - sum(x, y) + (content.at(x, y).a > 0 ? 1 : 0);
-  const Vector2d unit = box.sizes().cwiseQuotient(Vector2d(std::max(w, 1), std::max(h, 1)));
+  const Vector2d unit = panel.sizes().cwiseQuotient(Vector2d(std::max(w, 1), std::max(h, 1)));
   const auto covered = [&](const AlignedBox2d& text) {
     const auto pixel = [](double x, int most) {
       return std::clamp(static_cast<int>(std::lround(x)), 0, most);
     };
-    const Vector2d low = (text.min() - box.min()).cwiseQuotient(unit),
-                   high = (text.max() - box.min()).cwiseQuotient(unit);
+    const Vector2d low = (text.min() - panel.min()).cwiseQuotient(unit),
+                   high = (text.max() - panel.min()).cwiseQuotient(unit);
     const int x0 = pixel(low.x(), w), x1 = pixel(high.x(), w), y0 = pixel(low.y(), h),
               y1 = pixel(high.y(), h);
-    const int area = std::max((x1 - x0) * (y1 - y0), 1);
-    return static_cast<double>(sum(x1, y1) - sum(x0, y1) - sum(x1, y0) + sum(x0, y0)) / area;
+    return (sum(x1, y1) - sum(x0, y1) - sum(x1, y0) + sum(x0, y0)) * unit.prod() / text.volume();
   };
   // Step 2: one text after the other, at the place of least cost.
   std::vector<CalloutPlace> out;

@@ -62,10 +62,11 @@ struct CalloutPlace {
   double covered = 0;            ///< share of the text that is over content
 };
 
-/// Chooses places for texts inside a panel: over little of the content, close to their anchors, without
-/// overlaps. `content`: a picture of the panel, transparent where it is empty. `anchors`, `sizes`: one for
-/// each text. Each size must be smaller than the box.
-std::vector<CalloutPlace> place_callouts(const Eigen::AlignedBox2d& box, const render::Image& content,
+/// Chooses places for texts in a box: beside the content, close to their anchors, without overlaps.
+/// `content`: a picture of the part `panel` of the box, transparent where it is empty. `anchors`, `sizes`:
+/// one for each text. Each size must be smaller than the box.
+std::vector<CalloutPlace> place_callouts(const Eigen::AlignedBox2d& box, const Eigen::AlignedBox2d& panel,
+                                         const render::Image& content,
                                          const std::vector<Eigen::Vector2d>& anchors,
                                          const std::vector<Eigen::Vector2d>& sizes);
 

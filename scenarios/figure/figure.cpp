@@ -63,6 +63,7 @@ class FigureJob {
     arrange();
     if (figure_.choice.by == Choice::By::changes && leave_out_alike(progress)) arrange();
     check_letters();
+    reserve_space();
     Figure out;
     out.panels = captions_.size();
     if (!chosen_.left_out.empty()) out.notes.push_back(chosen_.left_out);
@@ -183,14 +184,13 @@ class FigureJob {
   void arrange() {
     survey();
     pieces_.clear();
-    const auto lay_out_all = [this] {
-      layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
-                        figure_.legend ? bar_ : std::nullopt, figure_.caption ? caption() : "", options());
-    };
     lay_out_all();
-    find_pieces();
-    if (!figure_.caption || figure_.insets.empty()) return;
-    lay_out_all();  // the caption gives the magnifications
+    if (figure_.caption && !figure_.insets.empty()) lay_out_all();  // the caption gives the magnifications
+  }
+
+  void lay_out_all() {
+    layout_ = lay_out(blocks_, figure_.legend ? key_ : std::vector<render::LegendItem>(),
+                      figure_.legend ? bar_ : std::nullopt, figure_.caption ? caption() : "", options());
     find_pieces();
   }
 
@@ -300,7 +300,7 @@ class FigureJob {
     pieces_.push_back(std::move(piece));
   }
 
-  static constexpr double kCoveringText = 0.5;  ///< share of a callout's text over content that is reported
+  static constexpr double kCoveringText = 0.1;  ///< share of a callout's text over content that is avoided
 
   double callout_radius() const { return std::max(1.0, 3 * figure_.line_width); }
 
@@ -353,12 +353,19 @@ class FigureJob {
     return out;
   }
 
-  /// Paints the texts of callouts, with leaders to their anchors.
-  void paint_callouts(render::Canvas& canvas, const Piece& piece, const render::DrawList& list,
-                      const std::vector<std::pair<const Callout*, Vector2d>>& callouts) {
-    if (callouts.empty()) return;
+  struct PlacedCallouts {
     std::vector<std::string> texts;
-    std::vector<Vector2d> anchors, sizes;
+    std::vector<Vector2d> anchors;
+    std::vector<CalloutPlace> places;
+  };
+
+  /// Places the callouts that add_marks() returned for a piece.
+  PlacedCallouts placed(const Piece& piece, const render::DrawList& list,
+                        const std::vector<std::pair<const Callout*, Vector2d>>& callouts) {
+    PlacedCallouts out;
+    if (callouts.empty()) return out;
+    auto& [texts, anchors, places] = out;
+    std::vector<Vector2d> sizes;
     const AlignedBox2d& box = piece.place.box;
     for (const auto& [callout, at] : callouts) {
       texts.push_back(callout->text.empty() ? name_of(callout->target, recorded_.reps.size())
@@ -380,7 +387,41 @@ class FigureJob {
     raster.background.reset();
     const render::Image content =
         rasterizer_.draw(list, part_of(camera(*piece.view, piece.moment), piece.shown), raster);
-    const std::vector<CalloutPlace> places = place_callouts(box, content, anchors, sizes);
+    const Space& space = piece.place.space;
+    places = place_callouts({box.min() - Vector2d(0, space.above), box.max() + Vector2d(0, space.below)}, box,
+                            content, anchors, sizes);
+    return out;
+  }
+
+  /// Reserves space above or below panels in which texts of callouts cover the bodies, line by line.
+  void reserve_space() {
+    for (Block& block : blocks_) block.spaces.resize(block.seen.size());
+    for (std::size_t line = 0; line < figure_.callouts.size(); ++line) {
+      bool any = false;
+      std::vector<std::size_t> done(blocks_.size(), 0);
+      for (const Piece& piece : pieces_) {
+        if (piece.inset != nullptr) continue;
+        Space& space = blocks_[piece.block].spaces[done[piece.block]++];
+        render::Scene shown = scene(*piece.view, piece.moment);
+        const auto callouts = add_marks(shown.list, piece);
+        const PlacedCallouts texts = placed(piece, shown.list, callouts);
+        for (std::size_t i = 0; i < texts.places.size(); ++i) {
+          if (texts.places[i].covered <= kCoveringText) continue;
+          const bool above = texts.anchors[i].y() < piece.place.box.center().y();
+          (above ? space.above : space.below) += layout_.text_height;
+          any = true;
+          break;
+        }
+      }
+      if (!any) return;
+      lay_out_all();
+    }
+  }
+
+  /// Paints the texts of callouts, with leaders to their anchors.
+  void paint_callouts(render::Canvas& canvas, const Piece& piece, const render::DrawList& list,
+                      const std::vector<std::pair<const Callout*, Vector2d>>& callouts) {
+    const auto [texts, anchors, places] = placed(piece, list, callouts);
     const double width = std::max(kHairline, figure_.line_width);
     for (std::size_t i = 0; i < places.size(); ++i) {
       // From the text to the rim of the point, which is a disc, or a ring if it is hidden.
@@ -548,7 +589,7 @@ class FigureJob {
   }
 
   void paint_title(render::Canvas& canvas, const PanelPlace& place) const {
-    double y = place.box.max().y() + 0.65 * figure_.font_size;
+    double y = place.box.max().y() + place.space.below + 0.65 * figure_.font_size;
     for (const std::string& line : place.lines) {
       canvas.text({{place.box.center().x(), y},
                    line,

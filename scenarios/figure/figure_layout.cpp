@@ -68,6 +68,7 @@ std::vector<std::string> wrap(const std::string& text, double width, double font
 struct Arranged {
   BlockLayout layout;
   double height = 0;
+  double spaces = 0;  ///< part of the height that is empty space around panels
 };
 
 class BlockLayouter {
@@ -110,20 +111,30 @@ class BlockLayouter {
     double y = 0;
     for (std::size_t row = 0; row < rows_; ++row) {
       double x = 0.5 * (o_.width - used);
+      Space space;
+      for (std::size_t i = row * columns_; i < std::min(block_.spaces.size(), (row + 1) * columns_); ++i) {
+        space.above = std::max(space.above, block_.spaces[i].above);
+        space.below = std::max(space.below, block_.spaces[i].below);
+      }
+      y += space.above;
+      out.spaces += space.above + space.below;
       const double high = row_[row].length() * scale + 2 * o_.margin;
       for (std::size_t i = row * columns_; i < std::min(block_.seen.size(), (row + 1) * columns_); ++i) {
         const Interval& column = column_[i % columns_];
         const double wide = column.length() * scale + 2 * o_.margin;
         PanelPlace place;
         place.box = AlignedBox2d(Vector2d(x, y), Vector2d(x + wide, y + high));
+        place.space = space;
         place.seen_from = {column.low, row_[row].low};
         place.lines = std::move(lines[i]);
-        place_insets(place, i,
-                     y + high + (static_cast<double>(most[row]) * kLine + kInsetGap) * o_.font_size);
+        place_insets(
+            place, i,
+            y + high + space.below + (static_cast<double>(most[row]) * kLine + kInsetGap) * o_.font_size);
         out.layout.panels.push_back(std::move(place));
         x += wide + gutter();
       }
-      y += high + static_cast<double>(most[row]) * kLine * o_.font_size + (row + 1 < rows_ ? gutter() : 0);
+      y += high + space.below + static_cast<double>(most[row]) * kLine * o_.font_size +
+           (row + 1 < rows_ ? gutter() : 0);
       if (insets[row] > 0) y += kInsetGap * o_.font_size + insets[row];
     }
     out.height = y;
@@ -186,7 +197,8 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
     Arranged arranged = layouter.arrange();
     const std::size_t rows = (n + columns - 1) / columns;
     const double gaps = static_cast<double>(rows * columns - n) / static_cast<double>(n);
-    const double off = std::abs(std::log(options.width / arranged.height / kShape)) + kGapCost * gaps;
+    const double off =
+        std::abs(std::log(options.width / (arranged.height - arranged.spaces) / kShape)) + kGapCost * gaps;
     if (off < least) least = off, best = std::move(arranged);
   }
   return std::move(*best);

@@ -13,6 +13,11 @@
 
 namespace lrb::figure {
 
+/// Empty space above and below a panel.
+struct Space {
+  double above = 0, below = 0;
+};
+
 /// Panels of one view, at one scale, in rows and columns that are aligned so that unmoved parts keep their
 /// position.
 struct Block {
@@ -20,6 +25,7 @@ struct Block {
                                           ///< units
   std::vector<std::string> texts;         ///< below each: letter and title; empty: no space is reserved
   std::vector<std::size_t> insets;        ///< number below each panel and its text; empty: none
+  std::vector<Space> spaces;              ///< around each panel; empty: none
 };
 
 struct LayoutOptions {
@@ -33,6 +39,7 @@ struct LayoutOptions {
 
 struct PanelPlace {
   Eigen::AlignedBox2d box;  ///< of the panel on the paper
+  Space space;              ///< around it
   Eigen::Vector2d
       seen_from;  ///< the point of the view, in its own units, at the box's corner plus the margin
   std::vector<std::string> lines;

@@ -354,7 +354,8 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
     for (const ImageVerdict& image : v.images) images_failed += image.passed ? 0 : 1;
     events += r.events;
     scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", cause_text(r), answers_text(r),
-                              events_text(r), work_text(r), images_text(r), io::fixed_text(r.seconds, 1)});
+                              v.divergence ? event_count(r) + ": differ" : events_text(r), work_text(r),
+                              images_text(r), io::fixed_text(r.seconds, 1)});
     scenarios.targets.push_back(!v.passed()             ? "#" + r.name
                                 : r.comparisons.empty() ? std::string()
                                                         : "#" + r.comparisons.front().id);

@@ -197,7 +197,7 @@ class QueryReplay {
                              .parent = v.parent == Visit::kNone ? kNull.kValue : reported[v.parent],
                              .step = v.step.value_or(NodeStep::descend_both),
                              .box_tests = e.tests,
-                             .met = v.step == NodeStep::leaves ? e.met : v.children});
+                             .met = v.children > 0 && v.step != NodeStep::leaves ? v.children : e.met});
     if (reports_ && e.axis != capture::kNoAxis) recorder_.set_engine_axis(e.axis);
     return id;
   }

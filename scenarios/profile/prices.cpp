@@ -282,6 +282,9 @@ std::string advice(const Prices& sum) {
   if (sum.visits == 0)
     return "No tests of volumes were recorded (LRBCAP_NODE), so nothing can be said about volumes, order and "
            "leaves.";
+  if (sum.unattributed == sum.visits)
+    return "No visit is attributed, as for queries of shapes or of first contact, so nothing can be said about "
+           "volumes, order and leaves.";
   struct Gain {
     double tests;
     std::string change;

@@ -13,7 +13,7 @@
 namespace lrb::report {
 namespace {
 
-constexpr std::size_t kProse = 60;  // characters: longer cells are broken into lines
+constexpr std::size_t kProse = 20;  // characters: longer cells are broken into lines if the table is too wide
 constexpr std::size_t kLong = 30;   // rows: longer tables scroll separately
 
 std::string embedded(const std::string& name) {

@@ -569,6 +569,8 @@ TEST_CASE("The advice names the change with most to gain, and the next") {
   Prices needed;
   needed.visits = needed.needed = 10;
   CHECK(advice(needed) == "Nothing to gain: every visit was needed.");
+  needed.needed = 0, needed.unattributed = 10;
+  CHECK(advice(needed).find("No visit is attributed") == 0);
 }
 
 }  // namespace lrb::profile

@@ -1,5 +1,7 @@
 """collide(), contacts() and batches, against brute force."""
 
+import inspect
+
 import numpy as np
 import pytest
 
@@ -128,8 +130,14 @@ def test_arguments_that_are_refused(cube):
         collide(cube, cube, tolerance="1")
     with pytest.raises(InputError, match="tolerance: expected a finite number of at least 0, got -1"):
         collide(cube, cube, tolerance=-1)
-    with pytest.raises(TypeError):
-        collide(cube, cube, nonsense=1)
+    with pytest.raises(TypeError, match=r"^collide\(\): missing a required argument: 'b'$"):
+        collide(cube)
+    with pytest.raises(TypeError, match=r"^Body\(\): missing a required argument: 'vertices'$"):
+        lrbscope.Body()
+    for name, thing in inspect.getmembers(lrbscope._core, lambda x: inspect.isbuiltin(x) or inspect.isclass(x)):
+        if not name.startswith("_") and not (inspect.isclass(thing) and issubclass(thing, Exception)):
+            with pytest.raises(TypeError, match="^[^\n]*$"):
+                thing(nonsense=1)
 
 
 def test_an_error_in_a_batch_is_that_of_the_first_pose(cube):

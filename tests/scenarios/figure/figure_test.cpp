@@ -399,7 +399,7 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
   for (int y = 30; y < 70; ++y)
     for (int x = 30; x < 70; ++x) content.at(x, y) = render::kBlack;
   const std::vector<Vector2d> anchors = {{50, 60}, {52, 60}, {70, 80}}, sizes(3, Vector2d(25, 8));
-  const std::vector<CalloutPlace> places = place_callouts(box, content, anchors, sizes);
+  const std::vector<CalloutPlace> places = place_callouts(box, box, content, anchors, sizes);
   const AlignedBox2d centre(Vector2d(40, 50), Vector2d(80, 90));
   for (std::size_t i = 0; i < places.size(); ++i) {
     const AlignedBox2d text(places[i].text - sizes[i] / 2, places[i].text + sizes[i] / 2);
@@ -411,8 +411,12 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
       CHECK((places[i].text - places[k].text).cwiseAbs().cwiseQuotient(sizes[i]).maxCoeff() >= 1);
   }
   const render::Image full(100, 100, render::kBlack);
-  const std::vector<CalloutPlace> over = place_callouts(box, full, anchors, sizes);
-  CHECK(over[0].covered == 1);
+  CHECK(place_callouts(box, box, full, anchors, sizes)[0].covered == doctest::Approx(1));
+  const AlignedBox2d larger(box.min() - Vector2d(0, 12), box.max() + Vector2d(0, 24));
+  for (const CalloutPlace& p : place_callouts(larger, box, full, anchors, sizes)) {
+    CHECK(p.covered == 0);
+    CHECK(box.exteriorDistance(p.text) > 0);
+  }
 }
 
 TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in the panel as well") {
