@@ -85,27 +85,36 @@ std::vector<PairHistory> pair_histories(const CrowdRun& run) {
   return out;
 }
 
+/// Returns the mean of a count over the steps.
+template <class Count>
+std::string a_step(const CrowdRun& run, const Count& count) {
+  std::uint64_t total = 0;
+  for (const CrowdStep& s : run.steps) total += count(s);
+  return render::short_number(static_cast<double>(total) / static_cast<double>(run.steps.size()));
+}
+
+std::size_t queried(const CrowdStep& s) {
+  return s.queries.size();
+}
+
+std::size_t met(const CrowdStep& s) {
+  return static_cast<std::size_t>(
+      std::count_if(s.queries.begin(), s.queries.end(), [](const CrowdQuery& q) { return q.meets(); }));
+}
+
 void add_numbers(report::Document& doc, const spec::Crowd& crowd, const CrowdRun& run) {
   const std::uint64_t n = run.motion.body_count(), all = n * (n - 1) / 2;
-  std::uint64_t queried = 0, met = 0, faces = 0, tests = 0;
-  for (const CrowdStep& s : run.steps) {
-    queried += s.queries.size();
-    met += static_cast<std::uint64_t>(
-        std::count_if(s.queries.begin(), s.queries.end(), [](const CrowdQuery& q) { return q.meets(); }));
-    tests += sum(s).face_tests;
-  }
+  std::uint64_t faces = 0;
   for (std::uint32_t i = 0; i < n; ++i) faces += run.rep(i).real_face_count();
-  const auto a_step = [&](std::uint64_t x) {
-    return render::short_number(static_cast<double>(x) / static_cast<double>(run.steps.size()));
-  };
   doc.number({"Bodies", render::group_digits(n),
               "of " + render::counted(crowd.kinds.size(), "kind", "kinds") + ", " +
                   render::group_digits(faces) + " real faces"})
       .number({"Time steps", render::group_digits(run.steps.size())})
-      .number({"Overlapping boxes", a_step(queried),
+      .number({"Overlapping boxes", a_step(run, queried),
                "of " + render::group_digits(all) + " pairs of bodies, a step"})
-      .number({"Intersecting bodies", a_step(met), "pairs a step"})
-      .number({"Face tests", a_step(tests), "exact, a step"});
+      .number({"Intersecting bodies", a_step(run, met), "pairs a step"})
+      .number(
+          {"Face tests", a_step(run, [](const CrowdStep& s) { return sum(s).face_tests; }), "exact, a step"});
 }
 
 /// A curve over the steps. Steps without a value are left out.
@@ -220,17 +229,10 @@ report::Link trace_link(const spec::Crowd& crowd, const std::string& file) {
 
 /// Returns the run in a few sentences: the bodies, the queries of a step, and the costliest pair.
 std::string sentence_of(const CrowdRun& run) {
-  std::size_t queries = 0, meet = 0;
-  for (const CrowdStep& s : run.steps) {
-    queries += s.queries.size();
-    for (const CrowdQuery& q : s.queries) meet += static_cast<std::size_t>(q.meets());
-  }
-  const auto share = [&](std::size_t n) {
-    return render::short_number(static_cast<double>(n) / static_cast<double>(run.steps.size()));
-  };
   std::string out = render::counted(run.motion.body_count(), "body", "bodies") + " in " +
                     render::counted(run.steps.size(), "step", "steps") + ": on average the boxes of " +
-                    share(queries) + " pairs overlap in a step, and " + share(meet) + " pairs intersect.";
+                    a_step(run, queried) + " pairs overlap in a step, and " + a_step(run, met) +
+                    " pairs intersect.";
   if (const CostliestPair pair = costliest_pair(run); !pair.names.empty())
     out += " The pair with the " + pair.text + ".";
   return out;

@@ -224,14 +224,13 @@ std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const AlignedB
       sum(x + 1, y + 1) = sum(x, y + 1) + sum(x + 1, y) - sum(x, y) + (content.at(x, y).a > 0 ? 1 : 0);
   const Vector2d unit = panel.sizes().cwiseQuotient(Vector2d(std::max(w, 1), std::max(h, 1)));
   const auto covered = [&](const AlignedBox2d& text) {
-    const auto pixel = [](double x, int most) {
-      return std::clamp(static_cast<int>(std::lround(x)), 0, most);
-    };
+    const auto pixel = [](double x) { return static_cast<int>(std::lround(x)); };
+    const auto upto = [&](int x, int y) { return sum(std::clamp(x, 0, w), std::clamp(y, 0, h)); };
     const Vector2d low = (text.min() - panel.min()).cwiseQuotient(unit),
                    high = (text.max() - panel.min()).cwiseQuotient(unit);
-    const int x0 = pixel(low.x(), w), x1 = pixel(high.x(), w), y0 = pixel(low.y(), h),
-              y1 = pixel(high.y(), h);
-    return (sum(x1, y1) - sum(x0, y1) - sum(x1, y0) + sum(x0, y0)) * unit.prod() / text.volume();
+    const int x0 = pixel(low.x()), x1 = pixel(high.x()), y0 = pixel(low.y()), y1 = pixel(high.y());
+    const int area = std::max((x1 - x0) * (y1 - y0), 1);  // with the pixels that are outside of the content
+    return static_cast<double>(upto(x1, y1) - upto(x0, y1) - upto(x1, y0) + upto(x0, y0)) / area;
   };
   // Step 2: one text after the other, at the place of least cost.
   std::vector<CalloutPlace> out;

@@ -411,7 +411,7 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
       CHECK((places[i].text - places[k].text).cwiseAbs().cwiseQuotient(sizes[i]).maxCoeff() >= 1);
   }
   const render::Image full(100, 100, render::kBlack);
-  CHECK(place_callouts(box, box, full, anchors, sizes)[0].covered == doctest::Approx(1));
+  CHECK(place_callouts(box, box, full, anchors, sizes)[0].covered == 1);
   const AlignedBox2d larger(box.min() - Vector2d(0, 12), box.max() + Vector2d(0, 24));
   for (const CalloutPlace& p : place_callouts(larger, box, full, anchors, sizes)) {
     CHECK(p.covered == 0);
