@@ -33,6 +33,12 @@ class AabbTree {
   /// boxes stay, and the caller must check FrontMesh::alive().
   void update(Slot s, const Box& box);
 
+  /// Returns true if the boxes intersect (closed). Eigen's own test is not inlined.
+  static bool intersect(const Box& a, const Box& b) {
+    return a.min()[0] <= b.max()[0] && a.min()[1] <= b.max()[1] && a.min()[2] <= b.max()[2] &&
+           b.min()[0] <= a.max()[0] && b.min()[1] <= a.max()[1] && b.min()[2] <= a.max()[2];
+  }
+
   /// Calls visit(slot) for every slot whose box intersects `box` (closed).
   template <class Visit>
   void for_each_in(const Box& box, Visit&& visit) const {
@@ -50,10 +56,10 @@ class AabbTree {
     while (top > 0) {
       const std::uint32_t n = stack[--top];
       const Node& node = nodes_[n];
-      if (!node.box.intersects(box) || !near(node.box)) continue;
+      if (!intersect(node.box, box) || !near(node.box)) continue;
       if (node.right == 0) {
         for (std::uint32_t i = node.first; i < node.last; ++i)
-          if (boxes_[i].intersects(box) && near(boxes_[i])) visit(slots_[i]);
+          if (intersect(boxes_[i], box) && near(boxes_[i])) visit(slots_[i]);
         continue;
       }
       stack[top++] = node.right;

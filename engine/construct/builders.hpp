@@ -82,7 +82,9 @@ void fit_fronts(double size, std::uint32_t least, Faces faces, Pass pass) {
 
 // The builder for 3D bodies: caps over patches, on a sequence of fronts (progressive hulls).
 //
-// The builder works on the current front, at first the mesh itself. In each pass:
+// The builder works on the current front, at first the mesh itself. Fitted levels (front_fitter.hpp) simplify
+// all of it by one queue of edge collapses within a maximum deviation from the body, and make regions of the
+// parts that have become simple enough. Afterwards, without a limit on the deviation, in each pass:
 // 1. The front is covered with patches, disks of a few dozen triangles (patch_grow.hpp).
 // 2. Each patch is simplified outward into a cap with the same ring (patch_cap.hpp).
 // 3. A cap is accepted only if it is proven, exactly, to be disjoint from all other faces (embed_check.hpp).
@@ -91,7 +93,7 @@ void fit_fronts(double size, std::uint32_t least, Faces faces, Pass pass) {
 // 4. The space between becomes a region, with the patch as its floor and the cap as its lids
 //    (front_update.hpp). The caps are part of the front of the next pass.
 //
-// When passes gain too little, each component of the front is simplified as a whole, and finally one wrapper
+// When passes gain too little, concavities are bridged, and finally one wrapper
 // of few faces is put around all of them (closing.hpp).
 
 /// Builds an LRB-rep from a 3D mesh that is MeshReport::buildable() and oriented outward. `meeting`: the

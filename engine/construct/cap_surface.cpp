@@ -69,7 +69,6 @@ void CapSurface::load_faces(const FrontMesh& front, const Patch& patch) {
     face.plane = plane_of(face.v[0], face.v[1], face.v[2]);
     face.kept = f;
     face.alive = true;
-    face.excess_deviation = t.excess_deviation;
     face.since = version_;
     face.rejected = {};
     patch_area_ += face.plane.area;
@@ -259,7 +258,6 @@ void CapSurface::replace(const Star& star, int w) {
     face.plane = plane_of(r.a, r.b, w);
     face.kept = -1;
     face.alive = true;
-    face.excess_deviation = 0;
     face.since = version_;
     face.rejected = {};
     // The neighbour across the rim, or the ring, refers back to it.
@@ -347,8 +345,6 @@ bool CapSurface::flip_outward(int f, int i) {
   face.v = {b, c, w};
   face.across = {beyond_bc, g, beyond_wb};
   face.kept = -1;
-  // The deviation must be measured again: see CapGauge::measure_again().
-  face.excess_deviation = other.excess_deviation = 0;
   face.since = other.since = ++version_;
   --kept_;
   other.v = {c, a, w};

@@ -28,8 +28,7 @@ class CapSurface {
     Plane plane;
     int kept;  ///< index into Patch::slots if this is still that triangle, else -1
     bool alive;
-    double excess_deviation;  ///< see FrontMesh::Triangle
-    std::uint32_t since;      ///< version of the surface at which it was created
+    std::uint32_t since;  ///< version of the surface at which it was created
     /// The version at which the collapse of the edge v[i], v[i + 1] was rejected; 0: never.
     std::array<std::uint32_t, 3> rejected;
   };
@@ -61,9 +60,6 @@ class CapSurface {
   /// Returns a vertex's number in the complex; for a new vertex, its number if all new vertices remain.
   VertexId id(int v) const { return points_[v].id; }
   /// Returns the deviation of a vertex from the body; see FrontMesh::Point.
-  double off(int v) const { return points_[v].off; }
-  void set_off(int v, double off) { points_[v].off = off; }
-  void set_excess_deviation(int f, double excess_deviation) { faces_[f].excess_deviation = excess_deviation; }
   /// Returns the front's vertex of an old vertex.
   FrontMesh::Corner corner(int v) const { return corners_[v]; }
 

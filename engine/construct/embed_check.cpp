@@ -33,8 +33,8 @@ int side(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d)
   return exact::orient3d(a.data(), b.data(), c.data(), d.data());
 }
 
-/// Returns true if a rotation about the edge a, b, from the old triangle (a, b, p) through the space in front
-/// of it, reaches the new triangle (a, b, w) before the neighbour (b, a, q).
+}  // namespace
+
 bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const Vector3& w, const Vector3& q) {
   // Measure angles about the edge from the old triangle. Three signs order w and q without computing angles.
   const int new_side = side(a, b, p, w), far_side = side(a, b, p, q);
@@ -46,8 +46,6 @@ bool turns_outward(const Vector3& a, const Vector3& b, const Vector3& p, const V
   // w is at more than 180 degrees: q must be as well, and in front of the new triangle.
   return far_side < 0 && side(a, b, w, q) > 0;
 }
-
-}  // namespace
 
 CheckedTriangle::CheckedTriangle(const FrontMesh::Point& a, const FrontMesh::Point& b,
                                  const FrontMesh::Point& c)

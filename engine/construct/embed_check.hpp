@@ -22,6 +22,7 @@ struct CheckedTriangle {
   std::array<VertexId, 3> id;
   Eigen::AlignedBox3d box;
 
+  CheckedTriangle() = default;
   CheckedTriangle(const FrontMesh::Point& a, const FrontMesh::Point& b, const FrontMesh::Point& c);
   /// Returns true if the two triangles intersect only in shared vertices and edges.
   bool clear_of(const CheckedTriangle& other) const;
@@ -39,6 +40,11 @@ class TriangleReach {
   Eigen::Vector3d corner_, normal_;
   double slack_;  ///< rounding slack, relative to distances from the corner
 };
+
+/// Returns true if a rotation about the edge a, b, from the old triangle (a, b, p) through the space in front
+/// of it, reaches the new triangle (a, b, w) before the neighbour (b, a, q). Exact.
+bool turns_outward(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& p,
+                   const Eigen::Vector3d& w, const Eigen::Vector3d& q);
 
 class EmbedCheck {
  public:

@@ -150,8 +150,8 @@ void FrontMesh::find_components() {
   }
 }
 
-FrontMesh::Corner FrontMesh::add_point(const Eigen::Vector3d& x, VertexId id, double off) {
-  points_.push_back({x, id, off});
+FrontMesh::Corner FrontMesh::add_point(const Eigen::Vector3d& x, VertexId id) {
+  points_.push_back({x, id});
   slot_of_.push_back(kNull);
   degree_.push_back(0);
   return point_count() - 1;

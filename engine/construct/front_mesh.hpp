@@ -25,16 +25,12 @@ class FrontMesh {
     std::array<Slot, 3> across;   ///< neighbour across the edge v[i], v[i + 1]
     FaceId face = kNull;          ///< the face of the complex; kNull: the slot is empty
     std::uint32_t component = 0;  ///< component of the mesh's surface
-    /// Excess of the triangle's deviation from the body over that at its corners; an estimate, mesh units.
-    double excess_deviation = 0;
   };
 
   /// A vertex's position and its number in the complex.
   struct Point {
     Eigen::Vector3d x;
     VertexId id;
-    double off = 0;  ///< deviation from the body: 0 for the mesh's own vertices, else an estimate; mesh units
-    double retry_deviation = 0;  ///< limit CapGoal::off from which a cap is tried here again
   };
 
   /// Builds the surface of a mesh, which must be closed, oriented, and manifold except for vertices with
@@ -95,8 +91,7 @@ class FrontMesh {
   }
   bool has_polygons() const { return !unit_first_.empty(); }
 
-  Corner add_point(const Eigen::Vector3d& x, VertexId id, double off = 0);
-  void set_retry_deviation(Corner v, double off) { points_[v].retry_deviation = off; }
+  Corner add_point(const Eigen::Vector3d& x, VertexId id);
 
   /// Removes triangles without closing the gap: add() must follow.
   void remove(std::span<const Slot> slots);

@@ -4,6 +4,7 @@
 #include "engine/construct/front_update.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include <Eigen/Geometry>
 
@@ -17,7 +18,13 @@ namespace {
 using Slot = FrontMesh::Slot;
 using Corner = FrontMesh::Corner;
 
-/// Computes the regions of a cap and the neighbours across its edges.
+void notify(ConstructProbe& probe, std::uint32_t first_region, const RegionPieces& pieces) {
+  for (std::uint32_t p = 0; p < pieces.count; ++p) probe.region(RegionId(first_region + p));
+  if (pieces.merged > 0) probe.merged(RegionId(first_region + pieces.into), pieces.merged);
+}
+
+}  // namespace
+
 void work_out(const FrontMesh& front, Sheet& sheet) {
   // Step 1: renumber the vertices of both surfaces to 0 .. n - 1 for the local algorithms.
   std::sort(sheet.removed.begin(), sheet.removed.end());
@@ -62,13 +69,6 @@ void work_out(const FrontMesh& front, Sheet& sheet) {
   }
 }
 
-void notify(ConstructProbe& probe, std::uint32_t first_region, const RegionPieces& pieces) {
-  for (std::uint32_t p = 0; p < pieces.count; ++p) probe.region(RegionId(first_region + p));
-  if (pieces.merged > 0) probe.merged(RegionId(first_region + pieces.into), pieces.merged);
-}
-
-}  // namespace
-
 Sheet make_sheet(const FrontMesh& front, std::span<const Slot> removed,
                  std::span<const PointTriangle> added) {
   Sheet sheet;
@@ -89,7 +89,6 @@ Sheet make_sheet(const FrontMesh& front, const Patch& patch, const CapSurface& c
     } else {
       corners[v] = Sheet::kNewPoint + static_cast<Corner>(sheet.new_points.size());
       sheet.new_points.push_back(cap.x(v));
-      sheet.new_off.push_back(cap.off(v));
     }
   }
   std::vector<bool> stays(patch.slots.size(), false);
@@ -100,7 +99,6 @@ Sheet make_sheet(const FrontMesh& front, const Patch& patch, const CapSurface& c
       stays[f.kept] = true;
     } else {
       sheet.added.push_back({corners[f.v[0]], corners[f.v[1]], corners[f.v[2]]});
-      sheet.added_excess.push_back(f.excess_deviation);
     }
   }
   for (std::size_t i = 0; i < patch.slots.size(); ++i)
@@ -114,8 +112,7 @@ std::vector<Slot> cover(FrontMesh& front, ComplexBuilder& complex, const Sheet& 
   // Step 1: assign the final numbers of vertices and regions.
   const Corner first_new = front.point_count();
   for (std::size_t i = 0; i < sheet.new_points.size(); ++i)
-    front.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]),
-                    sheet.new_off.empty() ? 0 : sheet.new_off[i]);
+    front.add_point(sheet.new_points[i], complex.add_vertex(sheet.new_points[i]));
   const std::vector<Slot>& removed = sheet.removed;
   const std::uint32_t first_region = complex.region_count();
   for (std::uint32_t p = 0; p < sheet.pieces.count; ++p) complex.add_region(layer);
@@ -151,7 +148,6 @@ std::vector<Slot> cover(FrontMesh& front, ComplexBuilder& complex, const Sheet& 
     }
     t.face = complex.add_pseudo_face(ids, RegionId(first_region + sheet.pieces.of_added[i]), kOutside);
     t.component = component;
-    if (!sheet.added_excess.empty()) t.excess_deviation = sheet.added_excess[i];
   }
   // Step 5: replace the covered triangles by the new ones.
   front.remove(removed);
@@ -234,19 +230,25 @@ void merge_shells(RegionPieces& pieces, const std::vector<double>& volumes) {
 
 }  // namespace
 
-EdgeIndex::EdgeIndex(std::span<const PointTriangle> triangles) {
-  // A sorted array: cheaper than hashing for a few hundred edges, and deterministic.
-  edges_.reserve(3 * triangles.size());
+EdgeIndex::EdgeIndex(std::span<const PointTriangle> triangles)
+    : edges_(std::bit_ceil(std::max<std::size_t>(6 * triangles.size(), 2))) {
   for (std::uint32_t i = 0; i < triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) edges_.push_back({edge_key(triangles[i][k], triangles[i][(k + 1) % 3]), i});
-  std::sort(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) { return e.key < f.key; });
+    for (int k = 0; k < 3; ++k) {
+      const std::uint64_t key = edge_key(triangles[i][k], triangles[i][(k + 1) % 3]);
+      edges_[place_of(key)] = {key, i};
+    }
+}
+
+/// Returns the place of an edge, or the empty place where it belongs. Linear probing.
+std::uint64_t EdgeIndex::place_of(std::uint64_t key) const {
+  const std::uint64_t last = edges_.size() - 1;
+  std::uint64_t at = (key * 0x9e3779b97f4a7c15u >> 32) & last;
+  while (edges_[at].triangle != kNull && edges_[at].key != key) at = (at + 1) & last;
+  return at;
 }
 
 std::uint32_t EdgeIndex::find(std::uint32_t a, std::uint32_t b) const {
-  const std::uint64_t key = edge_key(a, b);
-  const auto e = std::lower_bound(edges_.begin(), edges_.end(), key,
-                                  [](const Edge& edge, std::uint64_t wanted) { return edge.key < wanted; });
-  return e != edges_.end() && e->key == key ? e->triangle : kNull;
+  return edges_[place_of(edge_key(a, b))].triangle;
 }
 
 RegionPieces split_region(std::span<const PointTriangle> old, std::span<const std::uint32_t> old_face,

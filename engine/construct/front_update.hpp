@@ -48,9 +48,11 @@ class EdgeIndex {
  private:
   struct Edge {
     std::uint64_t key;
-    std::uint32_t triangle;
+    std::uint32_t triangle = kNull;  ///< kNull: the place is empty
   };
-  std::vector<Edge> edges_;
+  std::uint64_t place_of(std::uint64_t key) const;
+
+  std::vector<Edge> edges_;  ///< a hash table, at most half full
 };
 
 /// Everything that can be computed about a cap before it is applied to the front. It remains valid when other
@@ -63,8 +65,6 @@ struct Sheet {
   std::vector<FrontMesh::Slot> kept;     ///< for a patch: the triangles that its cap retains
   std::vector<PointTriangle> added;      ///< corners are vertices of the front
   std::vector<Eigen::Vector3d> new_points;
-  /// (|new_points|), (|added|) their deviation from the body, see FrontMesh; empty if not measured.
-  std::vector<double> new_off, added_excess;
   RegionPieces pieces;
   /// (|added|) the triangle across each edge: another added one or, at the boundary, the neighbour of a
   /// removed one.
@@ -73,6 +73,9 @@ struct Sheet {
   };
   std::vector<std::array<Beyond, 3>> beyond;
 };
+
+/// Computes the regions of a sheet and the neighbours across its edges, from the triangles removed and added.
+void work_out(const FrontMesh& front, Sheet& sheet);
 
 /// Returns the data of a cap `added` over the triangles `removed`, which must have the same boundary.
 Sheet make_sheet(const FrontMesh& front, std::span<const FrontMesh::Slot> removed,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -39,140 +40,85 @@ BodyBounds::BodyBounds(const Mesh& convex, double distance) {
   }
 }
 
-// Euclidean projection of a point onto a polyhedron given by half-spaces: a small convex quadratic programme,
-// solved incrementally after Seidel (1991), who solves linear programmes in this way. If the optimum of the
-// first i half-spaces violates the next one, the new optimum is on that one's boundary plane, by convexity.
-// 1. 3D: add the half-spaces one by one and keep the point while it satisfies them.
-// 2. 2D: on the plane of a violated half-space, do the same with the half-planes cut out by the earlier
-//    half-spaces.
-// 3. 1D: on the line of a violated half-plane, intersect intervals and clamp.
+// Euclidean projection of a point onto a polyhedron given by half-spaces, for three unknowns. Start at the
+// target. The plane that is violated most enters the active set; those whose multipliers would become
+// negative on the way leave it. At most three planes are active. Each full step increases the distance from
+// the target, so the method ends; the number of steps is limited because rounding may make it cycle.
 
-namespace {
-
-using Vector2 = Eigen::Vector2d;
 using Vector3 = Eigen::Vector3d;
-
-/// A plane with coordinates: its point nearest to the target, as the origin, and two orthonormal axes.
-struct Frame {
-  Vector3 origin, x, y;
-};
-
-Frame frame_on(const HalfSpace& h, const Vector3& target) {
-  Frame f;
-  // With the origin at the target's foot, squared distances to the target and to the origin differ by a
-  // constant: the nearest point on the plane is the one nearest to the origin.
-  f.origin = target + h.n * (h.d - dot3(h.n, target));
-  // The coordinate axis closest to the plane: its sine to n is at least sqrt(2/3), so that the cross product
-  // is accurate.
-  int least = 0;
-  h.n.cwiseAbs().minCoeff(&least);
-  f.x = normalized3(h.n.cross(Vector3::Unit(least)));
-  // Both factors have unit length and are orthogonal, so y needs no normalisation.
-  f.y = h.n.cross(f.x);
-  return f;
-}
-
-/// The half-plane a.p >= b (a need not be of unit length) that a half-space cuts out of the frame's plane.
-struct HalfPlane {
-  Vector2 a;
-  double b;
-  bool parallel;  ///< parallel to the plane: contains all of it or nothing
-};
-
-HalfPlane cut(const HalfSpace& h, const Frame& f) {
-  // Substitute origin + x p.x + y p.y into n.x >= d. The length of `a` is the sine between the two planes.
-  const Vector2 a(dot3(h.n, f.x), dot3(h.n, f.y));
-  return {a, h.d - dot3(h.n, f.origin), dot2(a, a) < kParallelSineSq};
-}
-
-/// Returns the point nearest to the origin on the boundary line `edge` of a half-plane that is in the
-/// half-spaces `before`, or nullopt if they leave no point of it.
-std::optional<Vector2> nearest_on_line(const HalfPlane& edge, std::span<const HalfSpace> before,
-                                       const Frame& frame, double slack) {
-  // Parametrise the line by arc length from its point nearest to the origin: the optimum is the smallest |t|.
-  const double length_sq = dot2(edge.a, edge.a);
-  const Vector2 start = edge.a * (edge.b / length_sq);
-  const Vector2 along = Vector2(-edge.a.y(), edge.a.x()) / std::sqrt(length_sq);
-  double low = -std::numeric_limits<double>::infinity(), high = -low;
-  // Each earlier half-space leaves a ray of the line. The rays intersect in [low, high].
-  for (const HalfSpace& h : before) {
-    const HalfPlane c = cut(h, frame);
-    const double slope = dot2(c.a, along), needed = c.b - dot2(c.a, start);
-    if (slope * slope < kParallelSineSq) {
-      // Parallel to the line: the entire line satisfies it, or none of it.
-      if (needed > slack) return std::nullopt;
-    } else if (slope > 0) {
-      low = std::max(low, needed / slope);
-    } else {
-      high = std::min(high, needed / slope);
-    }
-  }
-  // Intervals that miss each other by less than `slack` count as one point, because rounding could have
-  // caused the gap.
-  if (low > high + slack) return std::nullopt;
-  // Clamp t = 0, the optimum without the other half-spaces, to the interval.
-  const double t = low > 0 ? low : high < 0 ? high : 0;
-  return Vector2(start + along * t);
-}
-
-std::optional<Vector3> nearest_on_plane(const HalfSpace& last, std::span<const HalfSpace> before,
-                                        const Vector3& target, double slack) {
-  // The 2D problem: start from the target's foot and add the earlier half-spaces one by one.
-  const Frame frame = frame_on(last, target);
-  Vector2 p = Vector2::Zero();
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const HalfPlane c = cut(before[i], frame);
-    // The point satisfies this half-plane: it remains the optimum.
-    if (dot2(c.a, p) >= c.b - slack) continue;
-    // The planes are parallel and the half-space does not contain this one: infeasible.
-    if (c.parallel) return std::nullopt;
-    // Violated: the optimum moves to the boundary line.
-    const auto q = nearest_on_line(c, before.first(i), frame, slack);
-    if (!q) return std::nullopt;
-    p = *q;
-  }
-  // Back to 3D coordinates.
-  return Vector3(frame.origin + frame.x * p.x() + frame.y * p.y());
-}
-
-}  // namespace
 
 std::optional<Vector3> nearest_point(const Vector3& target, std::span<const HalfSpace> half_spaces,
                                      double slack) {
+  /// Below this, a direction is parallel to the active planes: a squared sine.
+  constexpr double kParallel = 1e-14;
+  constexpr int kMaxChanges = 40;
   Vector3 p = target;
-  for (std::size_t i = 0; i < half_spaces.size(); ++i) {
-    const HalfSpace& h = half_spaces[i];
-    // In random order, half-space i is violated with probability at most 3 / i: expected linear time.
-    if (dot3(h.n, p) >= h.d - slack) continue;
-    // Violated: the optimum is on this plane, subject to the half-spaces before it.
-    const auto q = nearest_on_plane(h, half_spaces.first(i), target, slack);
-    if (!q) return std::nullopt;
-    p = *q;
-  }
-  return p;
-}
-
-std::optional<Vector3> nearest_point_worst_first(const Vector3& target, std::span<HalfSpace> half_spaces,
-                                                 double slack) {
-  Vector3 p = target;
-  // The first `used` half-spaces have been added; p is their optimum. Each round adds one, so this
-  // terminates.
-  for (std::size_t used = 0;; ++used) {
+  std::size_t active[3];
+  double lambda[3];  // multipliers of the active planes
+  int count = 0;
+  for (int change = 0; change < kMaxChanges; ++change) {
     std::size_t worst = half_spaces.size();
     double most = slack;
-    // Pricing step, as in an active-set method: the most violated constraint enters.
-    for (std::size_t i = used; i < half_spaces.size(); ++i) {
+    for (std::size_t i = 0; i < half_spaces.size(); ++i) {
       const double behind = half_spaces[i].d - dot3(half_spaces[i].n, p);
       if (behind > most) most = behind, worst = i;
     }
-    // Nothing is violated: the optimum of a subset that satisfies all constraints is the optimum of all.
+    // Nothing is violated: the optimum of the active planes is the optimum of all.
     if (worst == half_spaces.size()) return p;
-    // Keep the added ones in front, as the solver requires.
-    std::swap(half_spaces[used], half_spaces[worst]);
-    const auto q = nearest_on_plane(half_spaces[used], half_spaces.first(used), target, slack);
-    if (!q) return std::nullopt;
-    p = *q;
+    const Vector3& n = half_spaces[worst].n;
+    double own = 0;  // the multiplier of the new plane
+    for (;;) {
+      // z: the part of n that is parallel to the active planes, along which p moves; r: the rates at which
+      // their multipliers fall.
+      Vector3 z = n;
+      double r[3] = {0, 0, 0};
+      if (count == 1) {
+        const Vector3& a = half_spaces[active[0]].n;
+        r[0] = dot3(a, n);
+        z -= r[0] * a;
+      } else if (count == 2) {
+        const Vector3 &a = half_spaces[active[0]].n, &b = half_spaces[active[1]].n;
+        const double ab = dot3(a, b), an = dot3(a, n), bn = dot3(b, n), det = 1 - ab * ab;
+        if (!(det > 0)) return std::nullopt;
+        r[0] = (an - ab * bn) / det;
+        r[1] = (bn - ab * an) / det;
+        z -= r[0] * a + r[1] * b;
+      } else if (count == 3) {
+        const Vector3 &a = half_spaces[active[0]].n, &b = half_spaces[active[1]].n,
+                      &c = half_spaces[active[2]].n;
+        const Vector3 bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
+        const double det = dot3(a, bc);
+        if (det == 0) return std::nullopt;
+        r[0] = dot3(bc, n) / det;
+        r[1] = dot3(ca, n) / det;
+        r[2] = dot3(ab, n) / det;
+        z.setZero();
+      }
+      // The step to the new plane, or less, if a multiplier reaches zero before.
+      const double z_sq = squared_norm3(z);
+      const double full_step = z_sq > kParallel ? (half_spaces[worst].d - dot3(n, p)) / z_sq : kInfinity;
+      double dual_step = kInfinity;
+      int leaves = -1;
+      for (int i = 0; i < count; ++i)
+        if (r[i] > kParallel && lambda[i] / r[i] < dual_step) dual_step = lambda[i] / r[i], leaves = i;
+      const double step = std::min(dual_step, full_step);
+      // No step reaches the plane: the intersection is empty.
+      if (!(step < kInfinity)) return std::nullopt;
+      for (int i = 0; i < count; ++i) lambda[i] -= step * r[i];
+      own += step;
+      if (z_sq > kParallel) p += step * z;
+      if (full_step <= dual_step) {
+        active[count] = worst;
+        lambda[count] = own;
+        ++count;
+        break;
+      }
+      --count;
+      active[leaves] = active[count];
+      lambda[leaves] = lambda[count];
+    }
   }
+  return std::nullopt;
 }
 
 }  // namespace lrb::construct

@@ -21,19 +21,12 @@ struct HalfSpace {
 
 /// Returns the point of the intersection of half-spaces that is nearest to `target`, or nullopt if the
 /// intersection is empty, up to rounding: half-spaces are satisfied to within `slack` (unit of the
-/// coordinates).
+/// coordinates). Also nullopt, rarely, if rounding prevents an answer.
 ///
-/// Incremental, after Seidel (1991): adds the half-spaces one by one. While the nearest point is in the next
-/// half-space, it is kept. Otherwise the new one is in that half-space's plane, where the same problem is
-/// solved in 2D for the half-spaces before it, and there in 1D. Expected linear time if the half-spaces
-/// are in random order, at worst cubic.
+/// A dual active-set method (Goldfarb and Idnani, "A numerically stable dual method for solving strictly
+/// convex quadratic programs", 1983).
 std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& target,
                                              std::span<const HalfSpace> half_spaces, double slack);
-
-/// As nearest_point(), but adds the most violated half-space each time, until none is violated. Of a dozen
-/// planes about four are active, and the others are only compared. Reorders the half-spaces.
-std::optional<Eigen::Vector3d> nearest_point_worst_first(const Eigen::Vector3d& target,
-                                                         std::span<HalfSpace> half_spaces, double slack);
 
 // Limits the growth of fronts.
 

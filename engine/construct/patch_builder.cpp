@@ -1,7 +1,8 @@
 /// Builds the regions of a 3D body, pass by pass:
 /// 1. Find the surfaces that bound voids, and the faces that must never be covered.
-/// 2. Fitted levels: simplify patches of the front to caps of limited deviation (unless lean).
-/// 3. Simplify without a limit on the deviation, until there are few enough outer faces.
+/// 2. Fitted levels of limited deviation, by one queue of collapses (unless lean): FrontFitter.
+/// 3. Simplify patches of the front to caps without a limit on the deviation, until there are few enough
+/// outer faces.
 /// 4. Bridge concavities, fill voids, and close with a wrapper if there are still too many outer faces.
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include "engine/construct/builders.hpp"
 #include "engine/construct/closing.hpp"
 #include "engine/construct/complex_builder.hpp"
+#include "engine/construct/front_fitter.hpp"
 #include "engine/construct/front_mesh.hpp"
 #include "engine/construct/half_spaces.hpp"
 #include "engine/construct/patch_pass.hpp"
@@ -212,41 +214,37 @@ class PatchBuilder {
   }
 
   void fit() {
-    Eigen::AlignedBox3d box;
-    for (Corner v = 0; v < front_.point_count(); ++v) box.extend(front_.x(v));
-    fit_fronts(
-        box.sizes().maxCoeff(), kFitDownTo, [&] { return front_.triangle_count(); },
-        [&](std::uint32_t before, double off) {
-          const std::size_t real = frozen_.size();
-          // Higher prices are accepted while fewer pseudo faces were used than planned.
-          const double correction = fitting_correction(before, real, complex_.face_count() - real);
-          pass(BuildStage::fit, {fitting_worth(before, real, correction), off});
+    tree_.emplace(front_);
+    FrontFitter(front_, tree_, complex_, frozen_, component_boxes_, bounds_, options_, passes_)
+        .run(kFitDownTo, [&] {
+          // From now on the front stays inside the planned wrapper.
+          if (front_.triangle_count() <= kFittedPolytopeFrom) plan_polytope();
         });
   }
 
-  /// Makes passes until they gain too little. `worth`: see CapGoal.
+  /// Makes passes until they gain too little. `worth`: see PatchPass::run().
   void simplify(double worth) {
     for (;;) {
       const std::uint32_t before = front_.triangle_count();
       if (before <= options_.max_outer_faces) return;
-      pass(BuildStage::simplify, {worth});
+      pass(worth);
       if (front_.triangle_count() > kMinGain * before) return;
     }
   }
 
-  void pass(BuildStage stage, const CapGoal& goal) {
+  void pass(double worth) {
     const std::uint32_t triangles = front_.triangle_count();
     // From now on the front stays inside the planned wrapper.
     if (triangles <= kPolytopeFrom) plan_polytope();
     // On a small front patches are small, so that there are still several.
-    const std::uint32_t most =
-        goal.off > 0 ? kFitPatch * options_.patch_interior / 4 : options_.patch_interior;
-    const std::uint32_t interior = std::max(kMinInterior, std::min(most, triangles / kMinPatches));
+    const std::uint32_t interior =
+        std::max(kMinInterior, std::min(options_.patch_interior, triangles / kMinPatches));
     // Rebuild the tree only when it has degraded; otherwise it was refitted.
     if (!tree_ || !tree_->fits(front_)) tree_.emplace(front_);
-    passes_.report_begin(stage, triangles, goal.off);
+    passes_.report_begin(BuildStage::simplify, triangles);
     PatchPass pass(front_, *tree_, complex_, bounds_, frozen_, component_boxes_, workers_, options_.probe);
-    PassEnd end = pass.run({interior, std::max(4 * interior, kMinTriangles)}, goal, passes_.layer(), random_);
+    PassEnd end =
+        pass.run({interior, std::max(4 * interior, kMinTriangles)}, worth, passes_.layer(), random_);
     end.front_faces = front_.triangle_count();
     passes_.report_end(end);
     end_pass();
@@ -342,13 +340,11 @@ class PatchBuilder {
 
   /// Fitting ends when the front has no more triangles than this.
   static constexpr std::uint32_t kFitDownTo = 200;
-  /// Patch size of fitting caps, in quarters of the usual one: in larger patches a smaller share of the faces
-  /// is at the ring, which stays. Measured on five bodies and three seeds: fronts of 1 % fewer faces than at
-  /// 4, in the same time.
-  static constexpr std::uint32_t kFitPatch = 5;
   /// The outermost wrapper is planned when the front has no more triangles than this: few enough to be quick,
   /// and still close to the mesh.
   static constexpr std::uint32_t kPolytopeFrom = 30000;
+  /// The same while fitting, where the front is close to the mesh for longer.
+  static constexpr std::uint32_t kFittedPolytopeFrom = 2000;
   /// A pass that leaves more than this share of the triangles is the last.
   static constexpr double kMinGain = 0.85;
   /// A patch has at most front triangles / kMinPatches interior vertices, so that there are several

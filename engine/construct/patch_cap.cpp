@@ -7,9 +7,9 @@
 // 3. Collapse the edge, and propose the edges around the new vertex. Repeat until no collapse is accepted.
 //
 // Three functions reject collapses: find_star() if the result would not be a surface; measure_star() by the
-// position of the vertex, its deviation, the added volume or the shape of triangles; confirm() by the
-// deviation at sample points or by an exact test. Rejections, except those by EmbedCheck, are recorded in the
-// surface and remain valid until the star or its neighbours change.
+// position of the vertex, the added volume or the shape of triangles; confirm() by an exact test. Rejections,
+// except those by EmbedCheck, are recorded in the surface and remain valid until the star or its neighbours
+// change.
 
 #include "engine/construct/patch_cap.hpp"
 
@@ -66,22 +66,14 @@ void PatchCap::simplify(const Patch& patch, const Limits& limits) {
 void PatchCap::collapse(const Candidate& c) {
   const bool onto_ring = cap_.is_ring(c.v);
   int w = c.v;
-  // The gauge needs the star before and after the collapse.
-  if (limits_.gauge) limits_.gauge->prepare(cap_, star_);
   if (onto_ring)
     cap_.collapse_onto_ring(star_);
   else
     w = cap_.collapse_to_new(star_, c.w);
-  if (limits_.gauge) limits_.gauge->settle(cap_, star_, w);
   if (!onto_ring) return propose_around(w);
   rim_ = star_.rim;
-  for (std::size_t k = 0; k < rim_.size(); ++k) {
-    if (cap_.is_ring(rim_[k].a)) continue;
-    propose(rim_[k].a, w);
-    // Lean builds keep the order of earlier versions, which read the next edges from the rim of the star
-    // evaluated last. The next round proposes the skipped edges.
-    if (!fits()) std::copy_n(star_.rim.begin(), std::min(rim_.size(), star_.rim.size()), rim_.begin());
-  }
+  for (const auto& r : rim_)
+    if (!cap_.is_ring(r.a)) propose(r.a, w);
 }
 
 void PatchCap::propose_all() {
@@ -114,7 +106,7 @@ void PatchCap::propose(int u, int v) {
 /// Evaluates the collapse of an edge; leaves the edge's star in star_.
 std::optional<PatchCap::Candidate> PatchCap::evaluate(int u, int v) {
   // Cheap rejection of about four in five edges, before the star is gathered.
-  if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;
+  if (cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return std::nullopt;
   if (!cap_.find_star(u, v, star_) || cap_.was_rejected(star_)) return std::nullopt;
   return evaluate_star(u, v);
 }
@@ -153,9 +145,7 @@ std::optional<PatchCap::Candidate> PatchCap::measure_star(int u, int v) {
     if (!w) return reject(CapVerdict::no_place);
     c.w = *w;
   }
-  // Step 3: the deviation, if it is limited.
-  if (fits() && !limits_.gauge->may_stand(cap_, star_, c.w)) return reject(CapVerdict::too_thick);
-  // Step 4: the added volume, as pyramids from w over the star's triangles; then a penalty for needles.
+  // Step 3: the added volume, as pyramids from w over the star's triangles; then a penalty for needles.
   double volume = 0, area = 0;
   for (const int f : star_.faces) {
     const auto& plane = cap_.faces()[f].plane;
@@ -182,12 +172,7 @@ std::optional<Vector3> PatchCap::place(double radius, const Vector3& centre) {
   if (!(length > 0)) return std::nullopt;
   collect_half_spaces(centre, margin);
   const Vector3 target = outward * (-limits_.depth * radius / length);
-  // Few of the planes are active, so adding the most violated one first is faster; lean builds keep the
-  // original order.
-  const auto nearest = [&] {
-    return fits() ? nearest_point_worst_first(target, half_spaces_, slack)
-                  : nearest_point(target, half_spaces_, slack);
-  };
+  const auto nearest = [&] { return nearest_point(target, half_spaces_, slack); };
   auto w = nearest();
   if (!w) return std::nullopt;
   const double reach = 2 * radius;
@@ -255,8 +240,6 @@ double PatchCap::shape_of_fan(const Vector3& w) const {
 
 /// Returns CapVerdict::accepted if the collapse is accepted, otherwise the reason of the rejection.
 CapVerdict PatchCap::confirm(const Candidate& c) const {
-  // Sample points first: cheaper than the exact tests.
-  if (limits_.gauge && !limits_.gauge->is_near(cap_, star_, c.w)) return CapVerdict::too_thick;
   for (const int f : star_.faces) {
     const auto& v = cap_.faces()[f].v;
     if (v[0] == c.v && cap_.is_ring(c.v)) continue;
@@ -270,7 +253,7 @@ CapVerdict PatchCap::confirm(const Candidate& c) const {
 }
 
 CapVerdict PatchCap::verdict_on_edge(int u, int v) {
-  if (fits() && cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return CapVerdict::no_place;
+  if (cap_.is_ring(v) && cap_.is_behind_a_face_at(u, v)) return CapVerdict::no_place;
   if (!cap_.find_star(u, v, star_)) return CapVerdict::no_surface;
   const auto candidate = measure_star(u, v);
   return candidate ? confirm(*candidate) : why_;

@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "engine/construct/cap_gauge.hpp"
 #include "engine/construct/cap_surface.hpp"
 #include "engine/construct/embed_check.hpp"
 #include "engine/construct/half_spaces.hpp"
@@ -24,7 +23,6 @@ class PatchCap {
     /// Distance of the projected target below the star's centre, in radii of the star.
     double depth = 1;
     EmbedCheck* check = nullptr;  ///< if set, every collapse must pass it
-    CapGauge* gauge = nullptr;    ///< if set, every collapse must stay within its limit
   };
 
   PatchCap(CapSurface& cap, const BodyBounds& bounds) : cap_(cap), bounds_(bounds) {}
@@ -49,7 +47,6 @@ class PatchCap {
     }
   };
 
-  bool fits() const { return limits_.gauge != nullptr; }
   void propose_all();
   void propose_around(int w);
   void propose(int u, int v);

@@ -21,16 +21,6 @@ using Corner = FrontMesh::Corner;
 /// Patches per batch and thread. Batches rarely get longer before two of their patches touch.
 constexpr std::size_t kBatchPerThread = 32;
 
-/// See PatchCap::Limits::depth; for fitting caps.
-constexpr double kFittingDepth = 10;
-
-/// Where no cap was found, the next attempt is made at a deviation limit larger by at least this factor.
-/// Smaller: more time, mostly without effect.
-constexpr double kMinRetryFactor = 1.2;
-/// A pass of fitting caps ends when, after at least kTries patches, fewer than one in kMinCaps got a cap:
-/// the deviation limit is too small for most of the front.
-constexpr std::size_t kTries = 32, kMinCaps = 24;
-
 }  // namespace
 
 PatchPass::PatchPass(FrontMesh& front, AabbTree& tree, ComplexBuilder& complex, const BodyBounds& bounds,
@@ -56,54 +46,37 @@ std::uint32_t PatchPass::bar_faces(PatchGrower& grower) const {
   return excluded;
 }
 
-/// Returns the used vertices at which a cap may be found, in random order, and counts those that wait.
-std::vector<Corner> PatchPass::find_seeds(double off, Random& random, std::uint32_t& waiting) const {
+/// Returns the used vertices in random order.
+std::vector<Corner> PatchPass::find_seeds(Random& random) const {
   std::vector<Corner> seeds;
-  for (Corner v = 0; v < front_.point_count(); ++v) {
-    if (front_.degree(v) == 0) continue;
-    // A vertex waits until the limit reaches the value at which a cap may exist there.
-    if (off == 0 || front_.point(v).retry_deviation <= off)
-      seeds.push_back(v);
-    else
-      ++waiting;
-  }
+  for (Corner v = 0; v < front_.point_count(); ++v)
+    if (front_.degree(v) > 0) seeds.push_back(v);
   random.shuffle(seeds);
   return seeds;
 }
 
-PassEnd PatchPass::run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random) {
+PassEnd PatchPass::run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random) {
   PassEnd end;
   PatchGrower grower(front_, limits);
   end.excluded = bar_faces(grower);
   tried_.assign(front_.point_count(), false);
-  seeds_ = find_seeds(goal.off, random, end.waiting);
+  seeds_ = find_seeds(random);
   next_seed_ = 0;
   no_patch_ = 0;
-  std::size_t tried = 0, found = 0;
   while (next_seed_ < seeds_.size()) {
     // Step 1: a batch of disjoint patches, then all of their caps in parallel on the unchanged front.
     grow_batch(grower);
     workers_.for_each(batch_,
-                      [&](std::size_t i, unsigned worker) { make_cap(jobs_[i], goal, *benches_[worker]); });
+                      [&](std::size_t i, unsigned worker) { make_cap(jobs_[i], worth, *benches_[worker]); });
     // Step 2: apply them in order, repairing those whose proof is out of date.
     changed_.clear();
     for (std::size_t i = 0; i < batch_; ++i) {
       Job& job = jobs_[i];
       const auto touches = [&](const Eigen::AlignedBox3d& box) { return box.intersects(job.seen); };
-      if (std::any_of(changed_.begin(), changed_.end(), touches)) make_cap(job, goal, *benches_[0]);
+      if (std::any_of(changed_.begin(), changed_.end(), touches)) make_cap(job, worth, *benches_[0]);
       end.no_patch += job.no_patch;
       if (probe_) notify(job);
       if (job.has_cap) put_on(job, layer, grower);
-      if (goal.off == 0) continue;
-      ++tried;
-      found += job.has_cap;
-      if (!job.has_cap)
-        for (const Corner v : job.patch.interior) front_.set_retry_deviation(v, job.next_off);
-      // Fitting only: too few caps are accepted at this deviation.
-      if (tried >= kTries && kMinCaps * found < tried) {
-        end.given_up = true;
-        return end;
-      }
     }
   }
   end.no_patch += no_patch_;
@@ -131,24 +104,23 @@ void PatchPass::grow_batch(PatchGrower& grower) {
   }
 }
 
-void PatchPass::make_cap(Job& job, const CapGoal& goal, Bench& bench) const {
+void PatchPass::make_cap(Job& job, double worth, Bench& bench) const {
   // Record what the proof reads, to detect conflicts within the batch.
   bench.check.forget_seen();
-  find_cap(job, goal, bench);
-  if (goal.off > 0 && !job.has_cap) job.next_off = goal.off * retry_factor(job.patch, bench.cap, goal.worth);
+  find_cap(job, worth, bench);
   job.seen = bench.check.seen();
   if (job.has_cap) job.sheet = make_sheet(front_, job.patch, bench.cap);
 }
 
 /// Finds a cap, at first with a single proof for the finished cap. If that fails because of an intersection,
 /// tries again with a proof for each collapse.
-void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
+void PatchPass::find_cap(Job& job, double worth, Bench& bench) const {
   job.has_cap = false;
   job.tries = 0;
   // Optimistic first: one proof for the finished cap. The careful attempt proves each collapse, and costs
   // more.
   for (const bool careful : {false, true}) {
-    CapVerdict verdict = simplify(job.patch, goal, bench, careful);
+    CapVerdict verdict = simplify(job.patch, worth, bench, careful);
     const bool is_simple = verdict == CapVerdict::accepted;
     if (is_simple) verdict = bench.check.judge_cap(job.patch, bench.cap);
     const auto added = static_cast<std::uint32_t>(bench.cap.new_faces());
@@ -158,13 +130,11 @@ void PatchPass::find_cap(Job& job, const CapGoal& goal, Bench& bench) const {
     job.has_cap = verdict == CapVerdict::accepted;
     if (job.has_cap || !is_simple) break;
   }
-  if (probe_ && job.has_cap && goal.off > 0)
-    job.tried[job.tries - 1].off = std::min(goal.off, off_of(bench.cap));
 }
 
 /// Simplifies the patch into a cap that is worth a region. Intersections with the front are checked after
 /// each collapse if `careful`, otherwise not at all.
-CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const {
+CapVerdict PatchPass::simplify(const Patch& patch, double worth, Bench& bench, bool careful) const {
   CapSurface& cap = bench.cap;
   cap.load(front_, patch, static_cast<VertexId>(complex_.vertices().size()));
   const double area = cap.patch_area();
@@ -172,31 +142,14 @@ CapVerdict PatchPass::simplify(const Patch& patch, const CapGoal& goal, Bench& b
   PatchCap::Limits limits;
   limits.volume = kCapVolumeLimit * area * std::sqrt(area);
   limits.check = careful ? &bench.check : nullptr;
-  if (goal.off > 0) {
-    bench.gauge.load(front_, patch, cap, goal.off);
-    limits.gauge = &bench.gauge;
-    limits.depth = kFittingDepth;
-  }
   bench.collapse.simplify(patch, limits);
   if (!cap.keep_polygons_whole(front_, patch)) return CapVerdict::splits_polygon;
   // Only triangles that were replaced count in the ratio.
   const int kept = cap.alive_faces() - cap.new_faces();
   const int removed = static_cast<int>(patch.slots.size()) - kept;
-  if (cap.new_faces() > goal.worth * removed || removed == 0)
+  if (cap.new_faces() > worth * removed || removed == 0)
     return probe_ ? bench.collapse.what_holds_back() : CapVerdict::too_many_faces;
-  if (limits.gauge && front_.has_polygons() && !bench.gauge.measure_again(cap)) return CapVerdict::too_thick;
   return CapVerdict::accepted;
-}
-
-/// Returns the measured maximum deviation of the cap's new triangles from the body: an estimate.
-double PatchPass::off_of(const CapSurface& cap) {
-  double most = 0;
-  for (const CapSurface::Face& f : cap.faces())
-    // The largest corner plus the excess is an upper bound of the estimate on the triangle.
-    if (f.alive && f.kept < 0)
-      most =
-          std::max(most, std::max({cap.off(f.v[0]), cap.off(f.v[1]), cap.off(f.v[2])}) + f.excess_deviation);
-  return most;
 }
 
 void PatchPass::notify(const Job& job) const {
@@ -206,14 +159,6 @@ void PatchPass::notify(const Job& job) const {
   probe_->patch({vertices.front(), static_cast<std::uint32_t>(patch.slots.size()),
                  static_cast<std::uint32_t>(vertices.size()), vertices});
   for (std::size_t i = 0; i < job.tries; ++i) probe_->cap(job.tried[i]);
-}
-
-/// Returns the factor by which the deviation limit must grow before a cap may be found where none is now. The
-/// number of faces needed is about inversely proportional to the deviation, so the factor is the ratio of the
-/// rejected cap's faces to the number that would be worth it. (An attempt at each limit takes a third more
-/// time for the same fronts.)
-double PatchPass::retry_factor(const Patch& patch, const CapSurface& cap, double worth) {
-  return std::max(kMinRetryFactor, cap.alive_faces() / (worth * static_cast<double>(patch.slots.size())));
 }
 
 void PatchPass::put_on(const Job& job, std::uint16_t layer, PatchGrower& grower) {

@@ -40,9 +40,9 @@ class PatchPass {
             const std::vector<bool>& frozen, const std::vector<Eigen::AlignedBox3d>& component_boxes,
             Workers& workers, ConstructProbe* probe);
 
-  /// Covers the front with regions of this layer where possible, taking seeds in random order. Returns
-  /// statistics.
-  PassEnd run(const GrowLimits& limits, const CapGoal& goal, std::uint16_t layer, Random& random);
+  /// Covers the front with regions of this layer where possible, taking seeds in random order. `worth`: most
+  /// faces of a cap relative to those that it covers. Returns statistics.
+  PassEnd run(const GrowLimits& limits, double worth, std::uint16_t layer, Random& random);
 
  private:
   /// The buffers that one worker needs to make caps.
@@ -53,7 +53,6 @@ class PatchPass {
       check.set_component_boxes(component_boxes);
     }
     CapSurface cap;
-    CapGauge gauge;
     EmbedCheck check;
     PatchCap collapse;
   };
@@ -63,20 +62,17 @@ class PatchPass {
     std::array<TriedCap, 2> tried;
     std::size_t tries = 0;
     bool has_cap = false;
-    double next_off = 0;       ///< if not: deviation limit of the next attempt
     Sheet sheet;               ///< the cap, if has_cap
     Eigen::AlignedBox3d seen;  ///< space in which the front was read
   };
 
   void grow_batch(PatchGrower& grower);
-  void make_cap(Job& job, const CapGoal& goal, Bench& bench) const;
-  void find_cap(Job& job, const CapGoal& goal, Bench& bench) const;
-  CapVerdict simplify(const Patch& patch, const CapGoal& goal, Bench& bench, bool careful) const;
-  static double off_of(const CapSurface& cap);
+  void make_cap(Job& job, double worth, Bench& bench) const;
+  void find_cap(Job& job, double worth, Bench& bench) const;
+  CapVerdict simplify(const Patch& patch, double worth, Bench& bench, bool careful) const;
   std::uint32_t bar_faces(PatchGrower& grower) const;
-  std::vector<FrontMesh::Corner> find_seeds(double off, Random& random, std::uint32_t& waiting) const;
+  std::vector<FrontMesh::Corner> find_seeds(Random& random) const;
   void notify(const Job& job) const;
-  static double retry_factor(const Patch& patch, const CapSurface& cap, double worth);
   void put_on(const Job& job, std::uint16_t layer, PatchGrower& grower);
 
   FrontMesh& front_;

@@ -309,7 +309,7 @@ TEST_CASE("a smaller tolerance never reports less") {
       CAPTURE(i);
       const Pose p = pose_around(random, pair);
       double before = INFINITY;
-      for (double tolerance = 2; tolerance > 1e-4; tolerance *= 0.7) {
+      for (double tolerance = 2; tolerance > 1e-6; tolerance *= 0.5) {
         CollideRequest request;
         request.tolerance = tolerance;
         const CollideResult r = ask(pair, p, request, context);

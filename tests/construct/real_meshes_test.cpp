@@ -42,9 +42,9 @@ struct Target {
 TEST_CASE("real models meet the targets for faces, outer faces, volume, embedding and tight wrappers" *
           doctest::test_suite("shared meshes")) {
   const auto folder = shared_meshes();
-  for (const Target& target : {Target{"spot", {4400, 1700, 820}}, Target{"homer", {2700, 1280, 615}},
-                               Target{"fandisk", {410, 240, 225}}, Target{"cheburashka", {2840, 1400, 710}},
-                               Target{"rocker-arm", {2220, 980, 470}}}) {
+  for (const Target& target : {Target{"spot", {4400, 1800, 680}}, Target{"homer", {2700, 1110, 560}},
+                               Target{"fandisk", {340, 215, 205}}, Target{"cheburashka", {2760, 1370, 620}},
+                               Target{"rocker-arm", {1780, 720, 390}}}) {
     CAPTURE(target.name);
     const Mesh mesh = read_mesh((folder / (std::string(target.name) + ".obj")).string());
     Eigen::AlignedBox3d box;

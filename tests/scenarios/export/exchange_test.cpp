@@ -172,7 +172,7 @@ TEST_CASE("wrappers by layer: the body, and layer by layer the outermost one") {
 }
 
 TEST_CASE("separate regions: every face occurs once, and only used vertices are written") {
-  const Wrapper wrapper = wrapper_of_faces(ball(), 120);
+  const Wrapper wrapper = wrapper_of_faces(ball(), 300);
   const Model model = make_model(moment_of(ball(), &wrapper), {false, true, false, {true, true}});
   const std::vector<Part> parts = split_by_region(model);
   std::multiset<double> faces;

@@ -1,0 +1,634 @@
+// Tightly fitting fronts by one global queue of outward collapses (progressive hulls: Sander, Gu, Gortler,
+// Hoppe and Snyder 2000), cut into regions by a cap on components.
+// 1. Propose collapses for all edges of the front: onto one of the two vertices if that is in front of all
+//    faces that it would cover, otherwise to a new vertex, at a rough cost.
+// 2. Pop the cheapest. Place its vertex, and put it back if its true cost is higher.
+// 3. Measure the deviation at sample points. If it is too large, the edge sleeps until the limit is larger.
+// 4. Confirm exactly that the vertex is in front of the faces to be covered; collapse; propose the edges
+//    around it.
+// 5. When the queue is empty, prove the lids of the components that are simple enough, and make them regions.
+//    A component that fails its proof is undone, and its faces are marked: collapses that cover them are
+//    proven one by one.
+
+#include "engine/construct/front_fitter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/construct/front_update.hpp"
+#include "engine/core/geometry.hpp"
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/plane_side.hpp"
+
+namespace lrb::construct {
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+using Index = OpenFront::Index;
+
+/// Maximum number of faces beneath a component, for each interior vertex that a patch should have: with 16 of
+/// these, 112 faces. Measured on five bodies and three seeds: at 96 and 128, fronts of 3 % and 1 % more
+/// faces.
+constexpr std::uint32_t kFloorPerInterior = 7;
+constexpr std::uint32_t kMinFloor = 12;
+/// A round that leaves more than this share of the committed front is the last at its deviation limit.
+constexpr double kGain = 0.9;
+constexpr int kMaxRounds = 8;
+/// Number of vertices whose edges are worked off together.
+constexpr std::size_t kChunk = 1000;
+/// Price of a region's lid, as kFitBudget and kFitTotal: the open lids at the end are not counted there.
+constexpr double kBudget = 0.67, kTotal = 1.0;
+/// Depth of the target below the star's centre, in radii: see FrontFitter::place().
+constexpr double kDepth = 10;
+/// A collapse whose mean height over the star exceeds this share of the limit sleeps without being measured.
+constexpr double kMaxHeight = 0.7;
+/// Cost of needles, relative to area^1.5. Smaller: needles, at which later collapses are refused.
+constexpr double kShapeWeight = 1e-3;
+/// A collapse that was too far off sleeps until the limit is this many times as large, at least.
+constexpr double kWake = 1.05;
+/// Faces of a component that failed its proof in spite of a proof for each collapse are not covered until the
+/// limit is this many times as large.
+constexpr double kExclude = 1.6;
+/// Sample points: usual number of steps along an edge, largest distance between them relative to the limit,
+/// and the most steps along an edge and of a grid.
+constexpr int kSteps = 4, kMaxSteps = 32, kMaxRows = 10;
+constexpr double kSpacing = 12;
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+Eigen::AlignedBox3d box_of(const FrontMesh& front) {
+  Eigen::AlignedBox3d box;
+  for (FrontMesh::Corner v = 0; v < front.point_count(); ++v) box.extend(front.x(v));
+  return box;
+}
+
+}  // namespace
+
+FrontFitter::FrontFitter(FrontMesh& front, std::optional<AabbTree>& tree, ComplexBuilder& complex,
+                         const std::vector<bool>& frozen,
+                         const std::vector<Eigen::AlignedBox3d>& component_boxes, const BodyBounds& bounds,
+                         const BuildOptions& options, PassCounter& passes)
+    : front_(front),
+      tree_(tree),
+      complex_(complex),
+      bounds_(bounds),
+      options_(options),
+      passes_(passes),
+      low_(box_of(front).min()),
+      size_(box_of(front).sizes().maxCoeff()),
+      open_(front, frozen),
+      body_(front, *tree),
+      proof_(open_, front, component_boxes),
+      max_floor_(std::max(kMinFloor, kFloorPerInterior * options.patch_interior)),
+      queue_(size_ * size_ * size_),
+      random_(options.seed) {}
+
+void FrontFitter::run(std::uint32_t least, const std::function<void()>& before_round) {
+  const std::size_t real = complex_.face_count();
+  for (double limit = kFirstOff * size_; limit < kLastOff * size_; limit *= kOffStep) {
+    limit_ = limit;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const std::uint32_t before = front_.triangle_count();
+      if (before <= least) return;
+      before_round();
+      passes_.report_begin(BuildStage::fit, before, limit);
+      simplify();
+      // A higher price is paid while fewer pseudo faces were made than planned.
+      const double root = fitting_root(before, real);
+      const double pseudo = static_cast<double>(complex_.face_count() - real) / static_cast<double>(real);
+      const double correction = 1 + kFitCorrection * std::max(0.0, kTotal * (1 - root) - pseudo);
+      const double ratio = kBudget / root * correction;
+      commit(std::min(kLastCapWorth, ratio / (1 + ratio)));
+      passes_.report_end({.front_faces = front_.triangle_count()});
+      passes_.end_pass(complex_, front_.triangle_count());
+      if (front_.triangle_count() > kGain * before) break;
+    }
+  }
+}
+
+/// Makes all collapses within the limit, chunk by chunk: the order of distant collapses does not matter, and
+/// a chunk stays in the caches.
+void FrontFitter::simplify() {
+  const std::vector<Index> order = along_curve();
+  // Start at a random vertex, so that seeds give different fronts.
+  const std::size_t first = random_.below(static_cast<std::uint32_t>(order.size()));
+  for (std::size_t i = 0; i < order.size();) {
+    for (const std::size_t last = std::min(i + kChunk, order.size()); i < last; ++i)
+      propose_around(order[(first + i) % order.size()]);
+    work_off();
+  }
+}
+
+/// Returns the vertices in use along a space-filling curve (Morton order).
+std::vector<Index> FrontFitter::along_curve() const {
+  constexpr std::uint32_t kCells = 1024;
+  const auto spread = [](std::uint32_t x) {
+    x = (x | x << 16) & 0x030000ff;
+    x = (x | x << 8) & 0x0300f00f;
+    x = (x | x << 4) & 0x030c30c3;
+    return (x | x << 2) & 0x09249249;
+  };
+  std::vector<std::uint64_t> keys;
+  for (Index v = 0; v < open_.vertex_count(); ++v) {
+    if (!open_.is_used(v)) continue;
+    std::uint32_t code = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double cell = (open_.x(v)[i] - low_[i]) / size_ * kCells;
+      code |= spread(static_cast<std::uint32_t>(std::clamp(cell, 0.0, kCells - 1.0))) << i;
+    }
+    keys.push_back(std::uint64_t{code} << 32 | v);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Index> order;
+  order.reserve(keys.size());
+  for (const std::uint64_t k : keys) order.push_back(static_cast<Index>(k));
+  return order;
+}
+
+// Proposals.
+
+bool FrontFitter::load_hub(Index w) {
+  hub_.w = w;
+  hub_.spokes.clear();
+  hub_.outward.setZero();
+  hub_.rim_sum.setZero();
+  hub_.offset = hub_.area = 0;
+  hub_.united.components.clear(), hub_.united.polygons.clear();
+  hub_.united.floor = 0, hub_.united.excluded = false;
+  const Index first = open_.any_face(w);
+  Index f = first;
+  do {
+    if (hub_.spokes.full()) return false;
+    const auto& t = open_[f];
+    const int i = OpenFront::index_of(t, w);
+    const Index to = t.v[(i + 1) % 3];
+    hub_.spokes.push_back({f, to});
+    hub_.outward += t.n * t.area;
+    hub_.offset += t.d * t.area;
+    hub_.area += t.area;
+    hub_.rim_sum += open_.x(to);
+    open_.unite(f, static_cast<float>(limit_), hub_.united);
+    f = t.across[(i + 2) % 3];
+  } while (f != first);
+  return true;
+}
+
+/// Proposes the edges of a vertex to those with larger numbers.
+void FrontFitter::propose_around(Index w) {
+  if (!open_.is_used(w) || !load_hub(w)) return;
+  for (std::size_t k = 0; k < hub_.spokes.size(); ++k)
+    if (w < hub_.spokes[k].to) propose(k);
+}
+
+/// Returns true unless the collapse of the face's edge sleeps, or was refused and nothing has changed.
+bool FrontFitter::may_try(Index f, int edge) const {
+  const auto& state = open_.state(f);
+  if (state.wake[edge] <= static_cast<float>(limit_)) return true;
+  if (state.wake[edge] != kNever) return false;
+  const Index u = open_[f].v[edge], v = open_[f].v[(edge + 1) % 3];
+  return std::max(open_.changed_at(u), open_.changed_at(v)) > state.refused_at[edge];
+}
+
+/// Proposes what can be done with one edge of the hub. The edge w, to lies between the faces of this spoke
+/// and of the one before.
+void FrontFitter::propose(std::size_t k) {
+  const Index w = hub_.w, r = hub_.spokes[k].to;
+  const std::size_t n = hub_.spokes.size();
+  const Index left = hub_.spokes[k].face, right = hub_.spokes[k > 0 ? k - 1 : n - 1].face;
+  // The other faces around r, and the vertices beyond.
+  others_.clear();
+  for (Index f = right;;) {
+    const auto& t = open_[f];
+    f = t.across[(OpenFront::index_of(t, r) + 2) % 3];
+    if (f == left) break;
+    if (others_.full()) return;
+    others_.push_back(f);
+  }
+  Vector3 rim = hub_.rim_sum - open_.x(r);
+  std::size_t rim_size = n - 1;
+  for (std::size_t i = 0; i + 1 < others_.size(); ++i) {
+    const auto& t = open_[others_[i]];
+    rim += open_.x(t.v[(OpenFront::index_of(t, r) + 2) % 3]);
+    ++rim_size;
+  }
+  // Step 1: onto one of the two vertices.
+  bool r_onto_w = true, w_onto_r = true;
+  for (const Index o : others_)
+    if (!(dot3(open_[o].n, open_.x(w)) > open_[o].d)) {
+      r_onto_w = false;
+      break;
+    }
+  for (std::size_t j = 0; j < n && w_onto_r; ++j) {
+    const Index f = hub_.spokes[j].face;
+    if (f != left && f != right) w_onto_r = dot3(open_[f].n, open_.x(r)) > open_[f].d;
+  }
+  bool proposed = false;
+  if (r_onto_w) proposed |= propose_onto(r, w);
+  if (w_onto_r) proposed |= propose_onto(w, r);
+  // A new vertex costs a placement: only where nothing simpler can be done.
+  if (proposed) return;
+  // Step 2: the cap, which blocks most edges at the end of a level.
+  scratch_union_.components.assign(hub_.united.components.begin(), hub_.united.components.end());
+  scratch_union_.polygons.assign(hub_.united.polygons.begin(), hub_.united.polygons.end());
+  scratch_union_.floor = hub_.united.floor, scratch_union_.excluded = hub_.united.excluded;
+  for (const Index o : others_) open_.unite(o, static_cast<float>(limit_), scratch_union_);
+  if (scratch_union_.excluded || scratch_union_.floor > max_floor_) return;
+  // Step 3: the rough cost of a new vertex: the volume under the lowest point in front of all planes that is
+  // over the star's centre along its mean normal. The edge's state is kept from its smaller vertex.
+  const Index low = std::min(w, r), holder = w < r ? left : right;
+  if (!may_try(holder, OpenFront::index_of(open_[holder], low))) return;
+  Vector3 outward = hub_.outward;
+  double offset = hub_.offset;
+  for (const Index o : others_) {
+    outward += open_[o].n * open_[o].area;
+    offset += open_[o].d * open_[o].area;
+  }
+  const double length = norm3(outward);
+  if (!(length > 0)) return;
+  const Vector3 along = outward / length, centre = rim / static_cast<double>(rim_size);
+  double height = -kInfinity;
+  const auto raise = [&](Index f) {
+    const auto& p = open_[f];
+    constexpr double kMinSlope = 0.1;
+    height = std::max(height, (p.d - dot3(p.n, centre)) / std::max(dot3(p.n, along), kMinSlope));
+  };
+  for (const auto& spoke : hub_.spokes) raise(spoke.face);
+  for (const Index o : others_) raise(o);
+  const double volume = std::max(0.0, (dot3(outward, centre) - offset + height * length) / 3);
+  queue_.push({static_cast<float>(volume), low, std::max(w, r), false});
+}
+
+bool FrontFitter::propose_onto(Index u, Index v) {
+  if (!open_.find_star(u, v, true, scratch_) || !is_in_front(scratch_, open_.x(v))) return false;
+  unite(scratch_, scratch_union_);
+  if (scratch_union_.excluded || scratch_union_.floor > max_floor_ || !clears_neighbours(scratch_))
+    return false;
+  double area = 0;
+  const double volume = volume_under(scratch_, open_.x(v), area);
+  const auto cost = static_cast<float>(volume + shape_cost(scratch_, open_.x(v), area));
+  if (!(cost < std::numeric_limits<float>::max())) return false;
+  queue_.push({cost, u, v, true});
+  return true;
+}
+
+// Evaluation.
+
+void FrontFitter::unite(const Star& star, Union& united) const {
+  united.components.clear(), united.polygons.clear();
+  united.floor = 0, united.excluded = false;
+  for (const Index f : star.faces) open_.unite(f, static_cast<float>(limit_), united);
+}
+
+/// Returns true if p, the vertex that the star's first vertex moves onto, is in front of all faces without
+/// it.
+bool FrontFitter::is_in_front(const Star& star, const Vector3& p) const {
+  double radius_sq = 0;
+  for (const auto& r : star.rim)
+    radius_sq = std::max(radius_sq, squared_norm3(open_.x(r.a) - open_.x(star.u)));
+  const double margin = kPlacementMargin * std::sqrt(radius_sq);
+  for (std::size_t k = 1; k + 1 < star.faces.size(); ++k) {
+    const auto& f = open_[star.faces[k]];
+    if (dot3(f.n, p) - f.d < margin) return false;
+  }
+  return true;
+}
+
+/// Returns true if v is in front of the neighbours beyond reflex edges of the rim, where the fan could
+/// intersect them.
+bool FrontFitter::clears_neighbours(const Star& star) const {
+  const Vector3& p = open_.x(star.v);
+  return std::all_of(star.rim.begin(), star.rim.end(), [&](const auto& r) {
+    const auto &own = open_[r.face], &other = open_[r.across];
+    const Index tip = open_.corner_opposite(r.across, r.a, r.b);
+    return tip == star.v || !(dot3(own.n, open_.x(tip)) > own.d) || dot3(other.n, p) > other.d;
+  });
+}
+
+/// Finds the position of a new vertex: the point in front of all planes that is nearest to a target kDepth
+/// radii below the star's centre, so that it is as low as possible and above the centre. (The lowest vertex
+/// by a linear program drifts sideways where the star is flat.)
+bool FrontFitter::place(const Star& star, Vector3& w) {
+  Vector3 centre = Vector3::Zero(), outward = Vector3::Zero();
+  for (const auto& r : star.rim) centre += open_.x(r.a);
+  centre /= static_cast<double>(star.rim.size());
+  double radius_sq = 0;
+  for (const auto& r : star.rim) radius_sq = std::max(radius_sq, squared_norm3(open_.x(r.a) - centre));
+  const double radius = std::sqrt(radius_sq);
+  // The margin keeps the floating-point position strictly in front, so that the exact confirmation succeeds.
+  const double margin = kPlacementMargin * radius;
+  half_spaces_.clear();
+  const auto in_front_of = [&](const OpenFront::Face& f) {
+    half_spaces_.push_back({f.n, f.d - dot3(f.n, centre) + margin});
+  };
+  for (const Index f : star.faces) {
+    outward += open_[f].n * open_[f].area;
+    in_front_of(open_[f]);
+  }
+  const double length = norm3(outward);
+  if (!(length > 0)) return false;
+  // In front of a neighbour at a reflex rim edge, where the fan could intersect it.
+  for (const auto& r : star.rim) {
+    const auto& own = open_[r.face];
+    if (dot3(own.n, open_.x(open_.corner_opposite(r.across, r.a, r.b))) > own.d) in_front_of(open_[r.across]);
+  }
+  const Vector3 target = outward * (-kDepth * radius / length);
+  const auto solve = [&] {
+    const auto p = nearest_point(target, half_spaces_, kPlacementSlack * radius);
+    if (p) w = *p;
+    return p && p->cwiseAbs().maxCoeff() <= 2 * radius;
+  };
+  if (!solve()) return false;
+  // The bounds are rarely active: add them only if the position violates them.
+  if (!bounds_.contains(w + centre)) {
+    for (const HalfSpace& h : bounds_.half_spaces()) half_spaces_.push_back({h.n, h.d - dot3(h.n, centre)});
+    if (!solve()) return false;
+  }
+  w += centre;
+  return true;
+}
+
+double FrontFitter::volume_under(const Star& star, const Vector3& w, double& area) const {
+  double volume = 0;
+  area = 0;
+  for (const Index f : star.faces) {
+    volume += (dot3(open_[f].n, w) - open_[f].d) * open_[f].area;
+    area += open_[f].area;
+  }
+  return volume / 3;
+}
+
+/// Returns the cost of the worst triangle of the fan: infinite for a degenerate one.
+double FrontFitter::shape_cost(const Star& star, const Vector3& w, double area) const {
+  double worst = kInfinity;
+  for (const auto& r : star.rim) {
+    const Vector3 a = open_.x(r.a) - w, b = open_.x(r.b) - w;
+    worst = std::min(worst, norm3(a.cross(b)) / (squared_norm3(a) + squared_norm3(b) + squared_norm3(a - b)));
+  }
+  // Scaled so that an equilateral triangle has the shape 1.
+  return kShapeWeight * area * std::sqrt(area) / (worst * (2 * std::sqrt(3.0)));
+}
+
+/// Returns the number of steps between sample points from a to b: more where these are far from each other,
+/// relative to the limit. (A long edge over a crease can be far off between few sample points, and its lid
+/// would keep out all others above it.)
+int FrontFitter::steps_along(const SurfaceWalk::Point& a, const SurfaceWalk::Point& b) const {
+  const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  const float steps = std::sqrt(x * x + y * y + z * z) / static_cast<float>(kSpacing * limit_);
+  return steps < kSteps ? kSteps : static_cast<int>(std::min(steps, static_cast<float>(kMaxSteps)));
+}
+
+/// Returns 0 if the fan from w is within the limit of the body at its sample points; else about its
+/// deviation. Prepares the state of its faces.
+float FrontFitter::excess(const Star& star, const Vector3& w) {
+  using Point = SurfaceWalk::Point;
+  const auto enough = static_cast<float>(limit_ * limit_);
+  const auto mix = [](float s, const Point& a, float t, const Point& b) {
+    return Point{s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
+  };
+  const Point tip = body_.local(w);
+  FrontMesh::Slot hint = open_.state(star.faces[0]).hint;
+  float most = 0, failed = 0;
+  const auto is_near = [&](const Point& p) {
+    const float sq = body_.walk(p, hint, enough);
+    most = std::max(most, std::min(sq, enough));
+    if (sq <= enough || body_.is_within(p, hint, enough)) return true;
+    failed = std::sqrt(sq);
+    return false;
+  };
+  if (!star.onto_v && !is_near(tip)) return failed;
+  new_hints_.clear();
+  Point a = body_.local(open_.x(star.rim[0].a)), b{};
+  for (std::size_t k = 0; k < star.rim.size(); ++k, a = b) {
+    b = body_.local(open_.x(star.rim[k].b));
+    hint = open_.state(star.rim[k].face).hint;
+    const Point base = mix(0.5f, a, 0.5f, b);
+    const int steps = steps_along(a, tip);
+    const auto share = [](int i, int of) { return static_cast<float>(i) / static_cast<float>(of); };
+    // The edge from a is in two triangles, but for the first one of a fan that is not closed. The middle
+    // first, where most fail.
+    const bool edge = !(star.onto_v && k == 0);
+    if (edge && !is_near(mix(0.5f, a, 0.5f, tip))) return failed;
+    if (!is_near(mix(2 / 3.0f, base, 1 / 3.0f, tip))) return failed;
+    new_hints_.push_back(hint);
+    if (!is_near(mix(0.5f, base, 0.5f, tip))) return failed;
+    for (int i = 1; edge && i < steps; ++i)
+      if (2 * i != steps && !is_near(mix(share(i, steps), a, share(steps - i, steps), tip))) return failed;
+    // Large triangles: a grid.
+    const int rows = std::min(std::max({steps, steps_along(b, tip), steps_along(a, b)}), kMaxRows);
+    if (rows <= kSteps) continue;
+    for (int i = 1; i < rows - 1; ++i)
+      for (int j = 1; i + j < rows; ++j) {
+        const float s = share(i, rows), t = share(j, rows);
+        if (!is_near(mix(1, mix(s, a, t, b), 1 - s - t, tip))) return failed;
+      }
+  }
+  new_off_ = std::sqrt(most);
+  return 0;
+}
+
+/// Returns true if a face of the fan folds back over its neighbour beyond the rim, or turns to the inside of
+/// the front there: where the surface is flat, a vertex that is hardly above it, beyond the rim, is in front
+/// of all planes. Faces that turn by less than a right angle need no test: they are on the outer side of
+/// their neighbours, or are found by the proof of the lid.
+bool FrontFitter::folds(const Star& star, const Vector3& w) const {
+  constexpr double kFolded = -0.95;  // cosine between the two normals
+  return std::any_of(star.rim.begin(), star.rim.end(), [&](const auto& r) {
+    const Vector3 &a = open_.x(r.a), &b = open_.x(r.b);
+    const Vector3 n = (b - a).cross(w - a);
+    if (dot3(n, open_[r.face].n) > 0) return false;
+    return dot3(n, open_[r.across].n) < kFolded * norm3(n) ||
+           !turns_outward(a, b, open_.x(open_.corner_opposite(r.face, r.a, r.b)), w,
+                          open_.x(open_.corner_opposite(r.across, r.a, r.b)));
+  });
+}
+
+/// Exact: the vertex must be strictly in front of every face that the fan covers.
+bool FrontFitter::is_strictly_in_front(const Star& star, const Vector3& w) const {
+  for (std::size_t k = 0; k < star.faces.size(); ++k) {
+    if (star.onto_v && (k == 0 || k + 1 == star.faces.size())) continue;
+    const auto& v = open_[star.faces[k]].v;
+    const exact::PlaneSide plane(open_.x(v[0]).data(), open_.x(v[1]).data(), open_.x(v[2]).data());
+    if (plane.side(w.data()) <= 0) return false;
+  }
+  return true;
+}
+
+/// Records that the collapse of star_ was refused: until the limit is `wake` or, if that is kNever, until a
+/// face of its star changes.
+void FrontFitter::refuse(CapVerdict verdict, float wake) {
+  for (const Index c : united_.components) open_.set_held_by(c, verdict);
+  if (star_.onto_v) return;
+  auto& state = open_.state(star_.faces[0]);
+  state.wake[star_.edge] = wake;
+  state.refused_at[star_.edge] = open_.now();
+}
+
+void FrontFitter::work_off() {
+  while (!queue_.empty()) evaluate(queue_.pop());
+}
+
+void FrontFitter::evaluate(const QueuedCollapse& c) {
+  // Step 1: the star may have changed since the collapse was proposed.
+  if (!open_.is_used(c.u) || !open_.is_used(c.v) || !open_.find_star(c.u, c.v, c.onto_v, star_)) return;
+  unite(star_, united_);
+  if (united_.excluded || united_.floor > max_floor_) return;
+  if (!open_.leaves_surface(star_)) return refuse(CapVerdict::no_surface, kNever);
+  // Step 2: the position.
+  Vector3 w;
+  if (c.onto_v) {
+    w = open_.x(c.v);
+    if (!is_in_front(star_, w) || !clears_neighbours(star_)) return;
+  } else if (!place(star_, w)) {
+    return refuse(CapVerdict::no_place, kNever);
+  }
+  // Step 3: the cost.
+  double area = 0;
+  const double volume = volume_under(star_, w, area);
+  if (3 * volume > kMaxHeight * limit_ * area)
+    return refuse(CapVerdict::too_thick, static_cast<float>(3 * volume / (kMaxHeight * area)));
+  const auto cost = static_cast<float>(volume + shape_cost(star_, w, area));
+  if (!(cost < std::numeric_limits<float>::max())) return refuse(CapVerdict::too_thin, kNever);
+  if (!queue_.empty() && queue_.bucket_of(cost) > queue_.current())
+    return queue_.push({cost, c.u, c.v, c.onto_v});
+  // Step 4: the deviation, of fans that do not fold back over their neighbours.
+  if (folds(star_, w)) return refuse(CapVerdict::turns_inward, kNever);
+  if (const float off = excess(star_, w); off > 0)
+    return refuse(CapVerdict::too_thick, std::max(off, static_cast<float>(kWake * limit_)));
+  // Step 5: the exact tests.
+  if (!is_strictly_in_front(star_, w)) return refuse(CapVerdict::no_place, kNever);
+  if (open_.was_restored()) {
+    const bool careful = std::any_of(star_.faces.begin(), star_.faces.end(),
+                                     [&](Index f) { return open_.state(f).careful; }) ||
+                         std::any_of(united_.components.begin(), united_.components.end(),
+                                     [&](Index i) { return open_.is_careful(i); });
+    if (careful)
+      if (const CapVerdict v = proof_.judge_fan(star_, united_.components, w, *tree_);
+          v != CapVerdict::accepted)
+        return refuse(v, kNever);
+  }
+  const Index tip = open_.collapse(star_, united_, w, new_hints_, new_off_);
+  // Step 6: propose new collapses: the edges from the new fan's vertex to the rim.
+  if (!load_hub(tip)) return;
+  on_rim_.resize(open_.vertex_count(), false);
+  for (const auto& r : star_.rim) on_rim_[r.a] = on_rim_[r.b] = true;
+  for (std::size_t k = 0; k < hub_.spokes.size(); ++k)
+    if (on_rim_[hub_.spokes[k].to]) propose(k);
+  for (const auto& r : star_.rim) on_rim_[r.a] = on_rim_[r.b] = false;
+}
+
+// Commits.
+
+void FrontFitter::commit(double worth) {
+  if (!tree_->fits(front_)) tree_.emplace(front_);
+  for (OpenFront::Lid& lid : open_.lids()) {
+    const CapVerdict verdict = finish(lid, worth);
+    if (options_.probe) notify(lid, verdict);
+    if (verdict == CapVerdict::accepted) put_on(lid);
+    // A component that is not simple enough stays open. One that failed is undone.
+    else if (verdict != CapVerdict::too_many_faces && verdict != CapVerdict::splits_polygon)
+      open_.restore(lid, open_.is_careful(lid.component) ? static_cast<float>(kExclude * limit_) : 0);
+  }
+}
+
+CapVerdict FrontFitter::finish(OpenFront::Lid& lid, double worth) {
+  const auto is_worth_it = [&] {
+    return static_cast<double>(lid.faces.size()) <=
+           worth * static_cast<double>(open_.floor(lid.component).size());
+  };
+  if (!is_worth_it()) return CapVerdict::too_many_faces;
+  if (!cover_polygons(lid)) return CapVerdict::splits_polygon;
+  if (!is_worth_it()) return CapVerdict::too_many_faces;
+  return proof_.judge(lid, *tree_);
+}
+
+/// Extends the floor to whole polygons of the mesh: by flips that only move the lid outward, then by covering
+/// the remaining parts of a polygon with flat pyramids. Returns false if neither is possible somewhere.
+bool FrontFitter::cover_polygons(OpenFront::Lid& lid) {
+  for (;;) {
+    const std::vector<Index> parts = open_.uncovered_parts(lid.component);
+    if (parts.empty()) return true;
+    bool progress = false;
+    for (const Index f : parts)
+      for (int i = 0; i < 3 && open_.state(f).alive; ++i) {
+        Index flipped[2];
+        const Index beyond = open_[f].across[i];
+        if (!open_.flip_outward(lid.component, f, i, flipped)) continue;
+        std::erase(lid.faces, beyond);
+        lid.faces.insert(lid.faces.end(), {flipped[0], flipped[1]});
+        progress = true;
+      }
+    if (progress) continue;
+    for (const Index f : parts) {
+      star_.faces.clear(), star_.rim.clear();
+      star_.onto_v = false;
+      star_.faces.push_back(f);
+      const auto& v = open_[f].v;
+      for (int i = 0; i < 3; ++i) star_.rim.push_back({v[i], v[(i + 1) % 3], open_[f].across[i], f});
+      Vector3 w;
+      if (open_.state(f).excluded_below > static_cast<float>(limit_) || !place(star_, w) ||
+          !is_strictly_in_front(star_, w))
+        return false;
+      const auto raised = open_.raise(lid.component, f, w);
+      lid.faces.insert(lid.faces.end(), raised.begin(), raised.end());
+    }
+  }
+}
+
+void FrontFitter::put_on(const OpenFront::Lid& lid) {
+  Sheet sheet;
+  const auto& floor = open_.floor(lid.component);
+  for (const Index f : floor) sheet.removed.push_back(open_.state(f).slot);
+  std::vector<Index> fresh;  // vertices that are new in the committed front
+  const auto corner_of = [&](Index v) {
+    if (open_.corner(v) != kNull) return open_.corner(v);
+    const auto at = std::find(fresh.begin(), fresh.end(), v);
+    if (at == fresh.end()) {
+      fresh.push_back(v);
+      sheet.new_points.push_back(open_.x(v));
+      return static_cast<FrontMesh::Corner>(Sheet::kNewPoint + fresh.size() - 1);
+    }
+    return static_cast<FrontMesh::Corner>(Sheet::kNewPoint + (at - fresh.begin()));
+  };
+  for (const Index f : lid.faces) {
+    const auto& v = open_[f].v;
+    sheet.added.push_back({corner_of(v[0]), corner_of(v[1]), corner_of(v[2])});
+  }
+  work_out(front_, sheet);
+  const FrontMesh::Corner first = front_.point_count();
+  const std::uint32_t component = front_[sheet.removed.front()].component;
+  const auto slots = cover(front_, complex_, sheet, passes_.layer(), component, options_.probe);
+  for (std::size_t i = 0; i < fresh.size(); ++i) {
+    const auto corner = static_cast<FrontMesh::Corner>(first + i);
+    open_.set_committed(fresh[i], corner, front_.point(corner).id);
+  }
+  for (const FrontMesh::Slot s : slots) tree_->update(s, box_of(front_, s));
+  open_.commit(lid, slots);
+}
+
+/// Reports a component as a patch, with its lid as the cap.
+void FrontFitter::notify(const OpenFront::Lid& lid, CapVerdict verdict) const {
+  const auto& floor = open_.floor(lid.component);
+  // The vertices that the lid does not have.
+  std::vector<Index> inside, kept;
+  for (const Index f : lid.faces) kept.insert(kept.end(), open_[f].v.begin(), open_[f].v.end());
+  for (const Index f : floor) inside.insert(inside.end(), open_[f].v.begin(), open_[f].v.end());
+  for (auto* list : {&inside, &kept}) {
+    std::sort(list->begin(), list->end());
+    list->erase(std::unique(list->begin(), list->end()), list->end());
+  }
+  std::vector<VertexId> vertices;
+  for (const Index v : inside)
+    if (!std::binary_search(kept.begin(), kept.end(), v)) vertices.push_back(open_.id(v));
+  const VertexId first = vertices.empty() ? open_.id(inside.front()) : vertices.front();
+  options_.probe->patch({first, static_cast<std::uint32_t>(floor.size()),
+                         static_cast<std::uint32_t>(vertices.size()), vertices});
+  float off = 0;
+  for (const Index f : lid.faces) off = std::max(off, open_.state(f).off);
+  // What holds back a lid of too many faces is why its last collapse was refused.
+  if (verdict == CapVerdict::too_many_faces) verdict = open_.held_by(lid.component);
+  options_.probe->cap({static_cast<std::uint32_t>(lid.faces.size()), static_cast<std::uint32_t>(floor.size()),
+                       verdict, open_.is_careful(lid.component),
+                       verdict == CapVerdict::accepted ? std::min<double>(off, limit_) : -1});
+}
+
+}  // namespace lrb::construct

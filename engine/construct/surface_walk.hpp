@@ -1,0 +1,57 @@
+#pragma once
+/// Distances of points from the mesh, found by walking over its triangles.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/construct/aabb_tree.hpp"
+#include "engine/construct/front_mesh.hpp"
+
+namespace lrb::construct {
+
+/// The triangles of the mesh with their neighbours, one cache line each, in single precision relative to the
+/// centre of the body: estimates to choose by. What lids are off the body is proven afterwards.
+class SurfaceWalk {
+ public:
+  using Slot = FrontMesh::Slot;
+  struct Point {
+    float x, y, z;
+  };
+
+  /// `front`: still the mesh itself. `tree`: over it; both are only read here.
+  SurfaceWalk(const FrontMesh& front, const AabbTree& tree);
+
+  Point local(const Eigen::Vector3d& p) const {
+    return {static_cast<float>(p[0] - centre_[0]), static_cast<float>(p[1] - centre_[1]),
+            static_cast<float>(p[2] - centre_[2])};
+  }
+  /// Walks downhill from triangle `hint` to a triangle near p, which becomes the hint. Returns the squared
+  /// distance from it; stops as soon as that is at most `enough`. May end at a local minimum.
+  float walk(const Point& p, Slot& hint, float enough) const;
+  /// Returns true if a triangle is within the distance sqrt(enough) of p, and makes it the hint.
+  bool is_within(const Point& p, Slot& hint, float enough) const;
+  /// Returns the squared distance of p from one triangle.
+  float distance_sq(Slot s, const Point& p) const { return nearest(triangles_[s], p).distance_sq; }
+
+ private:
+  struct alignas(64) Triangle {
+    Point a, ab, ac;
+    std::array<std::uint32_t, 3> v, across;
+  };
+  /// Where the point of a triangle nearest to another point is.
+  enum class Feature : std::uint8_t { inside, edge_ab, edge_bc, edge_ca, corner_a, corner_b, corner_c };
+  struct Nearest {
+    float distance_sq;
+    Feature feature;
+  };
+  static Nearest nearest(const Triangle& t, const Point& p);
+
+  std::vector<Triangle> triangles_;
+  AabbTree tree_;
+  Eigen::Vector3d centre_;
+};
+
+}  // namespace lrb::construct
