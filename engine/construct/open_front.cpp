@@ -40,7 +40,6 @@ OpenFront::OpenFront(const FrontMesh& front, const std::vector<bool>& frozen) : 
     face_at_.push_back(s);
     for (const Index v : t.v) face_of_[v] = s;
   }
-  alive_ = count;
 }
 
 void OpenFront::set_plane(Face& f) const {
@@ -279,7 +278,6 @@ Index OpenFront::collapse(const Star& star, const Union& united, const Vector3& 
   }
   face_of_[w] = fresh_[0];
   changed_at_[w] = time_;
-  alive_ -= static_cast<std::uint32_t>(star.faces.size() - n);
   return w;
 }
 
@@ -421,7 +419,6 @@ void OpenFront::restore(const Lid& lid, float excluded_below) {
     states_[f].alive = false;
     free_.push_back(f);
   }
-  alive_ += static_cast<std::uint32_t>(floor.size() - lid.faces.size());
   was_restored_ = true;
 }
 

@@ -151,15 +151,13 @@ class OpenFront {
   /// Puts the floor of a component back in place of its lid. Collapses that cover its faces are excluded
   /// below this deviation limit, and `careful` from now on.
   void restore(const Lid& lid, float excluded_below);
-  /// The lid has become part of the committed front: `slots` are those of its faces, `first_corner` that of
-  /// its first new vertex; `ids`: of these vertices.
+  /// The lid has become part of the committed front; `slots` (its faces): their places there.
   void commit(const Lid& lid, std::span<const Slot> slots);
   void set_committed(Index v, FrontMesh::Corner corner, VertexId id) { corner_[v] = corner, id_[v] = id; }
   /// Corner of the committed front; kNull: not part of it.
   FrontMesh::Corner corner(Index v) const { return corner_[v]; }
   Index face_at(Slot s) const { return face_at_[s]; }
 
-  std::uint32_t alive_count() const { return alive_; }
   bool was_restored() const { return was_restored_; }
 
  private:
@@ -195,7 +193,7 @@ class OpenFront {
   mutable std::vector<Index> parent_;       ///< (components)
   std::vector<Component> components_;
   std::vector<Index> free_, fresh_;
-  std::uint32_t marker_ = 0, time_ = 0, alive_ = 0;
+  std::uint32_t marker_ = 0, time_ = 0;
   bool was_restored_ = false, has_excluded_ = false;
 };
 
