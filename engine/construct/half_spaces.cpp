@@ -45,7 +45,11 @@ BodyBounds::BodyBounds(const Mesh& convex, double distance) {
 // negative on the way leave it. At most three planes are active. Each full step increases the distance from
 // the target, so the method ends; the number of steps is limited because rounding may make it cycle.
 
+namespace {
+
 using Vector3 = Eigen::Vector3d;
+
+}  // namespace
 
 std::optional<Vector3> nearest_point(const Vector3& target, std::span<const HalfSpace> half_spaces,
                                      double slack) {

@@ -9,7 +9,11 @@
 
 namespace lrb::construct {
 
+namespace {
+
 using Index = OpenFront::Index;
+
+}  // namespace
 
 OpenFront::OpenFront(const FrontMesh& front, const std::vector<bool>& frozen) : front_(front) {
   const Slot count = front.slot_count();
