@@ -28,7 +28,7 @@ using Vector3 = Eigen::Vector3d;
 using Index = OpenFront::Index;
 
 /// Maximum number of faces beneath a component, for each interior vertex that a patch should have: with 16 of
-/// these, 112 faces. Measured on five bodies and three seeds: at 96 and 128, fronts of 3 % and 1 % more
+/// these, 112 faces. Measured on five bodies and three seeds: at 96 and 128, fronts of 3 % and 2 % more
 /// faces.
 constexpr std::uint32_t kFloorPerInterior = 7;
 constexpr std::uint32_t kMinFloor = 12;
