@@ -32,8 +32,6 @@ struct CapGoal {
 /// between successive ones. Measured on six bodies: starting at 0.0003 takes three times as long and gains
 /// nothing from 0.005 on; a factor of 2 instead of 1.25 costs a sixth more faces.
 inline constexpr double kFirstOff = 0.001, kLastOff = 0.1, kOffStep = 1.25;
-/// A pass that leaves more than this share of the front's faces is the last at its deviation limit.
-inline constexpr double kFitGain = 0.8;
 inline constexpr int kPassesForOff = 8;
 /// A cap with a share x of the faces it covers costs x / (1 - x) pseudo faces for each face that it saves.
 /// kFitBudget is the maximum price on the mesh itself; on simpler fronts it is divided by the square root of
@@ -43,9 +41,8 @@ inline constexpr double kFitBudget = 0.74;
 /// At these prices the pseudo faces add up to a total times 1 - sqrt(front faces / real faces). While fewer
 /// pseudo faces were used than the total kFitTotal, per real face, allows, because caps were cheap, higher
 /// prices are accepted: the price rises by kFitCorrection for each unused pseudo face per real face. In 3D
-/// only. On nefertiti (0.82 pseudo faces per real face without it) 766 instead of 898 faces at a hundredth of
-/// its size; five smaller bodies are unchanged or better.
-inline constexpr double kFitTotal = 1.1, kFitCorrection = 2;
+/// only.
+inline constexpr double kFitTotal = 1.0, kFitCorrection = 2;
 
 /// Returns sqrt(front faces / real faces), by which prices are divided.
 inline double fitting_root(std::size_t front_faces, std::size_t real_faces) {
@@ -60,22 +57,24 @@ inline double fitting_correction(std::size_t front_faces, std::size_t real_faces
 }
 
 /// Returns the maximum ratio of faces (CapGoal::worth) of a fitting cap on a front of `front_faces` faces.
-inline double fitting_worth(std::size_t front_faces, std::size_t real_faces, double correction = 1) {
-  const double ratio = kFitBudget / fitting_root(front_faces, real_faces) * correction;
+inline double fitting_worth(std::size_t front_faces, std::size_t real_faces, double budget = kFitBudget,
+                            double correction = 1) {
+  const double ratio = budget / fitting_root(front_faces, real_faces) * correction;
   return std::min(kLastCapWorth, ratio / (1 + ratio));
 }
 
 /// Builds tightly fitting fronts. The maximum deviation grows from pass to pass, slowly enough that each
 /// front is about the simplest one possible at its deviation. `size`: the body's largest side. Calls
-/// pass(front faces, off) while faces() returns more than `least`.
+/// pass(front faces, off) while faces() returns more than `least`; a pass that leaves more than the share
+/// `gain` of the faces is the last at its deviation.
 template <class Faces, class Pass>
-void fit_fronts(double size, std::uint32_t least, Faces faces, Pass pass) {
+void fit_fronts(double size, std::uint32_t least, double gain, Faces faces, Pass pass) {
   for (double off = kFirstOff * size; off < kLastOff * size; off *= kOffStep) {
     for (int i = 0; i < kPassesForOff; ++i) {
       const std::uint32_t before = faces();
       if (before <= least) return;
       pass(before, off);
-      if (faces() > kFitGain * before) break;
+      if (faces() > gain * before) break;
     }
   }
 }

@@ -133,8 +133,10 @@ class ChainBuilder {
     // The deviations of the schedule are relative to the largest side of the body's box.
     Box box;
     for (const Box& b : boxes_) box.extend(b);
+    // Later passes at a deviation limit would gain too little.
+    constexpr double kGain = 0.8;
     fit_fronts(
-        box.sizes().maxCoeff(), kFitDownTo, [&] { return front_.segment_count(); },
+        box.sizes().maxCoeff(), kFitDownTo, kGain, [&] { return front_.segment_count(); },
         [&](std::uint32_t before, double off) {
           pass(BuildStage::fit, {fitting_worth(before, frozen_.size()), off});
         });

@@ -34,11 +34,10 @@ constexpr std::uint32_t kFloorPerInterior = 7;
 constexpr std::uint32_t kMinFloor = 12;
 /// A round that leaves more than this share of the committed front is the last at its deviation limit.
 constexpr double kGain = 0.9;
-constexpr int kMaxRounds = 8;
 /// Number of vertices whose edges are worked off together.
 constexpr std::size_t kChunk = 1000;
-/// Price of a region's lid, as kFitBudget and kFitTotal: the open lids at the end are not counted there.
-constexpr double kBudget = 0.67, kTotal = 1.0;
+/// Price of a region's lid, as kFitBudget; lower, because nearly all components reach it.
+constexpr double kBudget = 0.67;
 /// Depth of the target below the star's centre, in radii: see FrontFitter::place().
 constexpr double kDepth = 10;
 /// A collapse whose mean height over the star exceeds this share of the limit sleeps without being measured.
@@ -74,8 +73,8 @@ FrontFitter::FrontFitter(FrontMesh& front, std::optional<AabbTree>& tree, Comple
       bounds_(bounds),
       options_(options),
       passes_(passes),
-      low_(box_of(front).min()),
-      size_(box_of(front).sizes().maxCoeff()),
+      box_(box_of(front)),
+      size_(box_.sizes().maxCoeff()),
       open_(front, frozen),
       body_(front, *tree),
       proof_(open_, front, component_boxes),
@@ -85,25 +84,19 @@ FrontFitter::FrontFitter(FrontMesh& front, std::optional<AabbTree>& tree, Comple
 
 void FrontFitter::run(std::uint32_t least, const std::function<void()>& before_round) {
   const std::size_t real = complex_.face_count();
-  for (double limit = kFirstOff * size_; limit < kLastOff * size_; limit *= kOffStep) {
-    limit_ = limit;
-    for (int round = 0; round < kMaxRounds; ++round) {
-      const std::uint32_t before = front_.triangle_count();
-      if (before <= least) return;
-      before_round();
-      passes_.report_begin(BuildStage::fit, before, limit);
-      simplify();
-      // A higher price is paid while fewer pseudo faces were made than planned.
-      const double root = fitting_root(before, real);
-      const double pseudo = static_cast<double>(complex_.face_count() - real) / static_cast<double>(real);
-      const double correction = 1 + kFitCorrection * std::max(0.0, kTotal * (1 - root) - pseudo);
-      const double ratio = kBudget / root * correction;
-      commit(std::min(kLastCapWorth, ratio / (1 + ratio)));
-      passes_.report_end({.front_faces = front_.triangle_count()});
-      passes_.end_pass(complex_, front_.triangle_count());
-      if (front_.triangle_count() > kGain * before) break;
-    }
-  }
+  fit_fronts(
+      size_, least, kGain, [&] { return front_.triangle_count(); },
+      [&](std::uint32_t before, double limit) {
+        limit_ = limit;
+        before_round();
+        passes_.report_begin(BuildStage::fit, before, limit);
+        simplify();
+        // A higher price is paid while fewer pseudo faces were made than planned.
+        const double correction = fitting_correction(before, real, complex_.face_count() - real);
+        commit(fitting_worth(before, real, kBudget, correction));
+        passes_.report_end({.front_faces = front_.triangle_count()});
+        passes_.end_pass(complex_, front_.triangle_count());
+      });
 }
 
 /// Makes all collapses within the limit, chunk by chunk: the order of distant collapses does not matter, and
@@ -133,7 +126,7 @@ std::vector<Index> FrontFitter::along_curve() const {
     if (!open_.is_used(v)) continue;
     std::uint32_t code = 0;
     for (int i = 0; i < 3; ++i) {
-      const double cell = (open_.x(v)[i] - low_[i]) / size_ * kCells;
+      const double cell = (open_.x(v)[i] - box_.min()[i]) / size_ * kCells;
       code |= spread(static_cast<std::uint32_t>(std::clamp(cell, 0.0, kCells - 1.0))) << i;
     }
     keys.push_back(std::uint64_t{code} << 32 | v);
@@ -391,7 +384,7 @@ float FrontFitter::excess(const Star& star, const Vector3& w) {
   const auto is_near = [&](const Point& p) {
     const float sq = body_.walk(p, hint, enough);
     most = std::max(most, std::min(sq, enough));
-    if (sq <= enough || body_.is_within(p, hint, enough)) return true;
+    if (sq <= enough || body_.find_within(p, hint, enough)) return true;
     failed = std::sqrt(sq);
     return false;
   };
@@ -427,9 +420,9 @@ float FrontFitter::excess(const Star& star, const Vector3& w) {
 }
 
 /// Returns true if a face of the fan folds back over its neighbour beyond the rim, or turns to the inside of
-/// the front there: where the surface is flat, a vertex that is hardly above it, beyond the rim, is in front
-/// of all planes. Faces that turn by less than a right angle need no test: they are on the outer side of
-/// their neighbours, or are found by the proof of the lid.
+/// the front there. This happens where the surface is flat: a vertex outside the rim and hardly above the
+/// surface is in front of all planes. A face that turns by less than a right angle is not tested here; if it
+/// intersects its neighbour, the proof of the lid finds that.
 bool FrontFitter::folds(const Star& star, const Vector3& w) const {
   constexpr double kFolded = -0.95;  // cosine between the two normals
   return std::any_of(star.rim.begin(), star.rim.end(), [&](const auto& r) {

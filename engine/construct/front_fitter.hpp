@@ -91,8 +91,8 @@ class FrontFitter {
   const BodyBounds& bounds_;
   const BuildOptions& options_;
   PassCounter& passes_;
-  Vector3 low_;  ///< lower corner of the body's box
-  double size_;  ///< largest side of the body
+  Eigen::AlignedBox3d box_;  ///< of the body
+  double size_;              ///< its largest side
   OpenFront open_;
   SurfaceWalk body_;
   LidProof proof_;

@@ -131,17 +131,11 @@ bool LidProof::rim_turns_outward(const OpenFront::Lid& lid) const {
         continue;
       const std::uint32_t below = edges.find(a, b);
       if (below == kNull) return false;
-      // The committed face that had this edge of the outer neighbour: the neighbour itself may be in the lid
-      // of another component.
-      const auto third = [&](Index g) { return open_.corner_opposite(g, a, b); };
+      // The neighbour in the committed front: `beyond` may be in the lid of another component.
       const FrontMesh::Slot own = open_.state(floor[below]).slot;
-      const FrontMesh::Triangle& under = front_[own];
-      const FrontMesh::Slot outer = under.across[front_.index_of(own, open_.corner(a))];
-      const auto& t = front_[outer].v;
-      const FrontMesh::Corner ca = open_.corner(a), cb = open_.corner(b);
-      const FrontMesh::Corner tip = t[0] != ca && t[0] != cb ? t[0] : t[1] != ca && t[1] != cb ? t[1] : t[2];
-      if (!turns_outward(open_.x(a), open_.x(b), open_.x(third(floor[below])), open_.x(face.v[(i + 2) % 3]),
-                         front_.x(tip)))
+      const Index outer = open_.face_at(front_[own].across[front_.index_of(own, open_.corner(a))]);
+      const auto tip = [&](Index g) { return open_.x(open_.corner_opposite(g, a, b)); };
+      if (!turns_outward(open_.x(a), open_.x(b), tip(floor[below]), open_.x(face.v[(i + 2) % 3]), tip(outer)))
         return false;
     }
   }

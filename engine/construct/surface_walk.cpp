@@ -77,20 +77,21 @@ float SurfaceWalk::walk(const Point& p, Slot& hint, float enough) const {
         look_at(s);
       }
     }
-    if (!(best.distance_sq < before * (1 - 1e-6f))) break;
+    // Stop at a local minimum; less progress than this is rounding.
+    constexpr float kMinProgress = 1e-6f;
+    if (!(best.distance_sq < before * (1 - kMinProgress))) break;
   }
   return best.distance_sq;
 }
 
-bool SurfaceWalk::is_within(const Point& p, Slot& hint, float enough) const {
-  if (walk(p, hint, enough) <= enough) return true;
+bool SurfaceWalk::find_within(const Point& p, Slot& hint, float enough) const {
   const Eigen::Vector3d centre = centre_ + Eigen::Vector3d(p.x, p.y, p.z);
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(std::sqrt(static_cast<double>(enough)));
   bool found = false;
   tree_.for_each_near(
       Eigen::AlignedBox3d(centre - reach, centre + reach), [&](const Eigen::AlignedBox3d&) { return !found; },
       [&](Slot s) {
-        if (found || distance_sq(s, p) > enough) return;
+        if (found || nearest(triangles_[s], p).distance_sq > enough) return;
         found = true;
         hint = s;
       });

@@ -31,10 +31,9 @@ class SurfaceWalk {
   /// Walks downhill from triangle `hint` to a triangle near p, which becomes the hint. Returns the squared
   /// distance from it; stops as soon as that is at most `enough`. May end at a local minimum.
   float walk(const Point& p, Slot& hint, float enough) const;
-  /// Returns true if a triangle is within the distance sqrt(enough) of p, and makes it the hint.
-  bool is_within(const Point& p, Slot& hint, float enough) const;
-  /// Returns the squared distance of p from one triangle.
-  float distance_sq(Slot s, const Point& p) const { return nearest(triangles_[s], p).distance_sq; }
+  /// Searches all triangles, where the walk ended too far off. Returns true if one is within the distance
+  /// sqrt(enough) of p, and makes it the hint.
+  bool find_within(const Point& p, Slot& hint, float enough) const;
 
  private:
   struct alignas(64) Triangle {
