@@ -26,7 +26,7 @@ LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vecto
   });
   // Step 2: the regions, from the mesh outward.
   LrbData data = mesh.dim == 2 ? construct::build_by_chains(mesh, meeting, options)
-                               : construct::build_by_patches(mesh, meeting, options);
+                               : construct::build_by_collapses(mesh, meeting, options);
   // Step 3: the trees for queries are built by the LrbRep itself.
   data.self_intersecting = overlapping;
   return LrbRep(std::move(data), options.threads);

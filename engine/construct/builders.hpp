@@ -1,5 +1,5 @@
 #pragma once
-/// The builder for 2D bodies: build_by_patches() in one dimension less.
+/// The builder for 2D bodies: build_by_collapses() in one dimension less.
 ///
 /// A patch is a chain of segments, and its ring is the two ends of the chain. The cap is the chord between
 /// them if the chain is behind it, otherwise two segments whose common vertex is in front of the lines of all
@@ -79,25 +79,23 @@ void fit_fronts(double size, std::uint32_t least, double gain, Faces faces, Pass
   }
 }
 
-// The builder for 3D bodies: caps over patches, on a sequence of fronts (progressive hulls).
+// The builder for 3D bodies (progressive hulls).
 //
-// The builder works on the current front, at first the mesh itself. Fitted levels (front_fitter.hpp) simplify
-// all of it by one queue of edge collapses within a maximum deviation from the body, and make regions of the
-// parts that have become simple enough. Afterwards, without a limit on the deviation, in each pass:
-// 1. The front is covered with patches, disks of a few dozen triangles (patch_grow.hpp).
-// 2. Each patch is simplified outward into a cap with the same ring (patch_cap.hpp).
-// 3. A cap is accepted only if it is proven, exactly, to be disjoint from all other faces (embed_check.hpp).
-//    The new front is then embedded again and encloses the old one, so that all faces of the complex
-//    intersect only in shared vertices and edges.
-// 4. The space between becomes a region, with the patch as its floor and the cap as its lids
-//    (front_update.hpp). The caps are part of the front of the next pass.
+// The builder works on the current front, at first the mesh itself, and adds one level after the other:
+// 1. One queue of edge collapses simplifies the entire front outward. It is cut into components by a cap on
+//    the number of faces beneath each (front_simplifier.hpp).
+// 2. A component whose lid is simple enough is proven, exactly, to be disjoint from all other faces
+//    (lid_proof.hpp). The new front is then embedded again and encloses the old one, so that all faces of the
+//    complex intersect only in shared vertices and edges.
+// 3. The space between floor and lid becomes a region (front_update.hpp). The lid is part of the front of the
+//    next level.
 //
-// When passes gain too little, concavities are bridged, and finally one wrapper
-// of few faces is put around all of them (closing.hpp).
+// The first levels fit tightly: their deviation from the body is limited. When levels gain too little,
+// concavities are bridged, and finally one wrapper of few faces is put around all of them (closing.hpp).
 
 /// Builds an LRB-rep from a 3D mesh that is MeshReport::buildable() and oriented outward. `meeting`: the
 /// faces that intersect others in more than shared vertices and edges, ascending; only the outermost region
 /// covers these.
-LrbData build_by_patches(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options);
+LrbData build_by_collapses(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options);
 
 }  // namespace lrb::construct

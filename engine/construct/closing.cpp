@@ -9,19 +9,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <queue>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "engine/construct/aabb_tree.hpp"
-#include "engine/construct/cap_surface.hpp"
 #include "engine/construct/convex_hull.hpp"
 #include "engine/construct/embed_check.hpp"
 #include "engine/construct/front_update.hpp"
 #include "engine/construct/half_spaces.hpp"
-#include "engine/construct/patch_cap.hpp"
+#include "engine/construct/open_front.hpp"
+#include "engine/construct/outward_collapse.hpp"
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/predicates.hpp"
@@ -181,86 +181,110 @@ using Vector3 = Eigen::Vector3d;
 constexpr std::size_t kTightenFrom = 100, kStepShare = 4;
 /// Rounds of tightening after each step, and after the last one.
 constexpr int kRounds = 3, kLastRounds = 20;
+constexpr double kSwell = 0.4;  ///< see BodyBounds; only keeps vertices from moving far away
 
-/// One step of simplification, starting from a convex surface. `points` must stay inside.
-class PolytopeStep {
+/// Collapses edges of a closed surface outward, cheapest first, until it has no more than `wanted` faces, or
+/// until no collapse is possible. Returns the vertices that are left. `points`: near which they stay;
+/// `depth`: see OutwardCollapse::place().
+std::vector<Vector3> collapse_outward(const Mesh& convex, const std::vector<Vector3>& points,
+                                      std::size_t wanted, double depth) {
+  using Index = OpenFront::Index;
+  struct Candidate {
+    double cost;
+    Index u, v;
+    bool operator<(const Candidate& other) const {  // orders the cheapest last, for heaps
+      if (cost != other.cost) return cost > other.cost;
+      return u != other.u ? u > other.u : v > other.v;
+    }
+  };
+  const FrontMesh front(convex);
+  const BodyBounds bounds(points, kSwell);
+  OpenFront open(front, {});
+  OutwardCollapse geometry(open, bounds, depth, kCapShapeWeight);
+  OpenFront::Star star;
+  Vector3 w;
+  std::priority_queue<Candidate> queue;
+  // Leaves the edge's star in `star` and the new vertex in `w`. Infinite if the collapse is impossible.
+  const auto cost_of = [&](Index u, Index v) {
+    if (!open.find_star(u, v, false, star) || !open.leaves_surface(star) || !geometry.place(star, w))
+      return kInfinity;
+    double area = 0;
+    const double volume = geometry.volume_under(star, w, area);
+    return volume + geometry.needle_cost(star, w, area);
+  };
+  const auto propose = [&](Index u, Index v) {
+    if (const double cost = cost_of(u, v); cost < kInfinity) queue.push({cost, u, v});
+  };
+  std::size_t faces = convex.face_count();
+  // A collapse that is impossible now may be possible after others: repeat until nothing changes.
+  for (std::size_t before = 0; faces > wanted && faces != before;) {
+    before = faces;
+    for (Index f = 0; f < open.face_count(); ++f)
+      for (int i = 0; i < 3 && open.state(f).alive; ++i)
+        if (const Index u = open[f].v[i], v = open[f].v[(i + 1) % 3]; u < v) propose(u, v);
+    while (faces > wanted && !queue.empty()) {
+      const Candidate c = queue.top();
+      queue.pop();
+      if (!open.is_used(c.u) || !open.is_used(c.v)) continue;
+      // The star may have changed. If its cost has risen, put it back, because others may be cheaper now.
+      const double cost = cost_of(c.u, c.v);
+      if (cost > c.cost) {
+        if (cost < kInfinity) queue.push({cost, c.u, c.v});
+        continue;
+      }
+      if (!geometry.is_strictly_in_front(star, w)) continue;
+      faces -= star.faces.size() - star.rim.size();
+      const Index tip = open.collapse(star, {}, w, {}, 0);
+      const auto rim = star.rim;
+      for (const auto& r : rim) propose(r.a, tip);
+    }
+    queue = {};
+  }
+  std::vector<Vector3> left;
+  for (Index v = 0; v < open.vertex_count(); ++v)
+    if (open.is_used(v)) left.push_back(open.x(v));
+  return left;
+}
+
+/// Moves the vertices of a convex surface, so that the volume behind it decreases and `points` stay there.
+class Tightening {
  public:
-  PolytopeStep(const Mesh& convex, const std::vector<Vector3>& points) : points_(points), front_(convex) {
-    // The entire closed surface is one patch: it has no ring, and every vertex is interior.
-    all_.slots = front_.alive_slots();
-    for (FrontMesh::Corner v = 0; v < front_.point_count(); ++v) all_.interior.push_back(v);
-    surface_.load(front_, all_, 0);
+  Tightening(Mesh& mesh, const std::vector<Vector3>& points)
+      : mesh_(mesh), points_(points), rims_(mesh.vertices.size()) {
     Eigen::AlignedBox3d box;
     for (const Vector3& p : points) box.extend(p);
     size_sq_ = squared_norm3(box.sizes());
+    for (FaceId f = 0; f < mesh.face_count(); ++f) {
+      const auto v = mesh.face(f);
+      for (int i = 0; i < 3; ++i) rims_[v[i]].push_back({v[(i + 1) % 3], v[(i + 2) % 3]});
+    }
   }
 
-  void collapse(std::size_t wanted_faces, double depth) {
-    const BodyBounds bounds(points_, kSwell);
-    // The cost only orders the collapses: the number of faces is limited, the volume is not.
-    PatchCap::Limits limits;
-    limits.volume = std::numeric_limits<double>::infinity();
-    limits.faces = static_cast<int>(wanted_faces);
-    limits.depth = depth;
-    PatchCap(surface_, bounds).simplify(all_, limits);
-  }
-
-  void tighten(int rounds) {
+  void run(int rounds) {
     // Gauss-Seidel rounds over the vertices: every move reduces the volume.
     for (int round = 0; round < rounds; ++round) {
       double gain = 0;
-      for (int v = 0; v < surface_.vertex_count(); ++v) {
-        if (!surface_.is_used(v)) continue;
+      for (std::size_t v = 0; v < rims_.size(); ++v) {
+        if (rims_[v].empty()) continue;
         // Only the fan of v changes, and the volume changes by the cone over its boundary loop.
         rim_.clear();
-        surface_.for_each_rim_edge(v, [&](int a, int b) { rim_.push_back({surface_.x(a), surface_.x(b)}); });
+        for (const auto& [a, b] : rims_[v]) rim_.push_back({mesh_.vertices[a], mesh_.vertices[b]});
         const auto w = place();
-        const double change = w ? cone_volume(*w) - cone_volume(surface_.x(v)) : 0;
+        const double change = w ? cone_volume(*w) - cone_volume(mesh_.vertices[v]) : 0;
         // Written so that NaN counts as no gain.
         if (!(change < 0)) continue;
-        surface_.move(v, *w);
+        mesh_.vertices[v] = *w;
         gain -= change;
       }
       // Diminishing returns: stop before the last round.
-      if (gain < kMinGain * volume()) return;
+      if (gain < kLeastGain * volume_of(mesh_)) return;
     }
-  }
-
-  Mesh result() const {
-    Mesh mesh;
-    std::vector<VertexId> number(surface_.vertex_count(), kNull);
-    for (const auto& f : surface_.faces()) {
-      if (!f.alive) continue;
-      VertexId corners[3];
-      for (int i = 0; i < 3; ++i) {
-        // Collapses leave unused vertices: copy only those with faces.
-        VertexId& v = number[f.v[i]];
-        if (v == kNull) {
-          v = static_cast<VertexId>(mesh.vertices.size());
-          mesh.vertices.push_back(surface_.x(f.v[i]));
-        }
-        corners[i] = v;
-      }
-      mesh.add_face(corners);
-    }
-    return mesh;
   }
 
  private:
   struct Edge {
     Vector3 a, b;
   };
-
-  double volume() const {
-    // Divergence theorem: signed tetrahedra from a point close to the surface, to limit cancellation.
-    double sixfold = 0;
-    const Vector3& origin = points_[0];
-    for (const auto& f : surface_.faces())
-      if (f.alive)
-        sixfold += dot3(surface_.x(f.v[0]) - origin,
-                        (surface_.x(f.v[1]) - origin).cross(surface_.x(f.v[2]) - origin));
-    return sixfold / 6;
-  }
 
   double cone_volume(const Vector3& w) const {
     double sixfold = 0;
@@ -313,16 +337,14 @@ class PolytopeStep {
     return {normalized3(normals[0]), normalized3(normals[1])};
   }
 
-  static constexpr double kSwell = 0.4;  ///< see BodyBounds; only keeps vertices from moving far away
-  /// Depth of the target that is projected in tightening, in radii of the rim.
+  /// Depth of the target that is projected, in radii of the rim.
   static constexpr double kDepth = 8;
-  static constexpr double kMinGain = 1e-3;  ///< least gain for another round, relative to the volume
+  static constexpr double kLeastGain = 1e-3;  ///< for another round, relative to the volume
 
+  Mesh& mesh_;
   const std::vector<Vector3>& points_;
-  FrontMesh front_;
-  Patch all_;
-  CapSurface surface_;
-  double size_sq_;  ///< squared size of the points' box
+  std::vector<std::vector<std::array<VertexId, 2>>> rims_;  ///< (vertices) edges opposite in its faces
+  double size_sq_;                                          ///< squared size of the points' box
   std::vector<Edge> rim_;
   std::vector<HalfSpace> half_spaces_;
 };
@@ -340,12 +362,10 @@ Mesh simplify_polytope(const Mesh& convex, std::uint32_t max_faces, double depth
     const std::size_t wanted = std::max<std::size_t>(max_faces, before - step);
     // The points that must stay inside are always the input's, so that errors do not accumulate over the
     // steps.
-    PolytopeStep fewer(mesh, convex.vertices);
-    fewer.collapse(wanted, depth);
+    mesh = convex_hull_mesh(collapse_outward(mesh, convex.vertices, wanted, depth));
     // Tightening needs a convex start, and may leave a surface with dents.
-    PolytopeStep tighter(convex_hull_mesh(fewer.result().vertices), convex.vertices);
-    tighter.tighten(wanted == max_faces ? kLastRounds : kRounds);
-    mesh = convex_hull_mesh(tighter.result().vertices);
+    Tightening(mesh, convex.vertices).run(wanted == max_faces ? kLastRounds : kRounds);
+    mesh = convex_hull_mesh(mesh.vertices);
   }
   return mesh.face_count() <= max_faces ? mesh : Mesh();
 }

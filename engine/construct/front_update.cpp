@@ -78,35 +78,6 @@ Sheet make_sheet(const FrontMesh& front, std::span<const Slot> removed,
   return sheet;
 }
 
-Sheet make_sheet(const FrontMesh& front, const Patch& patch, const CapSurface& cap) {
-  Sheet sheet;
-  // Collapses leave unused vertices: number only the used ones, in order.
-  std::vector<Corner> corners(cap.vertex_count(), kNull);
-  for (int v = 0; v < cap.vertex_count(); ++v) {
-    if (!cap.is_used(v)) continue;
-    if (v < cap.first_new()) {
-      corners[v] = cap.corner(v);
-    } else {
-      corners[v] = Sheet::kNewPoint + static_cast<Corner>(sheet.new_points.size());
-      sheet.new_points.push_back(cap.x(v));
-    }
-  }
-  std::vector<bool> stays(patch.slots.size(), false);
-  for (const auto& f : cap.faces()) {
-    if (!f.alive) continue;
-    // Triangles that no collapse changed stay in the front.
-    if (f.kept >= 0) {
-      stays[f.kept] = true;
-    } else {
-      sheet.added.push_back({corners[f.v[0]], corners[f.v[1]], corners[f.v[2]]});
-    }
-  }
-  for (std::size_t i = 0; i < patch.slots.size(); ++i)
-    (stays[i] ? sheet.kept : sheet.removed).push_back(patch.slots[i]);
-  work_out(front, sheet);
-  return sheet;
-}
-
 std::vector<Slot> cover(FrontMesh& front, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,
                         std::uint32_t component, ConstructProbe* probe) {
   // Step 1: assign the final numbers of vertices and regions.

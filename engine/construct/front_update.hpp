@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 
-#include "engine/construct/cap_surface.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/front_mesh.hpp"
 #include <lrbscope/build.hpp>
@@ -62,7 +61,6 @@ struct Sheet {
   static constexpr FrontMesh::Corner kNewPoint = 1u << 31;
 
   std::vector<FrontMesh::Slot> removed;  ///< ascending, so that the triangles of one polygon are adjacent
-  std::vector<FrontMesh::Slot> kept;     ///< for a patch: the triangles that its cap retains
   std::vector<PointTriangle> added;      ///< corners are vertices of the front
   std::vector<Eigen::Vector3d> new_points;
   RegionPieces pieces;
@@ -80,9 +78,6 @@ void work_out(const FrontMesh& front, Sheet& sheet);
 /// Returns the data of a cap `added` over the triangles `removed`, which must have the same boundary.
 Sheet make_sheet(const FrontMesh& front, std::span<const FrontMesh::Slot> removed,
                  std::span<const PointTriangle> added);
-
-/// Returns the data of a patch's finished cap. Triangles that the cap retains stay in the front.
-Sheet make_sheet(const FrontMesh& front, const Patch& patch, const CapSurface& cap);
 
 /// Replaces the removed triangles of the front by the added ones. These become pseudo faces of `component`,
 /// with regions of this layer behind them and, for now, the outside in front; the faces that they cover get

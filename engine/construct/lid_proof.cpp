@@ -21,11 +21,11 @@ void LidProof::Boxes::clear() {
   for (auto& side : sides_) side.clear();
 }
 
-void LidProof::Boxes::add(const Eigen::AlignedBox3d& b) {
+void LidProof::Boxes::add(const Eigen::AlignedBox3d& b, double unit) {
   // A float is within 2^-24 of the double, relative to it, unless that is subnormal.
   constexpr float kRelative = 0x1p-22f, kTiny = 1e-37f;
   for (int i = 0; i < 3; ++i) {
-    const auto low = static_cast<float>(b.min()[i]), high = static_cast<float>(b.max()[i]);
+    const auto low = static_cast<float>(b.min()[i] / unit), high = static_cast<float>(b.max()[i] / unit);
     sides_[i].push_back(low - (std::abs(low) * kRelative + kTiny));
     sides_[3 + i].push_back(high + (std::abs(high) * kRelative + kTiny));
   }
@@ -88,7 +88,7 @@ CapVerdict LidProof::judge(const OpenFront::Lid& lid, const AabbTree& tree) {
     const Corners c = corners_of(f);
     lid_.push_back(c);
     planes_.emplace_back(c.x[0], c.x[1], c.x[2]);
-    lid_boxes_.add(open_.box(f));
+    lid_boxes_.add(open_.box(f), open_.unit());
     box.extend(open_.box(f));
   }
   // Step 2. The plane of one of the two separates most pairs.
@@ -103,7 +103,7 @@ CapVerdict LidProof::judge(const OpenFront::Lid& lid, const AabbTree& tree) {
     if (!front_.alive(s)) return;
     beneath_.push_back(corners_of_slot(s));
     slots_.push_back(s);
-    beneath_boxes_.add(box_of(front_, s));
+    beneath_boxes_.add(box_of(front_, s), open_.unit());
   });
   for (std::uint32_t k = 0; k < lid_.size(); ++k)
     for (const std::uint32_t j : beneath_boxes_.meeting(lid_boxes_, k, beneath_boxes_.size()))

@@ -17,7 +17,8 @@ namespace lrb::construct {
 
 class LidProof {
  public:
-  /// `component_boxes`: see EmbedCheck.
+  /// `component_boxes`: boxes of the components of the mesh (in the front's numbering), so that a lid over
+  /// one component never encloses another.
   LidProof(const OpenFront& open, const FrontMesh& front,
            const std::vector<Eigen::AlignedBox3d>& component_boxes)
       : open_(open), front_(front), component_boxes_(component_boxes) {}
@@ -34,11 +35,12 @@ class LidProof {
  private:
   using Index = OpenFront::Index;
 
-  /// Boxes in single precision, rounded outward, by coordinate, so that one is compared with many at once.
+  /// Boxes in single precision, relative to OpenFront::unit() and rounded outward, by coordinate, so that one
+  /// is compared with many at once.
   class Boxes {
    public:
     void clear();
-    void add(const Eigen::AlignedBox3d& b);
+    void add(const Eigen::AlignedBox3d& b, double unit);
     std::uint32_t size() const { return static_cast<std::uint32_t>(sides_[0].size()); }
     /// Lists those before number `last` that intersect box k of `other`.
     const std::vector<std::uint32_t>& meeting(const Boxes& other, std::uint32_t k, std::uint32_t last);

@@ -1,5 +1,6 @@
 #include "engine/construct/open_front.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "engine/construct/embed_check.hpp"
@@ -18,36 +19,54 @@ using Index = OpenFront::Index;
 OpenFront::OpenFront(const FrontMesh& front, const std::vector<bool>& frozen) : front_(front) {
   const Slot count = front.slot_count();
   const FrontMesh::Corner corners = front.point_count();
+  Eigen::AlignedBox3d box;
+  for (FrontMesh::Corner c = 0; c < corners; ++c) box.extend(front.x(c));
+  // Both the unit and its inverse are normal numbers.
+  unit_ = std::ldexp(1.0, std::clamp(std::ilogb(box.sizes().maxCoeff()), -1000, 1000));
   faces_.reserve(count + count / 2);
   states_.reserve(count + count / 2);
   x_.reserve(2 * corners);
+  std::uint32_t names = corners;
   for (FrontMesh::Corner c = 0; c < corners; ++c) {
     x_.push_back(front.x(c));
     face_of_.push_back(kNull);
     corner_.push_back(c);
     id_.push_back(front.point(c).id);
     name_.push_back(front.point(c).id);
+    names = std::max<std::uint32_t>(names, front.point(c).id + 1);
   }
+  first_name_ = names - corners;
   changed_at_.assign(corners, 0);
-  mark_.assign(corners, 0);
+  mark_.assign(names, 0);
   if (front.has_polygons()) polygon_component_.assign(count, kNull);
   for (Slot s = 0; s < count; ++s) {
     const FrontMesh::Triangle& t = front[s];
-    Face f{t.v, t.across, kNull, 0, {}, 0};
-    set_plane(f);
-    faces_.push_back(f);
-    State state;
+    faces_.push_back({t.v, t.across, kNull, 0, Vector3::Zero(), 0});
+    states_.emplace_back();
+    face_at_.push_back(front.alive(s) ? s : kNull);
+    if (!front.alive(s)) {
+      free_.push_back(s);
+      continue;
+    }
+    set_plane(faces_[s]);
+    State& state = states_[s];
     state.slot = state.hint = s;
     state.alive = true;
-    if (frozen[t.face]) state.excluded_below = std::numeric_limits<float>::infinity(), has_excluded_ = true;
-    states_.push_back(state);
-    face_at_.push_back(s);
+    if (t.face < frozen.size() && frozen[t.face])
+      state.excluded_below = std::numeric_limits<float>::infinity(), has_excluded_ = true;
     for (const Index v : t.v) face_of_[v] = s;
   }
 }
 
+std::uint32_t OpenFront::excluded(float limit) const {
+  if (!has_excluded_) return 0;
+  return static_cast<std::uint32_t>(std::count_if(
+      states_.begin(), states_.end(), [&](const State& s) { return s.alive && s.excluded_below > limit; }));
+}
+
 void OpenFront::set_plane(Face& f) const {
-  const Vector3 c = (x_[f.v[1]] - x_[f.v[0]]).cross(x_[f.v[2]] - x_[f.v[0]]);
+  const double scale = 1 / unit_;
+  const Vector3 c = ((x_[f.v[1]] - x_[f.v[0]]) * scale).cross((x_[f.v[2]] - x_[f.v[0]]) * scale);
   const double length = norm3(c);
   f.area = static_cast<float>(length / 2);
   f.n = length > 0 ? Vector3(c / length) : Vector3(Vector3::Zero());
@@ -226,7 +245,7 @@ Index OpenFront::new_vertex(const Vector3& at) {
   // Numbers of the complex are below this.
   constexpr std::uint32_t kOfLids = 1u << 31;
   id_.push_back(VertexId(kOfLids + v));
-  name_.push_back(v);
+  name_.push_back(first_name_ + v);
   mark_.push_back(0);
   return v;
 }
@@ -266,7 +285,7 @@ Index OpenFront::collapse(const Star& star, const Union& united, const Vector3& 
     set_plane(f);
     State& state = states_[fresh_[k]];
     state = {};
-    state.hint = hints[k];
+    if (!hints.empty()) state.hint = hints[k];
     state.off = off;
     state.alive = true;
     set_across(r.across, r.b, r.a, fresh_[k]);

@@ -47,13 +47,17 @@ class OpenFront {
   using Slot = FrontMesh::Slot;
   using Vector3 = Eigen::Vector3d;
 
+  /// Areas, deviations and their limits are kept in floats, in this unit of length: a power of two near the
+  /// body's size, so that they do not overflow and are the same for scaled bodies.
+  double unit() const { return unit_; }
+
   /// What collapses read of a face; one cache line.
   struct alignas(64) Face {
     std::array<Index, 3> v, across;  ///< across[i]: over the edge v[i], v[i + 1]
     Index component;                 ///< kNull: committed, and not in a floor
-    float area;
-    Vector3 n;  ///< unit normal; 0 for a face without area
-    double d;   ///< the plane is n.x = d
+    float area;                      ///< unit()^2
+    Vector3 n;                       ///< unit normal; 0 for a face without area
+    double d;                        ///< the plane is n.x = d
   };
   static_assert(sizeof(Face) == 64);
 
@@ -61,7 +65,7 @@ class OpenFront {
   struct State {
     Slot slot = kNull;         ///< in the committed front; kNull: in a lid
     Slot hint = 0;             ///< a triangle of the mesh near it
-    float off = 0;             ///< estimate of the largest deviation from the mesh; mesh units
+    float off = 0;             ///< estimate of the largest deviation from the mesh; unit()
     float excluded_below = 0;  ///< not to be covered while the deviation limit is below this
     bool alive = false;
     bool careful = false;                       ///< it was in a component that failed its proof
@@ -90,7 +94,7 @@ class OpenFront {
     bool excluded = false;       ///< a face must not be covered at this deviation limit
   };
 
-  /// `front`: still the mesh itself. `frozen` (real faces): those that are never covered.
+  /// `frozen` (real faces): those that are never covered.
   OpenFront(const FrontMesh& front, const std::vector<bool>& frozen);
 
   Index face_count() const { return static_cast<Index>(faces_.size()); }
@@ -130,7 +134,7 @@ class OpenFront {
   void set_held_by(Index component, CapVerdict verdict) { components_[component].held_by = verdict; }
 
   /// Replaces the star by a fan from its vertex v, or from a new vertex at `w`. `united`: of all its faces.
-  /// `hints` (rim), `off`: of the new faces. Returns the fan's vertex.
+  /// `hints` (rim, or empty), `off`: of the new faces. Returns the fan's vertex.
   Index collapse(const Star& star, const Union& united, const Vector3& w, std::span<const Slot> hints,
                  float off);
   /// A committed face is part of a polygon of the mesh, of which the component has covered other parts.
@@ -158,6 +162,8 @@ class OpenFront {
   FrontMesh::Corner corner(Index v) const { return corner_[v]; }
   Index face_at(Slot s) const { return face_at_[s]; }
 
+  /// Returns the number of faces that collapses with this deviation limit must not cover.
+  std::uint32_t excluded(float limit) const;
   bool was_restored() const { return was_restored_; }
 
  private:
@@ -193,6 +199,8 @@ class OpenFront {
   mutable std::vector<Index> parent_;       ///< (components)
   std::vector<Component> components_;
   std::vector<Index> free_, fresh_;
+  Index first_name_ = 0;  ///< name of vertex 0, if it were a new one
+  double unit_;
   std::uint32_t marker_ = 0, time_ = 0;
   bool was_restored_ = false, has_excluded_ = false;
 };

@@ -20,7 +20,8 @@ float dot(const Point& a, const Point& b) {
 
 }  // namespace
 
-SurfaceWalk::SurfaceWalk(const FrontMesh& front, const AabbTree& tree) : tree_(tree) {
+SurfaceWalk::SurfaceWalk(const FrontMesh& front, const AabbTree& tree, double unit)
+    : tree_(tree), unit_(unit), scale_(1 / unit) {
   Eigen::AlignedBox3d box;
   for (FrontMesh::Corner v = 0; v < front.point_count(); ++v) box.extend(front.x(v));
   centre_ = box.min() / 2 + box.max() / 2;
@@ -85,8 +86,8 @@ float SurfaceWalk::walk(const Point& p, Slot& hint, float enough) const {
 }
 
 bool SurfaceWalk::find_within(const Point& p, Slot& hint, float enough) const {
-  const Eigen::Vector3d centre = centre_ + Eigen::Vector3d(p.x, p.y, p.z);
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(std::sqrt(static_cast<double>(enough)));
+  const Eigen::Vector3d centre = centre_ + unit_ * Eigen::Vector3d(p.x, p.y, p.z);
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(unit_ * std::sqrt(static_cast<double>(enough)));
   bool found = false;
   tree_.for_each_near(
       Eigen::AlignedBox3d(centre - reach, centre + reach), [&](const Eigen::AlignedBox3d&) { return !found; },

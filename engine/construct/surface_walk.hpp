@@ -21,12 +21,13 @@ class SurfaceWalk {
     float x, y, z;
   };
 
-  /// `front`: still the mesh itself. `tree`: over it; both are only read here.
-  SurfaceWalk(const FrontMesh& front, const AabbTree& tree);
+  /// `front`: still the mesh itself. `tree`: over it; both are only read here. `unit`: of points and
+  /// distances.
+  SurfaceWalk(const FrontMesh& front, const AabbTree& tree, double unit);
 
   Point local(const Eigen::Vector3d& p) const {
-    return {static_cast<float>(p[0] - centre_[0]), static_cast<float>(p[1] - centre_[1]),
-            static_cast<float>(p[2] - centre_[2])};
+    const Eigen::Vector3d x = (p - centre_) * scale_;
+    return {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])};
   }
   /// Walks downhill from triangle `hint` to a triangle near p, which becomes the hint. Returns the squared
   /// distance from it; stops as soon as that is at most `enough`. May end at a local minimum.
@@ -51,6 +52,7 @@ class SurfaceWalk {
   std::vector<Triangle> triangles_;
   AabbTree tree_;
   Eigen::Vector3d centre_;
+  double unit_, scale_;  ///< scale_ = 1 / unit_
 };
 
 }  // namespace lrb::construct

@@ -76,7 +76,6 @@ namespace {
 using Vector3 = Eigen::Vector3d;
 using construct::AabbTree;
 using construct::CheckedTriangle;
-using construct::EmbedCheck;
 using construct::FrontMesh;
 using Slot = FrontMesh::Slot;
 using Corner = FrontMesh::Corner;

@@ -159,9 +159,9 @@ struct BuildOptions {
   /// make the structure small.
   std::uint32_t patch_interior = 16;
   std::uint32_t max_outer_faces = 20;  ///< target number of faces of the outermost wrapper
-  /// Builds a small structure (about 1.5 faces per real face) instead of tightly fitting wrappers (about 2).
+  /// Builds a small structure (about 1.4 faces per real face) instead of tightly fitting wrappers (about 2).
   bool lean = false;
-  std::uint64_t seed = 1;  ///< seed for the order in which patches grow
+  std::uint64_t seed = 1;  ///< seed of the random choices of the builder
   unsigned threads = 1;    ///< 0: number of hardware threads. The result does not depend on it
   /// Called after each pass with its number and the number of faces of the front. May be empty.
   std::function<void(std::uint32_t pass, std::uint32_t front_faces)> progress;
@@ -171,8 +171,8 @@ struct BuildOptions {
   std::string cache;
 };
 
-/// Builds an LRB-rep by simplifying patches of progressive hulls (Sander et al., "Silhouette Clipping", 2000)
-/// into caps (patch_builder.cpp; 2D: chain_builder.cpp). The mesh must be closed, manifold and oriented with
+/// Builds an LRB-rep by outward edge collapses (progressive hulls: Sander et al., "Silhouette Clipping",
+/// 2000; collapse_builder.cpp; 2D: chain_builder.cpp). The mesh must be closed, manifold and oriented with
 /// the solid behind its faces (MeshReport::buildable()). Use CheckedMesh::turn_outward() first for an
 /// inward-oriented body. Throws InputError naming the affected elements otherwise. The result depends on the
 /// seed, not on the number of threads.

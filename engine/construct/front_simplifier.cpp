@@ -10,7 +10,7 @@
 //    A component that fails its proof is undone, and its faces are marked: collapses that cover them are
 //    proven one by one.
 
-#include "engine/construct/front_fitter.hpp"
+#include "engine/construct/front_simplifier.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,6 @@
 #include "engine/construct/front_update.hpp"
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
-#include "engine/exact/plane_side.hpp"
 
 namespace lrb::construct {
 namespace {
@@ -38,22 +37,29 @@ constexpr double kGain = 0.9;
 constexpr std::size_t kChunk = 1000;
 /// Price of a region's lid, as kFitBudget; lower, because nearly all components reach it.
 constexpr double kBudget = 0.67;
-/// Depth of the target below the star's centre, in radii: see FrontFitter::place().
+/// Depth of the target below the star's centre, in radii: see OutwardCollapse::place().
 constexpr double kDepth = 10;
+/// See OutwardCollapse::needle_cost(). Smaller: needles, at which later collapses are refused.
+constexpr double kNeedleWeight = 1e-3;
 /// A collapse whose mean height over the star exceeds this share of the limit sleeps without being measured.
 constexpr double kMaxHeight = 0.7;
-/// Cost of needles, relative to area^1.5. Smaller: needles, at which later collapses are refused.
-constexpr double kShapeWeight = 1e-3;
 /// A collapse that was too far off sleeps until the limit is this many times as large, at least.
-constexpr double kWake = 1.05;
+constexpr float kWake = 1.05f;
 /// Faces of a component that failed its proof in spite of a proof for each collapse are not covered until the
 /// limit is this many times as large.
-constexpr double kExclude = 1.6;
+constexpr float kExclude = 1.6f;
 /// Sample points: usual number of steps along an edge, largest distance between them relative to the limit,
 /// and the most steps along an edge and of a grid.
 constexpr int kSteps = 4, kMaxSteps = 32, kMaxRows = 10;
-constexpr double kSpacing = 12;
+constexpr float kSpacing = 12;
 constexpr float kNever = std::numeric_limits<float>::infinity();
+/// Deviation limit of levels without one: less than kNever.
+constexpr float kUnlimited = std::numeric_limits<float>::max();
+/// A level without a limit on the deviation that leaves more than this share of the front is the last.
+constexpr double kFreeGain = 0.85;
+/// A component of such a level has at most one in this many faces of the front beneath it, so that there are
+/// several components.
+constexpr std::uint32_t kParts = 12;
 
 Eigen::AlignedBox3d box_of(const FrontMesh& front) {
   Eigen::AlignedBox3d box;
@@ -63,45 +69,65 @@ Eigen::AlignedBox3d box_of(const FrontMesh& front) {
 
 }  // namespace
 
-FrontFitter::FrontFitter(FrontMesh& front, std::optional<AabbTree>& tree, ComplexBuilder& complex,
-                         const std::vector<bool>& frozen,
-                         const std::vector<Eigen::AlignedBox3d>& component_boxes, const BodyBounds& bounds,
-                         const BuildOptions& options, PassCounter& passes)
+FrontSimplifier::FrontSimplifier(FrontMesh& front, ComplexBuilder& complex, const std::vector<bool>& frozen,
+                                 const std::vector<Eigen::AlignedBox3d>& component_boxes,
+                                 const BodyBounds& bounds, const BuildOptions& options, PassCounter& passes)
     : front_(front),
-      tree_(tree),
       complex_(complex),
-      bounds_(bounds),
       options_(options),
       passes_(passes),
       box_(box_of(front)),
       size_(box_.sizes().maxCoeff()),
+      tree_(front),
       open_(front, frozen),
-      body_(front, *tree),
+      geometry_(open_, bounds, kDepth, kNeedleWeight),
       proof_(open_, front, component_boxes),
-      max_floor_(std::max(kMinFloor, kFloorPerInterior * options.patch_interior)),
-      queue_(size_ * size_ * size_),
+      queue_(std::pow(size_ / open_.unit(), 3)),
       random_(options.seed) {}
 
-void FrontFitter::run(std::uint32_t least, const std::function<void()>& before_round) {
+void FrontSimplifier::fit(std::uint32_t least, const std::function<void()>& before_level) {
   const std::size_t real = complex_.face_count();
+  max_floor_ = std::max(kMinFloor, kFloorPerInterior * options_.patch_interior);
+  body_.emplace(front_, tree_, open_.unit());
   fit_fronts(
       size_, least, kGain, [&] { return front_.triangle_count(); },
       [&](std::uint32_t before, double limit) {
-        limit_ = limit;
-        before_round();
-        passes_.report_begin(BuildStage::fit, before, limit);
-        simplify();
+        // Rounded down, so that reported deviations are within the limit.
+        limit_ = static_cast<float>(limit / open_.unit() * (1 - 0x1p-24));
+        before_level();
         // A higher price is paid while fewer pseudo faces were made than planned.
         const double correction = fitting_correction(before, real, complex_.face_count() - real);
-        commit(fitting_worth(before, real, kBudget, correction));
-        passes_.report_end({.front_faces = front_.triangle_count()});
-        passes_.end_pass(complex_, front_.triangle_count());
+        level(BuildStage::fit, limit, fitting_worth(before, real, kBudget, correction));
       });
+  body_.reset();
+}
+
+void FrontSimplifier::simplify(const std::function<void()>& before_level) {
+  limit_ = kUnlimited;
+  new_hints_.clear();
+  new_off_ = 0;
+  for (std::uint32_t before = 0, now = front_.triangle_count();
+       now > options_.max_outer_faces && (before == 0 || now <= kFreeGain * before);
+       before = now, now = front_.triangle_count()) {
+    before_level();
+    max_floor_ =
+        std::clamp(now / kParts, kMinFloor, std::max(kMinFloor, kFloorPerInterior * options_.patch_interior));
+    level(BuildStage::simplify, 0, kLastCapWorth);
+  }
+}
+
+/// Makes one level, and reports it. `worth`: maximum number of faces of a lid relative to its floor.
+void FrontSimplifier::level(BuildStage stage, double limit, double worth) {
+  passes_.report_begin(stage, front_.triangle_count(), limit);
+  collapse_all();
+  commit(worth);
+  passes_.report_end({.front_faces = front_.triangle_count(), .excluded = open_.excluded(limit_)});
+  passes_.end_pass(complex_, front_.triangle_count());
 }
 
 /// Makes all collapses within the limit, chunk by chunk: the order of distant collapses does not matter, and
 /// a chunk stays in the caches.
-void FrontFitter::simplify() {
+void FrontSimplifier::collapse_all() {
   const std::vector<Index> order = along_curve();
   // Start at a random vertex, so that seeds give different fronts.
   const std::size_t first = random_.below(static_cast<std::uint32_t>(order.size()));
@@ -113,7 +139,7 @@ void FrontFitter::simplify() {
 }
 
 /// Returns the vertices in use along a space-filling curve (Morton order).
-std::vector<Index> FrontFitter::along_curve() const {
+std::vector<Index> FrontSimplifier::along_curve() const {
   constexpr std::uint32_t kCells = 1024;
   const auto spread = [](std::uint32_t x) {
     x = (x | x << 16) & 0x030000ff;
@@ -140,7 +166,7 @@ std::vector<Index> FrontFitter::along_curve() const {
 
 // Proposals.
 
-bool FrontFitter::load_hub(Index w) {
+bool FrontSimplifier::load_hub(Index w) {
   hub_.w = w;
   hub_.spokes.clear();
   hub_.outward.setZero();
@@ -160,23 +186,23 @@ bool FrontFitter::load_hub(Index w) {
     hub_.offset += t.d * t.area;
     hub_.area += t.area;
     hub_.rim_sum += open_.x(to);
-    open_.unite(f, static_cast<float>(limit_), hub_.united);
+    open_.unite(f, limit_, hub_.united);
     f = t.across[(i + 2) % 3];
   } while (f != first);
   return true;
 }
 
 /// Proposes the edges of a vertex to those with larger numbers.
-void FrontFitter::propose_around(Index w) {
+void FrontSimplifier::propose_around(Index w) {
   if (!open_.is_used(w) || !load_hub(w)) return;
   for (std::size_t k = 0; k < hub_.spokes.size(); ++k)
     if (w < hub_.spokes[k].to) propose(k);
 }
 
 /// Returns true unless the collapse of the face's edge sleeps, or was refused and nothing has changed.
-bool FrontFitter::may_try(Index f, int edge) const {
+bool FrontSimplifier::may_try(Index f, int edge) const {
   const auto& state = open_.state(f);
-  if (state.wake[edge] <= static_cast<float>(limit_)) return true;
+  if (state.wake[edge] <= limit_) return true;
   if (state.wake[edge] != kNever) return false;
   const Index u = open_[f].v[edge], v = open_[f].v[(edge + 1) % 3];
   return std::max(open_.changed_at(u), open_.changed_at(v)) > state.refused_at[edge];
@@ -184,7 +210,7 @@ bool FrontFitter::may_try(Index f, int edge) const {
 
 /// Proposes what can be done with one edge of the hub. The edge w, to lies between the faces of this spoke
 /// and of the one before.
-void FrontFitter::propose(std::size_t k) {
+void FrontSimplifier::propose(std::size_t k) {
   const Index w = hub_.w, r = hub_.spokes[k].to;
   const std::size_t n = hub_.spokes.size();
   const Index left = hub_.spokes[k].face, right = hub_.spokes[k > 0 ? k - 1 : n - 1].face;
@@ -224,7 +250,7 @@ void FrontFitter::propose(std::size_t k) {
   scratch_union_.components.assign(hub_.united.components.begin(), hub_.united.components.end());
   scratch_union_.polygons.assign(hub_.united.polygons.begin(), hub_.united.polygons.end());
   scratch_union_.floor = hub_.united.floor, scratch_union_.excluded = hub_.united.excluded;
-  for (const Index o : others_) open_.unite(o, static_cast<float>(limit_), scratch_union_);
+  for (const Index o : others_) open_.unite(o, limit_, scratch_union_);
   if (scratch_union_.excluded || scratch_union_.floor > max_floor_) return;
   // Step 3: the rough cost of a new vertex: the volume under the lowest point in front of all planes that is
   // over the star's centre along its mean normal. The edge's state is kept from its smaller vertex.
@@ -247,18 +273,19 @@ void FrontFitter::propose(std::size_t k) {
   };
   for (const auto& spoke : hub_.spokes) raise(spoke.face);
   for (const Index o : others_) raise(o);
-  const double volume = std::max(0.0, (dot3(outward, centre) - offset + height * length) / 3);
+  const double volume =
+      std::max(0.0, (dot3(outward, centre) - offset + height * length) / (3 * open_.unit()));
   queue_.push({static_cast<float>(volume), low, std::max(w, r), false});
 }
 
-bool FrontFitter::propose_onto(Index u, Index v) {
-  if (!open_.find_star(u, v, true, scratch_) || !is_in_front(scratch_, open_.x(v))) return false;
+bool FrontSimplifier::propose_onto(Index u, Index v) {
+  if (!open_.find_star(u, v, true, scratch_) || !geometry_.is_in_front(scratch_)) return false;
   unite(scratch_, scratch_union_);
-  if (scratch_union_.excluded || scratch_union_.floor > max_floor_ || !clears_neighbours(scratch_))
+  if (scratch_union_.excluded || scratch_union_.floor > max_floor_ || !geometry_.clears_neighbours(scratch_))
     return false;
   double area = 0;
-  const double volume = volume_under(scratch_, open_.x(v), area);
-  const auto cost = static_cast<float>(volume + shape_cost(scratch_, open_.x(v), area));
+  const double volume = geometry_.volume_under(scratch_, open_.x(v), area);
+  const auto cost = static_cast<float>(volume + geometry_.needle_cost(scratch_, open_.x(v), area));
   if (!(cost < std::numeric_limits<float>::max())) return false;
   queue_.push({cost, u, v, true});
   return true;
@@ -266,133 +293,44 @@ bool FrontFitter::propose_onto(Index u, Index v) {
 
 // Evaluation.
 
-void FrontFitter::unite(const Star& star, Union& united) const {
+void FrontSimplifier::unite(const Star& star, Union& united) const {
   united.components.clear(), united.polygons.clear();
   united.floor = 0, united.excluded = false;
-  for (const Index f : star.faces) open_.unite(f, static_cast<float>(limit_), united);
-}
-
-/// Returns true if p, the vertex that the star's first vertex moves onto, is in front of all faces without
-/// it.
-bool FrontFitter::is_in_front(const Star& star, const Vector3& p) const {
-  double radius_sq = 0;
-  for (const auto& r : star.rim)
-    radius_sq = std::max(radius_sq, squared_norm3(open_.x(r.a) - open_.x(star.u)));
-  const double margin = kPlacementMargin * std::sqrt(radius_sq);
-  for (std::size_t k = 1; k + 1 < star.faces.size(); ++k) {
-    const auto& f = open_[star.faces[k]];
-    if (dot3(f.n, p) - f.d < margin) return false;
-  }
-  return true;
-}
-
-/// Returns true if v is in front of the neighbours beyond reflex edges of the rim, where the fan could
-/// intersect them.
-bool FrontFitter::clears_neighbours(const Star& star) const {
-  const Vector3& p = open_.x(star.v);
-  return std::all_of(star.rim.begin(), star.rim.end(), [&](const auto& r) {
-    const auto &own = open_[r.face], &other = open_[r.across];
-    const Index tip = open_.corner_opposite(r.across, r.a, r.b);
-    return tip == star.v || !(dot3(own.n, open_.x(tip)) > own.d) || dot3(other.n, p) > other.d;
-  });
-}
-
-/// Finds the position of a new vertex: the point in front of all planes that is nearest to a target kDepth
-/// radii below the star's centre, so that it is as low as possible and above the centre. (The lowest vertex
-/// by a linear program drifts sideways where the star is flat.)
-bool FrontFitter::place(const Star& star, Vector3& w) {
-  Vector3 centre = Vector3::Zero(), outward = Vector3::Zero();
-  for (const auto& r : star.rim) centre += open_.x(r.a);
-  centre /= static_cast<double>(star.rim.size());
-  double radius_sq = 0;
-  for (const auto& r : star.rim) radius_sq = std::max(radius_sq, squared_norm3(open_.x(r.a) - centre));
-  const double radius = std::sqrt(radius_sq);
-  // The margin keeps the floating-point position strictly in front, so that the exact confirmation succeeds.
-  const double margin = kPlacementMargin * radius;
-  half_spaces_.clear();
-  const auto in_front_of = [&](const OpenFront::Face& f) {
-    half_spaces_.push_back({f.n, f.d - dot3(f.n, centre) + margin});
-  };
-  for (const Index f : star.faces) {
-    outward += open_[f].n * open_[f].area;
-    in_front_of(open_[f]);
-  }
-  const double length = norm3(outward);
-  if (!(length > 0)) return false;
-  // In front of a neighbour at a reflex rim edge, where the fan could intersect it.
-  for (const auto& r : star.rim) {
-    const auto& own = open_[r.face];
-    if (dot3(own.n, open_.x(open_.corner_opposite(r.across, r.a, r.b))) > own.d) in_front_of(open_[r.across]);
-  }
-  const Vector3 target = outward * (-kDepth * radius / length);
-  const auto solve = [&] {
-    const auto p = nearest_point(target, half_spaces_, kPlacementSlack * radius);
-    if (p) w = *p;
-    return p && p->cwiseAbs().maxCoeff() <= 2 * radius;
-  };
-  if (!solve()) return false;
-  // The bounds are rarely active: add them only if the position violates them.
-  if (!bounds_.contains(w + centre)) {
-    for (const HalfSpace& h : bounds_.half_spaces()) half_spaces_.push_back({h.n, h.d - dot3(h.n, centre)});
-    if (!solve()) return false;
-  }
-  w += centre;
-  return true;
-}
-
-double FrontFitter::volume_under(const Star& star, const Vector3& w, double& area) const {
-  double volume = 0;
-  area = 0;
-  for (const Index f : star.faces) {
-    volume += (dot3(open_[f].n, w) - open_[f].d) * open_[f].area;
-    area += open_[f].area;
-  }
-  return volume / 3;
-}
-
-/// Returns the cost of the worst triangle of the fan: infinite for a degenerate one.
-double FrontFitter::shape_cost(const Star& star, const Vector3& w, double area) const {
-  double worst = kInfinity;
-  for (const auto& r : star.rim) {
-    const Vector3 a = open_.x(r.a) - w, b = open_.x(r.b) - w;
-    worst = std::min(worst, norm3(a.cross(b)) / (squared_norm3(a) + squared_norm3(b) + squared_norm3(a - b)));
-  }
-  // Scaled so that an equilateral triangle has the shape 1.
-  return kShapeWeight * area * std::sqrt(area) / (worst * (2 * std::sqrt(3.0)));
+  for (const Index f : star.faces) open_.unite(f, limit_, united);
 }
 
 /// Returns the number of steps between sample points from a to b: more where these are far from each other,
 /// relative to the limit. (A long edge over a crease can be far off between few sample points, and its lid
 /// would keep out all others above it.)
-int FrontFitter::steps_along(const SurfaceWalk::Point& a, const SurfaceWalk::Point& b) const {
+int FrontSimplifier::steps_along(const SurfaceWalk::Point& a, const SurfaceWalk::Point& b) const {
   const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  const float steps = std::sqrt(x * x + y * y + z * z) / static_cast<float>(kSpacing * limit_);
+  const float steps = std::sqrt(x * x + y * y + z * z) / (kSpacing * limit_);
   return steps < kSteps ? kSteps : static_cast<int>(std::min(steps, static_cast<float>(kMaxSteps)));
 }
 
 /// Returns 0 if the fan from w is within the limit of the body at its sample points; else about its
 /// deviation. Prepares the state of its faces.
-float FrontFitter::excess(const Star& star, const Vector3& w) {
+float FrontSimplifier::excess(const Star& star, const Vector3& w) {
   using Point = SurfaceWalk::Point;
-  const auto enough = static_cast<float>(limit_ * limit_);
+  const float enough = limit_ * limit_;
   const auto mix = [](float s, const Point& a, float t, const Point& b) {
     return Point{s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
   };
-  const Point tip = body_.local(w);
+  const Point tip = body_->local(w);
   FrontMesh::Slot hint = open_.state(star.faces[0]).hint;
   float most = 0, failed = 0;
   const auto is_near = [&](const Point& p) {
-    const float sq = body_.walk(p, hint, enough);
+    const float sq = body_->walk(p, hint, enough);
     most = std::max(most, std::min(sq, enough));
-    if (sq <= enough || body_.find_within(p, hint, enough)) return true;
+    if (sq <= enough || body_->find_within(p, hint, enough)) return true;
     failed = std::sqrt(sq);
     return false;
   };
   if (!star.onto_v && !is_near(tip)) return failed;
   new_hints_.clear();
-  Point a = body_.local(open_.x(star.rim[0].a)), b{};
+  Point a = body_->local(open_.x(star.rim[0].a)), b{};
   for (std::size_t k = 0; k < star.rim.size(); ++k, a = b) {
-    b = body_.local(open_.x(star.rim[k].b));
+    b = body_->local(open_.x(star.rim[k].b));
     hint = open_.state(star.rim[k].face).hint;
     const Point base = mix(0.5f, a, 0.5f, b);
     const int steps = steps_along(a, tip);
@@ -419,36 +357,9 @@ float FrontFitter::excess(const Star& star, const Vector3& w) {
   return 0;
 }
 
-/// Returns true if a face of the fan folds back over its neighbour beyond the rim, or turns to the inside of
-/// the front there. This happens where the surface is flat: a vertex outside the rim and hardly above the
-/// surface is in front of all planes. A face that turns by less than a right angle is not tested here; if it
-/// intersects its neighbour, the proof of the lid finds that.
-bool FrontFitter::folds(const Star& star, const Vector3& w) const {
-  constexpr double kFolded = -0.95;  // cosine between the two normals
-  return std::any_of(star.rim.begin(), star.rim.end(), [&](const auto& r) {
-    const Vector3 &a = open_.x(r.a), &b = open_.x(r.b);
-    const Vector3 n = (b - a).cross(w - a);
-    if (dot3(n, open_[r.face].n) > 0) return false;
-    return dot3(n, open_[r.across].n) < kFolded * norm3(n) ||
-           !turns_outward(a, b, open_.x(open_.corner_opposite(r.face, r.a, r.b)), w,
-                          open_.x(open_.corner_opposite(r.across, r.a, r.b)));
-  });
-}
-
-/// Exact: the vertex must be strictly in front of every face that the fan covers.
-bool FrontFitter::is_strictly_in_front(const Star& star, const Vector3& w) const {
-  for (std::size_t k = 0; k < star.faces.size(); ++k) {
-    if (star.onto_v && (k == 0 || k + 1 == star.faces.size())) continue;
-    const auto& v = open_[star.faces[k]].v;
-    const exact::PlaneSide plane(open_.x(v[0]).data(), open_.x(v[1]).data(), open_.x(v[2]).data());
-    if (plane.side(w.data()) <= 0) return false;
-  }
-  return true;
-}
-
 /// Records that the collapse of star_ was refused: until the limit is `wake` or, if that is kNever, until a
 /// face of its star changes.
-void FrontFitter::refuse(CapVerdict verdict, float wake) {
+void FrontSimplifier::refuse(CapVerdict verdict, float wake) {
   for (const Index c : united_.components) open_.set_held_by(c, verdict);
   if (star_.onto_v) return;
   auto& state = open_.state(star_.faces[0]);
@@ -456,11 +367,11 @@ void FrontFitter::refuse(CapVerdict verdict, float wake) {
   state.refused_at[star_.edge] = open_.now();
 }
 
-void FrontFitter::work_off() {
+void FrontSimplifier::work_off() {
   while (!queue_.empty()) evaluate(queue_.pop());
 }
 
-void FrontFitter::evaluate(const QueuedCollapse& c) {
+void FrontSimplifier::evaluate(const QueuedCollapse& c) {
   // Step 1: the star may have changed since the collapse was proposed.
   if (!open_.is_used(c.u) || !open_.is_used(c.v) || !open_.find_star(c.u, c.v, c.onto_v, star_)) return;
   unite(star_, united_);
@@ -470,32 +381,32 @@ void FrontFitter::evaluate(const QueuedCollapse& c) {
   Vector3 w;
   if (c.onto_v) {
     w = open_.x(c.v);
-    if (!is_in_front(star_, w) || !clears_neighbours(star_)) return;
-  } else if (!place(star_, w)) {
+    if (!geometry_.is_in_front(star_) || !geometry_.clears_neighbours(star_)) return;
+  } else if (!geometry_.place(star_, w)) {
     return refuse(CapVerdict::no_place, kNever);
   }
   // Step 3: the cost.
   double area = 0;
-  const double volume = volume_under(star_, w, area);
-  if (3 * volume > kMaxHeight * limit_ * area)
-    return refuse(CapVerdict::too_thick, static_cast<float>(3 * volume / (kMaxHeight * area)));
-  const auto cost = static_cast<float>(volume + shape_cost(star_, w, area));
+  const double volume = geometry_.volume_under(star_, w, area);
+  if (const double height = 3 * volume / area; height > kMaxHeight * limit_)
+    return refuse(CapVerdict::too_thick, static_cast<float>(height / kMaxHeight));
+  const auto cost = static_cast<float>(volume + geometry_.needle_cost(star_, w, area));
   if (!(cost < std::numeric_limits<float>::max())) return refuse(CapVerdict::too_thin, kNever);
   if (!queue_.empty() && queue_.bucket_of(cost) > queue_.current())
     return queue_.push({cost, c.u, c.v, c.onto_v});
   // Step 4: the deviation, of fans that do not fold back over their neighbours.
-  if (folds(star_, w)) return refuse(CapVerdict::turns_inward, kNever);
-  if (const float off = excess(star_, w); off > 0)
-    return refuse(CapVerdict::too_thick, std::max(off, static_cast<float>(kWake * limit_)));
+  if (geometry_.folds(star_, w)) return refuse(CapVerdict::turns_inward, kNever);
+  if (const float off = body_ ? excess(star_, w) : 0; off > 0)
+    return refuse(CapVerdict::too_thick, std::max(off, kWake * limit_));
   // Step 5: the exact tests.
-  if (!is_strictly_in_front(star_, w)) return refuse(CapVerdict::no_place, kNever);
+  if (!geometry_.is_strictly_in_front(star_, w)) return refuse(CapVerdict::no_place, kNever);
   if (open_.was_restored()) {
     const bool careful = std::any_of(star_.faces.begin(), star_.faces.end(),
                                      [&](Index f) { return open_.state(f).careful; }) ||
                          std::any_of(united_.components.begin(), united_.components.end(),
                                      [&](Index i) { return open_.is_careful(i); });
     if (careful)
-      if (const CapVerdict v = proof_.judge_fan(star_, united_.components, w, *tree_);
+      if (const CapVerdict v = proof_.judge_fan(star_, united_.components, w, tree_);
           v != CapVerdict::accepted)
         return refuse(v, kNever);
   }
@@ -511,19 +422,19 @@ void FrontFitter::evaluate(const QueuedCollapse& c) {
 
 // Commits.
 
-void FrontFitter::commit(double worth) {
-  if (!tree_->fits(front_)) tree_.emplace(front_);
+void FrontSimplifier::commit(double worth) {
+  if (!tree_.fits(front_)) tree_ = AabbTree(front_);
   for (OpenFront::Lid& lid : open_.lids()) {
     const CapVerdict verdict = finish(lid, worth);
     if (options_.probe) notify(lid, verdict);
     if (verdict == CapVerdict::accepted) put_on(lid);
     // A component that is not simple enough stays open. One that failed is undone.
     else if (verdict != CapVerdict::too_many_faces && verdict != CapVerdict::splits_polygon)
-      open_.restore(lid, open_.is_careful(lid.component) ? static_cast<float>(kExclude * limit_) : 0);
+      open_.restore(lid, open_.is_careful(lid.component) ? kExclude * limit_ : 0);
   }
 }
 
-CapVerdict FrontFitter::finish(OpenFront::Lid& lid, double worth) {
+CapVerdict FrontSimplifier::finish(OpenFront::Lid& lid, double worth) {
   const auto is_worth_it = [&] {
     return static_cast<double>(lid.faces.size()) <=
            worth * static_cast<double>(open_.floor(lid.component).size());
@@ -531,12 +442,12 @@ CapVerdict FrontFitter::finish(OpenFront::Lid& lid, double worth) {
   if (!is_worth_it()) return CapVerdict::too_many_faces;
   if (!cover_polygons(lid)) return CapVerdict::splits_polygon;
   if (!is_worth_it()) return CapVerdict::too_many_faces;
-  return proof_.judge(lid, *tree_);
+  return proof_.judge(lid, tree_);
 }
 
 /// Extends the floor to whole polygons of the mesh: by flips that only move the lid outward, then by covering
 /// the remaining parts of a polygon with flat pyramids. Returns false if neither is possible somewhere.
-bool FrontFitter::cover_polygons(OpenFront::Lid& lid) {
+bool FrontSimplifier::cover_polygons(OpenFront::Lid& lid) {
   for (;;) {
     const std::vector<Index> parts = open_.uncovered_parts(lid.component);
     if (parts.empty()) return true;
@@ -558,8 +469,8 @@ bool FrontFitter::cover_polygons(OpenFront::Lid& lid) {
       const auto& v = open_[f].v;
       for (int i = 0; i < 3; ++i) star_.rim.push_back({v[i], v[(i + 1) % 3], open_[f].across[i], f});
       Vector3 w;
-      if (open_.state(f).excluded_below > static_cast<float>(limit_) || !place(star_, w) ||
-          !is_strictly_in_front(star_, w))
+      if (open_.state(f).excluded_below > limit_ || !geometry_.place(star_, w) ||
+          !geometry_.is_strictly_in_front(star_, w))
         return false;
       const auto raised = open_.raise(lid.component, f, w);
       lid.faces.insert(lid.faces.end(), raised.begin(), raised.end());
@@ -567,7 +478,7 @@ bool FrontFitter::cover_polygons(OpenFront::Lid& lid) {
   }
 }
 
-void FrontFitter::put_on(const OpenFront::Lid& lid) {
+void FrontSimplifier::put_on(const OpenFront::Lid& lid) {
   Sheet sheet;
   const auto& floor = open_.floor(lid.component);
   for (const Index f : floor) sheet.removed.push_back(open_.state(f).slot);
@@ -594,12 +505,12 @@ void FrontFitter::put_on(const OpenFront::Lid& lid) {
     const auto corner = static_cast<FrontMesh::Corner>(first + i);
     open_.set_committed(fresh[i], corner, front_.point(corner).id);
   }
-  for (const FrontMesh::Slot s : slots) tree_->update(s, box_of(front_, s));
+  for (const FrontMesh::Slot s : slots) tree_.update(s, box_of(front_, s));
   open_.commit(lid, slots);
 }
 
 /// Reports a component as a patch, with its lid as the cap.
-void FrontFitter::notify(const OpenFront::Lid& lid, CapVerdict verdict) const {
+void FrontSimplifier::notify(const OpenFront::Lid& lid, CapVerdict verdict) const {
   const auto& floor = open_.floor(lid.component);
   // The vertices that the lid does not have.
   std::vector<Index> inside, kept;
@@ -621,7 +532,7 @@ void FrontFitter::notify(const OpenFront::Lid& lid, CapVerdict verdict) const {
   if (verdict == CapVerdict::too_many_faces) verdict = open_.held_by(lid.component);
   options_.probe->cap({static_cast<std::uint32_t>(lid.faces.size()), static_cast<std::uint32_t>(floor.size()),
                        verdict, open_.is_careful(lid.component),
-                       verdict == CapVerdict::accepted ? std::min<double>(off, limit_) : -1});
+                       verdict == CapVerdict::accepted && body_ ? std::min(off, limit_) * open_.unit() : -1});
 }
 
 }  // namespace lrb::construct

@@ -1,30 +1,25 @@
-/// Builds the regions of a 3D body, pass by pass:
+/// Builds the regions of a 3D body, level by level:
 /// 1. Find the surfaces that bound voids, and the faces that must never be covered.
-/// 2. Fitted levels of limited deviation, by one queue of collapses (unless lean): FrontFitter.
-/// 3. Simplify patches of the front to caps without a limit on the deviation, until there are few enough
-/// outer faces.
-/// 4. Bridge concavities, fill voids, and close with a wrapper if there are still too many outer faces.
+/// 2. Fitted levels of limited deviation (unless lean), then levels without a limit, until there are few
+/// enough outer faces: FrontSimplifier.
+/// 3. Bridge concavities, fill voids, and close with a wrapper if there are still too many outer faces.
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 
-#include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/builders.hpp"
 #include "engine/construct/closing.hpp"
 #include "engine/construct/complex_builder.hpp"
-#include "engine/construct/front_fitter.hpp"
 #include "engine/construct/front_mesh.hpp"
+#include "engine/construct/front_simplifier.hpp"
 #include "engine/construct/half_spaces.hpp"
-#include "engine/construct/patch_pass.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/mesh/nesting.hpp"
 #include "engine/mesh/point_inside.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
-#include <lrbscope/core/random.hpp>
 #include <lrbscope/mesh.hpp>
 
 namespace lrb::construct {
@@ -162,16 +157,15 @@ std::vector<FaceId> find_buried(const Mesh& mesh, const FrontMesh& front,
   return buried;
 }
 
-class PatchBuilder {
+class CollapseBuilder {
  public:
-  PatchBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
+  CollapseBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
       : options_(options),
         workers_(options.threads),
         front_(mesh),
         complex_(mesh),
         home_(find_nesting(mesh, front_)),
         bounds_(mesh.vertices, kFrontSwell),
-        random_(options.seed),
         frozen_(mesh.face_count(), false),
         component_boxes_(front_.component_count()),
         passes_(options) {
@@ -183,11 +177,13 @@ class PatchBuilder {
   }
 
   LrbData run() {
-    // Fitted levels first, then simplification without a limit on the deviation, then bridging and closing.
-    if (!options_.lean) fit();
-    simplify(kCapWorth);
-    simplify(kLastCapWorth);
-    if (outer_size() > options_.max_outer_faces && bridge()) simplify(kLastCapWorth);
+    {
+      FrontSimplifier simplifier = make_simplifier();
+      if (!options_.lean) simplifier.fit(kFitDownTo, [&] { plan_polytope_from(kFittedPolytopeFrom); });
+      simplifier.simplify([&] { plan_polytope_from(kPolytopeFrom); });
+    }
+    if (outer_size() > options_.max_outer_faces && bridge())
+      make_simplifier().simplify([&] { plan_polytope_from(kPolytopeFrom); });
     fill();
     const std::uint32_t outer = outer_size();
     const bool is_closed = outer > options_.max_outer_faces && close();
@@ -213,41 +209,13 @@ class PatchBuilder {
     return points;
   }
 
-  void fit() {
-    tree_.emplace(front_);
-    FrontFitter(front_, tree_, complex_, frozen_, component_boxes_, bounds_, options_, passes_)
-        .run(kFitDownTo, [&] {
-          // From now on the front stays inside the planned wrapper.
-          if (front_.triangle_count() <= kFittedPolytopeFrom) plan_polytope();
-        });
+  FrontSimplifier make_simplifier() {
+    return {front_, complex_, frozen_, component_boxes_, bounds_, options_, passes_};
   }
 
-  /// Makes passes until they gain too little. `worth`: see PatchPass::run().
-  void simplify(double worth) {
-    for (;;) {
-      const std::uint32_t before = front_.triangle_count();
-      if (before <= options_.max_outer_faces) return;
-      pass(worth);
-      if (front_.triangle_count() > kMinGain * before) return;
-    }
-  }
-
-  void pass(double worth) {
-    const std::uint32_t triangles = front_.triangle_count();
-    // From now on the front stays inside the planned wrapper.
-    if (triangles <= kPolytopeFrom) plan_polytope();
-    // On a small front patches are small, so that there are still several.
-    const std::uint32_t interior =
-        std::max(kMinInterior, std::min(options_.patch_interior, triangles / kMinPatches));
-    // Rebuild the tree only when it has degraded; otherwise it was refitted.
-    if (!tree_ || !tree_->fits(front_)) tree_.emplace(front_);
-    passes_.report_begin(BuildStage::simplify, triangles);
-    PatchPass pass(front_, *tree_, complex_, bounds_, frozen_, component_boxes_, workers_, options_.probe);
-    PassEnd end =
-        pass.run({interior, std::max(4 * interior, kMinTriangles)}, worth, passes_.layer(), random_);
-    end.front_faces = front_.triangle_count();
-    passes_.report_end(end);
-    end_pass();
+  /// Plans the outermost wrapper as soon as the front is simple enough: from now on it stays inside.
+  void plan_polytope_from(std::uint32_t triangles) {
+    if (front_.triangle_count() <= triangles) plan_polytope();
   }
 
   bool bridge() {
@@ -255,8 +223,6 @@ class PatchBuilder {
     const bool accepted = bridge_pockets();
     passes_.report_end({.front_faces = front_.triangle_count()});
     if (!accepted) return false;
-    // Bridging replaced large parts of the front.
-    tree_.reset();
     end_pass();
     return true;
   }
@@ -345,22 +311,13 @@ class PatchBuilder {
   static constexpr std::uint32_t kPolytopeFrom = 30000;
   /// The same while fitting, where the front is close to the mesh for longer.
   static constexpr std::uint32_t kFittedPolytopeFrom = 2000;
-  /// A pass that leaves more than this share of the triangles is the last.
-  static constexpr double kMinGain = 0.85;
-  /// A patch has at most front triangles / kMinPatches interior vertices, so that there are several
-  /// patches.
-  static constexpr std::uint32_t kMinPatches = 24;
-  static constexpr std::uint32_t kMinInterior = 3;
-  static constexpr std::uint32_t kMinTriangles = 16;  ///< lower bound of the limit on a patch's triangles
 
   const BuildOptions& options_;
   Workers workers_;
   FrontMesh front_;
-  std::optional<AabbTree> tree_;
   ComplexBuilder complex_;
   const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()
   BodyBounds bounds_;
-  Random random_;
   /// (|real faces|) true for faces that intersect others or are inside other components
   std::vector<bool> frozen_;
   std::vector<Eigen::AlignedBox3d> component_boxes_;
@@ -370,8 +327,9 @@ class PatchBuilder {
 
 }  // namespace
 
-LrbData build_by_patches(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options) {
-  return PatchBuilder(mesh, meeting, options).run();
+LrbData build_by_collapses(const Mesh& mesh, const std::vector<FaceId>& meeting,
+                           const BuildOptions& options) {
+  return CollapseBuilder(mesh, meeting, options).run();
 }
 
 }  // namespace lrb::construct
