@@ -56,8 +56,8 @@ void cut_lid(const LrbRep& rep, FaceId lid, double longest, std::vector<LidPiece
 /// Measures distances of points. The nearest face of a point is the first candidate for the next.
 class Gauge {
  public:
-  Gauge(const LrbRep& rep, const std::vector<Vector3d>& vertices)
-      : unit_(rep.tree().unit()), nearest_(rep, vertices) {}
+  Gauge(const LrbRep& rep, const std::vector<RealSimplex>& simplices)
+      : unit_(rep.tree().unit()), nearest_(rep, simplices) {}
 
   double off(const Vector3d& x) {
     const Vector3d p = x / unit_;
@@ -76,12 +76,12 @@ class Gauge {
 
 MeasuredLids measure_lids(const LrbRep& rep, std::span<const FaceId> lids, double longest, unsigned threads) {
   constexpr std::size_t kAtOnce = 16;  // lids per task
-  const std::vector<Vector3d> vertices = vertices_in_units(rep);
+  const std::vector<RealSimplex> simplices = real_simplices(rep);
   std::vector<MeasuredLids> parts((lids.size() + kAtOnce - 1) / kAtOnce);
   const int corners = rep.dim();
   Workers(threads).for_each(parts.size(), [&](std::size_t i, unsigned) {
     MeasuredLids& part = parts[i];
-    Gauge gauge(rep, vertices);
+    Gauge gauge(rep, simplices);
     for (const FaceId lid : lids.subspan(i * kAtOnce, std::min(kAtOnce, lids.size() - i * kAtOnce))) {
       const std::size_t first = part.pieces.size();
       cut_lid(rep, lid, longest, part.pieces);

@@ -110,7 +110,7 @@ BodyDistance::BodyDistance(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
     : a_(a, pose_a), b_(b, pose_b) {}
 
 BodyDistance::Side::Side(const LrbRep& rep, const Pose& p)
-    : unit(rep.tree().unit()), pose(p), vertices(vertices_in_units(rep)), nearest(rep, vertices) {}
+    : unit(rep.tree().unit()), pose(p), simplices(real_simplices(rep)), nearest(rep, simplices) {}
 
 /// For rigid poses, as in data sets.
 double BodyDistance::Side::distance(const Eigen::Vector3d& world) {

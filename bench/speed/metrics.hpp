@@ -142,7 +142,7 @@ class BodyDistance {
     double distance(const Eigen::Vector3d& world);
     double unit;
     Pose pose;
-    std::vector<Eigen::Vector3d> vertices;  ///< in units
+    std::vector<RealSimplex> simplices;
     NearestFace nearest;
   };
   Side a_, b_;

@@ -55,8 +55,6 @@ class FrontMesh {
     const auto& t = triangles_[s].v;
     return t[0] == v ? 0 : t[1] == v ? 1 : 2;
   }
-  /// Returns the index of the edge of triangle s that starts at `from`.
-  int edge_from(Slot s, Corner from) const { return index_of(s, from); }
 
   /// Calls visit(slot, index of v in it) for the triangles around v, counter-clockwise.
   template <class Visit>

@@ -61,10 +61,8 @@ constexpr double kFreeGain = 0.85;
 /// several components.
 constexpr std::uint32_t kParts = 12;
 
-Eigen::AlignedBox3d box_of(const FrontMesh& front) {
-  Eigen::AlignedBox3d box;
-  for (FrontMesh::Corner v = 0; v < front.point_count(); ++v) box.extend(front.x(v));
-  return box;
+double cube(double x) {
+  return x * x * x;
 }
 
 }  // namespace
@@ -76,13 +74,11 @@ FrontSimplifier::FrontSimplifier(FrontMesh& front, ComplexBuilder& complex, cons
       complex_(complex),
       options_(options),
       passes_(passes),
-      box_(box_of(front)),
-      size_(box_.sizes().maxCoeff()),
       tree_(front),
       open_(front, frozen),
       geometry_(open_, bounds, kDepth, kNeedleWeight),
       proof_(open_, front, component_boxes),
-      queue_(std::pow(size_ / open_.unit(), 3)),
+      queue_(cube(open_.size() / open_.unit())),
       random_(options.seed) {}
 
 void FrontSimplifier::fit(std::uint32_t least, const std::function<void()>& before_level) {
@@ -90,7 +86,7 @@ void FrontSimplifier::fit(std::uint32_t least, const std::function<void()>& befo
   max_floor_ = std::max(kMinFloor, kFloorPerInterior * options_.patch_interior);
   body_.emplace(front_, tree_, open_.unit());
   fit_fronts(
-      size_, least, kGain, [&] { return front_.triangle_count(); },
+      open_.size(), least, kGain, [&] { return front_.triangle_count(); },
       [&](std::uint32_t before, double limit) {
         // Rounded down, so that reported deviations are within the limit.
         limit_ = static_cast<float>(limit / open_.unit() * (1 - 0x1p-24));
@@ -152,7 +148,7 @@ std::vector<Index> FrontSimplifier::along_curve() const {
     if (!open_.is_used(v)) continue;
     std::uint32_t code = 0;
     for (int i = 0; i < 3; ++i) {
-      const double cell = (open_.x(v)[i] - box_.min()[i]) / size_ * kCells;
+      const double cell = (open_.x(v)[i] - open_.box().min()[i]) / open_.size() * kCells;
       code |= spread(static_cast<std::uint32_t>(std::clamp(cell, 0.0, kCells - 1.0))) << i;
     }
     keys.push_back(std::uint64_t{code} << 32 | v);

@@ -87,9 +87,7 @@ class FrontSimplifier {
   ComplexBuilder& complex_;
   const BuildOptions& options_;
   PassCounter& passes_;
-  Eigen::AlignedBox3d box_;  ///< of the body
-  double size_;              ///< its largest side
-  AabbTree tree_;            ///< over the committed front
+  AabbTree tree_;  ///< over the committed front
   OpenFront open_;
   OutwardCollapse geometry_;
   std::optional<SurfaceWalk> body_;  ///< while fitting

@@ -19,10 +19,9 @@ using Index = OpenFront::Index;
 OpenFront::OpenFront(const FrontMesh& front, const std::vector<bool>& frozen) : front_(front) {
   const Slot count = front.slot_count();
   const FrontMesh::Corner corners = front.point_count();
-  Eigen::AlignedBox3d box;
-  for (FrontMesh::Corner c = 0; c < corners; ++c) box.extend(front.x(c));
+  for (FrontMesh::Corner c = 0; c < corners; ++c) box_.extend(front.x(c));
   // Both the unit and its inverse are normal numbers.
-  unit_ = std::ldexp(1.0, std::clamp(std::ilogb(box.sizes().maxCoeff()), -1000, 1000));
+  unit_ = std::ldexp(1.0, std::clamp(std::ilogb(size()), -1000, 1000));
   faces_.reserve(count + count / 2);
   states_.reserve(count + count / 2);
   x_.reserve(2 * corners);

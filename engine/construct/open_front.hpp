@@ -50,6 +50,8 @@ class OpenFront {
   /// Areas, deviations and their limits are kept in floats, in this unit of length: a power of two near the
   /// body's size, so that they do not overflow and are the same for scaled bodies.
   double unit() const { return unit_; }
+  const Eigen::AlignedBox3d& box() const { return box_; }
+  double size() const { return box_.sizes().maxCoeff(); }
 
   /// What collapses read of a face; one cache line.
   struct alignas(64) Face {
@@ -199,7 +201,8 @@ class OpenFront {
   mutable std::vector<Index> parent_;       ///< (components)
   std::vector<Component> components_;
   std::vector<Index> free_, fresh_;
-  Index first_name_ = 0;  ///< name of vertex 0, if it were a new one
+  Index first_name_ = 0;     ///< name of vertex 0, if it were a new one
+  Eigen::AlignedBox3d box_;  ///< of the vertices at the start
   double unit_;
   std::uint32_t marker_ = 0, time_ = 0;
   bool was_restored_ = false, has_excluded_ = false;

@@ -75,41 +75,65 @@ std::uint32_t sort_below(const float d[kTreeWidth], std::uint32_t children, doub
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> vertices_in_units(const LrbRep& rep) {
-  std::vector<Eigen::Vector3d> out;
-  out.reserve(rep.vertices().size());
-  for (const Eigen::Vector3d& v : rep.vertices()) out.push_back(v / rep.tree().unit());
+std::vector<RealSimplex> real_simplices(const LrbRep& rep) {
+  const std::vector<Across> neighbours = real_neighbours(rep);
+  const auto at = [&](VertexId v) { return Eigen::Vector3d(rep.vertices()[v] / rep.tree().unit()); };
+  std::vector<RealSimplex> out(rep.real_simplex_count());
+  for (SimplexId s = 0; s < out.size(); ++s) {
+    VertexId v[3];
+    rep.simplex(s, v);
+    const Eigen::Vector3d a = at(v[0]), c = rep.dim() == 3 ? at(v[2]) : a;
+    out[s] = {a, at(v[1]) - a, c - a, neighbours[s]};
+  }
   return out;
 }
 
-SimplexPoint NearestFace::nearest_point(const Eigen::Vector3d& p, SimplexId s) const {
-  VertexId v[3];
-  rep_.simplex(s, v);
-  return rep_.dim() == 3 ? nearest_on_triangle(p, x_[v[0]], x_[v[1]], x_[v[2]])
-                         : nearest_on_segment(p, x_[v[0]], x_[v[1]]);
+namespace {
+
+struct ClosestPoint {
+  double distance_sq;
+  unsigned borders;  ///< bit e: the point is on border e (an edge; 2D: an end)
+};
+
+/// Returns the squared distance from p to an actual point of the simplex (up to rounding), the closest one
+/// unless the simplex is nearly degenerate (Ericson, "Real-Time Collision Detection", 5.1.5, with the
+/// interior tested first).
+ClosestPoint closest_point(const RealSimplex& t, const Eigen::Vector3d& p, bool is_segment) {
+  const Eigen::Vector3d ap = p - t.a;
+  const double d1 = dot3(t.ab, ap), d2 = dot3(t.ac, ap);
+  const double bb = squared_norm3(t.ab), bc = dot3(t.ab, t.ac), cc = squared_norm3(t.ac);
+  const double vb = cc * d1 - bc * d2, vc = bb * d2 - bc * d1, all = bb * cc - bc * bc;
+  if (vb >= 0 && vc >= 0 && vb + vc <= all && all > 0)
+    return {squared_norm3(ap - (vb / all) * t.ab - (vc / all) * t.ac), 0};
+  const double d3 = d1 - bb, d4 = d2 - bc, d5 = d1 - bc, d6 = d2 - cc;
+  if (d1 <= 0 && d2 <= 0) return {squared_norm3(ap), is_segment ? 1u : 5u};
+  if (d3 >= 0 && d4 <= d3) return {squared_norm3(ap - t.ab), is_segment ? 2u : 3u};
+  if (d6 >= 0 && d5 <= d6) return {squared_norm3(ap - t.ac), 6};
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {squared_norm3(ap - (d1 / bb) * t.ab), is_segment ? 0u : 1u};
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {squared_norm3(ap - (d2 / cc) * t.ac), 4};
+  const double length = (d4 - d3) + (d5 - d6);
+  const double share = length > 0 ? std::clamp((d4 - d3) / length, 0.0, 1.0) : 0;
+  return {squared_norm3(ap - t.ab - share * (t.ac - t.ab)), 2};
 }
 
+}  // namespace
+
 double NearestFace::distance(const Eigen::Vector3d& p, SimplexId s) const {
-  return std::sqrt(nearest_point(p, s).distance_sq);
+  return std::sqrt(closest_point(simplices_[s], p, is_segment_).distance_sq);
 }
 
 /// A closer point can be beyond a border only if the closest point so far is on that border.
-NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from,
-                           const std::vector<Across>& neighbours) const {
+NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from) const {
   // Greedy descent on the surface. The distance decreases at each step, so the walk terminates. It may end in
   // a local minimum, which callers account for.
-  const int corners = rep_.dim();
-  SimplexPoint nearest = nearest_point(p, from);
+  ClosestPoint nearest = closest_point(simplices_[from], p, is_segment_);
   for (bool moves = true; moves;) {
     moves = false;
-    const SimplexPoint here = nearest;
-    const Across& across = neighbours[from];
-    for (int e = 0; e < corners; ++e) {
-      // Border e is opposite corner e + 2 (2D: is end e). The closest point is on it if the weight there is
-      // 0.
-      const bool on_border = here.weight[corners == 3 ? (e + 2) % 3 : 1 - e] == 0;
-      if (!on_border || across[e] == kNull) continue;
-      const SimplexPoint there = nearest_point(p, across[e]);
+    const unsigned borders = nearest.borders;
+    const Across& across = simplices_[from].across;
+    for (int e = 0; e < 3; ++e) {
+      if ((borders >> e & 1) == 0 || across[e] == kNull) continue;
+      const ClosestPoint there = closest_point(simplices_[across[e]], p, is_segment_);
       if (there.distance_sq < nearest.distance_sq) nearest = there, from = across[e], moves = true;
     }
   }
@@ -121,17 +145,16 @@ NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from,
 NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
   // Depth-first branch and bound (Roussopoulos et al. 1995): closest boxes first, subtrees beyond the best
   // distance are pruned.
-  const ObbTree& tree = rep_.tree();
   NearFace best = known;
   double best_sq = known.distance * known.distance;
   stack_.clear();
-  if (!tree.empty()) stack_.push_back({0, 0});
+  if (!tree_.empty()) stack_.push_back({0, 0});
   while (!stack_.empty()) {
     const Branch branch = stack_.back();
     stack_.pop_back();
     // The best distance may have decreased since the branch was pushed.
     if (!(static_cast<double>(branch.distance_sq) < best_sq)) continue;
-    const TreeNode& node = tree.nodes()[branch.node];
+    const TreeNode& node = tree_.nodes()[branch.node];
     float d[kTreeWidth];
     std::uint32_t order[kTreeWidth];
     box_distances_sq(node, p, d);
@@ -143,8 +166,8 @@ NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
     }
     // Leaf: distances to the simplices in double. Boxes are sorted, so the first one too far ends the loop.
     for (std::uint32_t i = 0; i < count && static_cast<double>(d[order[i]]) < best_sq; ++i) {
-      const SimplexId s = tree.blocks()[node.first].simplex[order[i]];
-      const double square = nearest_point(p, s).distance_sq;
+      const SimplexId s = tree_.blocks()[node.first].simplex[order[i]];
+      const double square = closest_point(simplices_[s], p, is_segment_).distance_sq;
       if (square < best_sq) best_sq = square, best.simplex = s;
     }
   }
@@ -244,9 +267,9 @@ Cut cut_at_border(const Simplex& piece, int worst, const Simplex& face, int corn
 class RegionMeter {
  public:
   /// `near`: (|V|) a real simplex near each vertex.
-  RegionMeter(const LrbRep& rep, const std::vector<Vector3d>& x, const std::vector<Across>& neighbours,
+  RegionMeter(const LrbRep& rep, const std::vector<Vector3d>& x, const std::vector<RealSimplex>& simplices,
               const std::vector<NearFace>& near)
-      : rep_(rep), x_(x), neighbours_(neighbours), near_(near), nearest_(rep, x), corners_(rep.dim()) {}
+      : rep_(rep), x_(x), simplices_(simplices), near_(near), nearest_(rep, simplices), corners_(rep.dim()) {}
 
   /// Returns the region's thickness in units.
   double measure(RegionId r) {
@@ -314,7 +337,7 @@ class RegionMeter {
     if (piece.most > limit()) {
       // The face near the centroid often bounds the entire piece better.
       const Vector3d centroid = centroid_of(piece);
-      NearFace near = nearest_.walk(centroid, piece.face, neighbours_);
+      NearFace near = nearest_.walk(centroid, piece.face);
       // The walk may end in a local minimum: another part of the surface may be closer.
       if (near.distance > found_) near = nearest_.find(centroid, near);
       // The centroid is a point of the lid, so its distance raises the lower bound.
@@ -377,9 +400,8 @@ class RegionMeter {
   }
 
   Cut choose_cut(const Piece& piece) const {
-    VertexId v[3] = {};
-    rep_.simplex(piece.face, v);
-    const Simplex face = corners_of(v);
+    const RealSimplex& t = simplices_[piece.face];
+    const Simplex face = {t.a, t.a + t.ab, t.a + t.ac};
     // A piece much longer than its face spans many faces: bisect its longest edge (fast progress on large
     // lids).
     const auto [longest, length_sq] = longest_edge(piece.x, corners_);
@@ -392,7 +414,7 @@ class RegionMeter {
 
   const LrbRep& rep_;
   const std::vector<Vector3d>& x_;
-  const std::vector<Across>& neighbours_;
+  const std::vector<RealSimplex>& simplices_;
   const std::vector<NearFace>& near_;
   NearestFace nearest_;
   const int corners_;  ///< number of corners of a piece and of a real simplex
@@ -403,7 +425,8 @@ class RegionMeter {
 };
 
 /// Returns a real simplex near each vertex: one that contains the vertex if there is one.
-std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3d>& x, Workers& workers) {
+std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3d>& x,
+                                    const std::vector<RealSimplex>& simplices, Workers& workers) {
   std::vector<NearFace> near(x.size());
   // A vertex of a real simplex is on it: distance 0.
   for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
@@ -412,7 +435,7 @@ std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3
     for (int k = 0; k < rep.dim(); ++k) near[v[k]] = {s, 0};
   }
   // Vertices of pseudo faces are searched in the tree. Each worker has its own search stack.
-  std::vector<NearestFace> finders(workers.count(), NearestFace(rep, x));
+  std::vector<NearestFace> finders(workers.count(), NearestFace(rep, simplices));
   workers.for_each(x.size(), [&](std::size_t v, unsigned worker) {
     if (near[v].simplex == kNull) near[v] = finders[worker].find(x[v]);
   });
@@ -423,11 +446,12 @@ std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3
 
 std::vector<double> region_thickness(const LrbRep& rep, unsigned threads) {
   Workers workers(threads);
-  const std::vector<Vector3d> x = vertices_in_units(rep);
-  const std::vector<Across> neighbours = real_neighbours(rep);
-  const std::vector<NearFace> near = near_vertices(rep, x, workers);
+  std::vector<Vector3d> x;
+  for (const Vector3d& v : rep.vertices()) x.push_back(v / rep.tree().unit());
+  const std::vector<RealSimplex> simplices = real_simplices(rep);
+  const std::vector<NearFace> near = near_vertices(rep, x, simplices, workers);
   // Regions are independent. Each worker measures them with its own meter, whose state is reset per region.
-  std::vector<RegionMeter> meters(workers.count(), RegionMeter(rep, x, neighbours, near));
+  std::vector<RegionMeter> meters(workers.count(), RegionMeter(rep, x, simplices, near));
   std::vector<double> out(rep.region_count());
   workers.for_each(out.size(), [&](std::size_t r, unsigned worker) {
     out[r] = meters[worker].measure(static_cast<RegionId>(r)) * rep.tree().unit();

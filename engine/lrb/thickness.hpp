@@ -6,13 +6,19 @@
 #include <Eigen/Core>
 
 #include "engine/lrb/complex.hpp"
-#include "engine/mesh/nearest_on_simplex.hpp"
 #include <lrbscope/lrb_rep.hpp>
 
 namespace lrb {
 
-/// Returns the vertices of an LRB-rep in units (ObbTree::unit()).
-std::vector<Eigen::Vector3d> vertices_in_units(const LrbRep& rep);
+/// A real simplex in units (ObbTree::unit()), as the search for close ones needs it: a corner, the edges from
+/// there to the others (2D: `ac` is 0), and the adjacent simplices.
+struct RealSimplex {
+  Eigen::Vector3d a, ab, ac;
+  Across across;
+};
+
+/// Returns the real simplices of an LRB-rep.
+std::vector<RealSimplex> real_simplices(const LrbRep& rep);
 
 /// A real simplex with its distance from a point.
 struct NearFace {
@@ -23,16 +29,17 @@ struct NearFace {
 /// Finds real simplices close to points. Works in units. Use one per thread.
 class NearestFace {
  public:
-  /// `vertices`: those of the LRB-rep, in units; must outlive this object.
-  NearestFace(const LrbRep& rep, const std::vector<Eigen::Vector3d>& vertices) : rep_(rep), x_(vertices) {}
+  /// `simplices`: real_simplices() of the LRB-rep; must outlive this object.
+  NearestFace(const LrbRep& rep, const std::vector<RealSimplex>& simplices)
+      : tree_(rep.tree()), simplices_(simplices), is_segment_(rep.dim() == 2) {}
 
   /// Returns the closest real simplex, up to the rounding of floats, or `known` if none is closer. Searches
   /// the tree.
   NearFace find(const Eigen::Vector3d& p, NearFace known = {});
 
   /// Returns a real simplex no further than `from`: moves to an adjacent simplex that is closer as long as
-  /// there is one. Takes a tenth of the time of find() if `from` is close. `neighbours`: real_neighbours().
-  NearFace walk(const Eigen::Vector3d& p, SimplexId from, const std::vector<Across>& neighbours) const;
+  /// there is one. Takes a tenth of the time of find() if `from` is close.
+  NearFace walk(const Eigen::Vector3d& p, SimplexId from) const;
 
   /// Returns the distance from p to a simplex, never below the true one except for rounding, which
   /// kThicknessRounding covers.
@@ -44,10 +51,9 @@ class NearestFace {
     float distance_sq;
   };
 
-  SimplexPoint nearest_point(const Eigen::Vector3d& p, SimplexId s) const;
-
-  const LrbRep& rep_;
-  const std::vector<Eigen::Vector3d>& x_;  ///< (|V|)
+  const ObbTree& tree_;
+  const std::vector<RealSimplex>& simplices_;
+  bool is_segment_;
   std::vector<Branch> stack_;
 };
 
