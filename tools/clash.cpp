@@ -8,6 +8,7 @@
 
 #include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/io/columns.hpp"
 #include "tools/bounds_chart.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
@@ -95,22 +96,6 @@ Row row_of(std::size_t pose, const ClashResult& r, const ClashOptions& o) {
   return row;
 }
 
-std::string table_text(const std::vector<Row>& rows) {
-  std::vector<std::size_t> width;
-  for (const Row& row : rows)
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (c == width.size()) width.push_back(0);
-      width[c] = std::max(width[c], row[c].size());
-    }
-  std::ostringstream out;
-  for (const Row& row : rows) {
-    for (std::size_t c = 0; c + 1 < row.size(); ++c)
-      out << std::left << std::setw(static_cast<int>(width[c]) + 2) << row[c];
-    out << row.back() << "\n";
-  }
-  return out.str();
-}
-
 Row headings(const ClashOptions& o) {
   Row row{"pose", "kind", "shares faces", "distance", "depth", "translation"};
   if (o.request.along) row.push_back("along");
@@ -154,7 +139,7 @@ int run_clash(ClashOptions o, const Globals& globals) {
                    picture_name(o.draw.chart, i, list.poses.size()));
     progress.set(i + 1);
   }
-  if (o.table) print(table_text(rows));
+  if (o.table) print(io::in_columns(rows, rows[0].size()));
   return kOk;
 }
 

@@ -15,6 +15,7 @@
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::cli {
 namespace {
@@ -274,7 +275,8 @@ int run_list(const GoldenOptions& o) {
             (missing.empty() ? "" : "      its scenario cannot be opened: " + missing + "\n"));
   }
   if (!o.json)
-    print(std::to_string(names.size()) + " goldens, " + std::to_string((all + 1023) / 1024) + " KiB\n");
+    print(render::counted(names.size(), "golden", "goldens") + ", " + std::to_string((all + 1023) / 1024) +
+          " KiB\n");
   return kOk;
 }
 

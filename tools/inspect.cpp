@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iomanip>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,6 +21,7 @@
 #include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/frames/framing.hpp"
+#include "scenarios/io/columns.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/answer_page.hpp"
 #include "tools/commands.hpp"
@@ -63,22 +63,22 @@ Json regions_json(std::span<const bodies::RegionFigures> regions) {
   return out;
 }
 
+std::vector<std::string> cells_of(const Json& row) {
+  std::vector<std::string> out;
+  for (const Json& value : row) out.push_back(value.is_null() ? "-" : for_people(value, kRegionDigits));
+  return out;
+}
+
 /// Returns the first regions as a text table.
 std::string regions_text(const Json& regions) {
   constexpr std::size_t kMaxRows = 25;
-  constexpr int kWidth = 11;
-  std::ostringstream out;
-  out << "regions:\n";
-  for (const char* title : {"region", "layer", "lids", "floor", "volume", "distance", "parent", "waste"})
-    out << std::setw(kWidth) << title;
-  out << "\n";
-  for (std::size_t i = 0; i < std::min(regions.size(), kMaxRows); ++i) {
-    for (const auto& [key, value] : regions[i].items())
-      out << std::setw(kWidth) << (value.is_null() ? "-" : for_people(value, kRegionDigits));
-    out << "\n";
-  }
-  if (regions.size() > kMaxRows) out << "  and " << regions.size() - kMaxRows << " more: --json lists all\n";
-  return out.str() +
+  std::vector<std::vector<std::string>> rows = {
+      {"region", "layer", "lids", "floor", "volume", "distance", "parent", "waste"}};
+  for (std::size_t i = 0; i < std::min(regions.size(), kMaxRows); ++i) rows.push_back(cells_of(regions[i]));
+  return "regions:\n" + io::in_columns(rows, 0) +
+         (regions.size() > kMaxRows
+              ? "  and " + std::to_string(regions.size() - kMaxRows) + " more: --json lists all\n"
+              : "") +
          "(distance: maximum distance from a point of the lids to the body. waste: expected number of faces "
          "exposed needlessly by a random point in the outermost wrapper, that is the region's share of the "
          "wrapper's volume times its floor faces; total over all regions, " +
@@ -98,22 +98,10 @@ Json trials_json(std::span<const bodies::Trial> trials) {
 }
 
 std::string trials_text(const Json& trials) {
-  constexpr int kName = 20, kWidth = 20;
-  std::ostringstream out;
-  out << "tried:\n" << std::left << std::setw(kName) << "  setting" << std::right;
-  for (const char* title :
-       {"faces per real face", "outermost faces", "wrapper/convex hull", "waste", "seconds"})
-    out << std::setw(kWidth) << title;
-  out << "\n";
-  for (const Json& t : trials)
-    for (const auto& [key, value] : t.items()) {
-      if (key == "setting")
-        out << "  " << std::left << std::setw(kName - 2) << value.get<std::string>() << std::right;
-      else
-        out << std::setw(kWidth) << (value.is_null() ? "-" : for_people(value, kRegionDigits));
-      if (key == "seconds") out << "\n";
-    }
-  return out.str();
+  std::vector<std::vector<std::string>> rows = {
+      {"setting", "faces per real face", "outermost faces", "wrapper/convex hull", "waste", "seconds"}};
+  for (const Json& t : trials) rows.push_back(cells_of(t));
+  return "tried:\n" + io::in_columns(rows);
 }
 
 /// Returns the caption of a region's picture.

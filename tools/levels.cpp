@@ -1,15 +1,15 @@
-#include <iomanip>
 #include <memory>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "bench/levels/level_report.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/io/columns.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::cli {
@@ -26,20 +26,14 @@ struct LevelsOptions {
 /// `why_none`: why the body has no levels of detail, or empty if it has some.
 std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbRep& rep,
                      const std::string& why_none) {
-  constexpr int kWidth = 12, kDigits = 4;
-  std::ostringstream out;
-  out << std::setprecision(kDigits);
-  out << rep.name() << ": " << rep.real_face_count() << " faces\n";
-  if (!why_none.empty()) {
-    out << "no levels of detail, because " << why_none << "\n";
-    return out.str();
-  }
-  for (const char* title : {"share", "tolerance", "faces", "deviation"}) out << std::setw(kWidth) << title;
-  out << "\n";
+  constexpr int kDigits = 4;
+  const std::string head = rep.name() + ": " + std::to_string(rep.real_face_count()) + " faces\n";
+  if (!why_none.empty()) return head + "no levels of detail, because " + why_none + "\n";
+  std::vector<std::vector<std::string>> rows = {{"share", "tolerance", "faces", "deviation"}};
   for (const bodies::LevelFigures& l : levels)
-    out << std::setw(kWidth) << l.share << std::setw(kWidth) << l.tolerance << std::setw(kWidth) << l.faces
-        << std::setw(kWidth) << l.bound << "\n";
-  return out.str();
+    rows.push_back({io::number_text(l.share, kDigits), io::number_text(l.tolerance, kDigits),
+                    std::to_string(l.faces), io::number_text(l.bound, kDigits)});
+  return head + io::in_columns(rows, 0);
 }
 
 int run_levels(const LevelsOptions& o, const Globals& globals) {

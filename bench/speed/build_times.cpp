@@ -15,6 +15,7 @@
 #include "bench/speed/peer_table.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/io/columns.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -354,18 +355,7 @@ std::string build_text(const BuildResults& r) {
   for (const BuiltBody& body : r.bodies) {
     std::vector<std::vector<std::string>> rows = {columns()};
     for (const Cell& c : cells_of(r, body)) rows.push_back(row_of(c));
-    std::vector<std::size_t> widths(columns().size(), 0);
-    for (const auto& row : rows)
-      if (row.size() == widths.size())
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-    for (const auto& row : rows) widths[0] = std::max(widths[0], row[0].size());
-    out += "\n" + head_of(body) + "\n";
-    for (const auto& row : rows) {
-      std::string line = "  " + row[0] + std::string(widths[0] - row[0].size(), ' ');
-      for (std::size_t i = 1; i < row.size(); ++i)
-        line += "  " + std::string(widths[i] > row[i].size() ? widths[i] - row[i].size() : 0, ' ') + row[i];
-      out += line + "\n";
-    }
+    out += "\n" + head_of(body) + "\n" + io::in_columns(rows);
   }
   return out;
 }

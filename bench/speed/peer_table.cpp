@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "bench/speed/metrics.hpp"
+#include "scenarios/io/columns.hpp"
 
 namespace lrb::bench {
 
@@ -110,45 +111,27 @@ std::string ratio_text(const PeerCell* c, double ratio) {
   return text(ratio < 9.95 ? "%.2f" : "%.0f", ratio);
 }
 
-std::string padded(const std::string& word, std::size_t width, bool left = false) {
-  const std::string room(word.size() < width ? width - word.size() : 0, ' ');
-  return left ? word + room : room + word;
-}
-
-/// Returns the width of the column of bodies: of the longest name, and two spaces.
-std::size_t set_width(const PeerTable& t) {
-  std::size_t longest = 16;
-  for (const std::string& set : t.sets) longest = std::max(longest, set.size());
-  return longest + 2;
-}
-
 std::string ratios_of(const PeerTable& t, Mode mode) {
-  constexpr std::size_t kClass = 16, kNumber = 10;
-  const std::size_t width = set_width(t);
-  std::string out =
+  const std::string head =
       mode == Mode::all_pairs
           ? "ALL PAIRS. lrbscope's time in microseconds, hot; then the others' times relative to it, hot\n"
           : "FIRST PAIR (boolean). As above\n";
-  out += padded("bodies", width, true) + padded("pose", kClass, true) + padded("pairs", kNumber) +
-         padded("ours us", kNumber) + padded("p95", kNumber);
+  std::vector<std::vector<std::string>> rows = {{"bodies", "pose", "pairs", "ours us", "p95"}};
   for (const methods::MethodInfo& m : t.methods)
-    if (m.role != Role::ours && m.present) out += "  " + m.name;
-  out += "\n";
+    if (m.role != Role::ours && m.present) rows[0].push_back(m.name);
   for (const std::string& set : t.sets)
     for (const PoseClass c : classes_of(Quantity::pairs)) {
       const PeerCell* ours = t.find(set, method_in(t.methods, Role::ours), c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
-      out += padded(set, width, true) + padded(title(c), kClass, true) +
-             padded(text("%.0f", ours->pairs), kNumber) + padded(text("%.1f", ours->hot), kNumber) +
-             padded(text("%.1f", ours->hot_p95), kNumber);
+      rows.push_back(
+          {set, title(c), text("%.0f", ours->pairs), text("%.1f", ours->hot), text("%.1f", ours->hot_p95)});
       for (const methods::MethodInfo& m : t.methods) {
         if (m.role == Role::ours || !m.present) continue;
         const PeerCell* cell = t.find(set, m.name, c, mode);
-        out += "  " + padded(ratio_text(cell, cell == nullptr ? 0 : cell->ratio), m.name.size());
+        rows.back().push_back(ratio_text(cell, cell == nullptr ? 0 : cell->ratio));
       }
-      out += "\n";
     }
-  return out + "\n";
+  return head + io::in_columns(rows, 2) + "\n";
 }
 
 /// Returns the geometric mean of a method's ratios over data sets and classes of poses.
@@ -161,24 +144,20 @@ double mean_ratio(const PeerTable& t, const std::string& method, Mode mode, bool
 }
 
 std::string means_of(const PeerTable& t) {
-  constexpr std::size_t kName = 16, kNumber = 11;
-  std::string out =
-      "GEOMETRIC MEANS of the ratios over bodies and classes of poses\n" + padded("", kName, true);
-  for (const char* head : {"all pairs", "cold", "boolean", "cold", "apart", "cold", "missed", "extra"})
-    out += padded(head, kNumber);
-  out += "\n";
+  std::vector<std::vector<std::string>> rows = {
+      {"", "all pairs", "cold", "boolean", "cold", "apart", "cold", "missed", "extra"}};
   for (const methods::MethodInfo& m : t.methods) {
+    rows.push_back({m.name});
     if (!m.present) {
-      out += padded(m.name, kName, true) + "  absent: " + m.remark + "\n";
+      rows.back().push_back("absent: " + m.remark);
       continue;
     }
-    out += padded(m.name, kName, true);
     for (const auto& [mode, apart] : {std::pair{Mode::all_pairs, false}, std::pair{Mode::first_pair, false},
                                       std::pair{Mode::all_pairs, true}})
       for (const bool cold : {false, true}) {
         const Mode compared = apart && !m.pairs ? Mode::first_pair : mode;
         const double mean = mean_ratio(t, m.name, compared, apart, cold);
-        out += padded(mean > 0 ? text("%.2f", mean) : "-", kNumber);
+        rows.back().push_back(mean > 0 ? text("%.2f", mean) : "-");
       }
     std::uint64_t missed = 0, extra = 0;
     for (const PeerCell& c : t.cells)
@@ -186,11 +165,12 @@ std::string means_of(const PeerTable& t) {
         missed += c.missed;
         extra += c.extra;
       }
-    out += padded(std::to_string(missed), kNumber) + padded(std::to_string(extra), kNumber);
-    out += missed + extra == 0 ? (m.pairs ? "  exact here" : "  right here (yes or no)") : "  not exact";
-    out += "\n";
+    for (const std::uint64_t n : {missed, extra}) rows.back().push_back(std::to_string(n));
+    rows.back().emplace_back(missed + extra > 0 ? "not exact"
+                             : m.pairs          ? "exact here"
+                                                : "right here (yes or no)");
   }
-  return out + "\n";
+  return "GEOMETRIC MEANS of the ratios over bodies and classes of poses\n" + io::in_columns(rows) + "\n";
 }
 
 /// Lists, by class of poses and mode, all other engines that are faster somewhere, with the maximum factor:
@@ -294,24 +274,24 @@ std::string in_brief(const PeerTable& t) {
 }
 
 std::string in_full(const PeerTable& t) {
-  std::string out = padded("bodies", set_width(t), true) +
-                    text("%-16s %-6s %-15s %9s %9s %9s %9s %8s %8s %9s %8s %8s\n", "pose", "mode", "method",
-                         "hot us", "p95", "cold us", "p95", "x ours", "cold", "pairs", "missed", "extra");
+  std::vector<std::vector<std::string>> rows = {{"bodies", "pose", "mode", "method", "hot us", "p95",
+                                                 "cold us", "p95", "x ours", "cold", "pairs", "missed",
+                                                 "extra"}};
   for (const PeerCell& c : t.cells) {
     if (c.questions == 0) continue;
-    out += padded(c.set, set_width(t), true) + text("%-16s %-6s %-15s ", title(c.pose_class),
-                                                    c.mode == Mode::all_pairs ? "all" : "first",
-                                                    c.method.c_str());
-    if (c.answered > 0)
-      out += text("%9.1f %9.1f %9.1f %9.1f %8.2f %8.2f %9.1f %8llu %8llu", c.hot, c.hot_p95, c.cold,
-                  c.cold_p95, c.ratio, c.cold_ratio, c.pairs, static_cast<unsigned long long>(c.missed),
-                  static_cast<unsigned long long>(c.extra));
+    rows.push_back({c.set, title(c.pose_class), c.mode == Mode::all_pairs ? "all" : "first", c.method});
+    std::vector<std::string>& row = rows.back();
+    if (c.answered > 0) {
+      for (const double x : {c.hot, c.hot_p95, c.cold, c.cold_p95}) row.push_back(text("%.1f", x));
+      for (const double x : {c.ratio, c.cold_ratio}) row.push_back(text("%.2f", x));
+      row.push_back(text("%.1f", c.pairs));
+      for (const std::uint64_t n : {c.missed, c.extra}) row.push_back(std::to_string(n));
+    }
     if (c.answered < c.questions)
-      out += text(" %zu of %zu answered, %zu crashed, %zu timed out", c.answered, c.questions, c.crashed,
-                  c.timed_out);
-    out += "\n";
+      row.push_back(text("%zu of %zu answered, %zu crashed, %zu timed out", c.answered, c.questions,
+                         c.crashed, c.timed_out));
   }
-  return out;
+  return io::in_columns(rows, 4);
 }
 
 }  // namespace lrb::bench

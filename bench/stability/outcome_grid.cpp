@@ -4,6 +4,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "scenarios/io/columns.hpp"
 #include "scenarios/io/files.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
@@ -207,18 +208,9 @@ std::vector<std::vector<std::string>> rows_of(const Grid& grid) {
 }  // namespace
 
 std::string table(const Grid& grid) {
-  const auto rows = rows_of(grid);
-  std::vector<std::size_t> width(rows[0].size());
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
   std::ostringstream out;
   out.exceptions(std::ios::badbit);
-  for (const auto& row : rows) {
-    std::string line = row[0] + std::string(width[0] - row[0].size(), ' ');
-    for (std::size_t i = 1; i < row.size(); ++i)
-      line += std::string(2 + width[i] - row[i].size(), ' ') + row[i];
-    out << line.substr(0, line.find_last_not_of(' ') + 1) << "\n";
-  }
+  out << io::in_columns(rows_of(grid));
   out << "\nIn each cell: failures/cases answered, @ the lowest difficulty (0 benign, " << kDifficulties - 1
       << " degenerate) with a failure.\n";
   for (const workers::MethodColumn& m : grid.methods)

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/speed/metrics.hpp"
+#include "scenarios/io/columns.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/core/file.hpp>
@@ -230,30 +231,16 @@ std::vector<std::size_t> costliest(const Tail& tail, std::size_t most) {
 }
 
 std::string table_of(const std::vector<Tail>& tails) {
-  const auto padded = [](const std::string& text) {
-    constexpr std::size_t kWidth = 10;
-    return std::string(text.size() < kWidth ? kWidth - text.size() : 1, ' ') + text;
-  };
-  std::size_t widest = 6, words = 4;
-  for (const Tail& tail : tails) {
-    widest = std::max(widest, tail.engine.size());
-    for (const Percentiles& p : percentiles(tail)) words = std::max(words, p.what.size());
-  }
-  const auto left = [](const std::string& text, std::size_t width) {
-    return text + std::string(width + 2 - text.size(), ' ');
-  };
-  std::string out = left("engine", widest) + left("", words);
-  for (const char* title : {"p50", "p90", "p99", "max", "poses"}) out += padded(title);
-  out += "\n";
+  std::vector<std::vector<std::string>> rows = {{"engine", "", "p50", "p90", "p99", "max", "poses"}};
   for (const Tail& tail : tails)
     for (const Percentiles& p : percentiles(tail)) {
-      out += left(tail.engine, widest) +
-             left(p.what == "box_tests" || p.what == "face_tests" ? io::in_words(p.what) : p.what, words);
+      rows.push_back(
+          {tail.engine, p.what == "box_tests" || p.what == "face_tests" ? io::in_words(p.what) : p.what});
       for (const double x : {p.p50, p.p90, p.p99, p.max})
-        out += padded(p.what == "us" ? io::number_text(x, 4) : io::fixed_text(x, 0));
-      out += padded(std::to_string(p.count)) + "\n";
+        rows.back().push_back(p.what == "us" ? io::number_text(x, 4) : io::fixed_text(x, 0));
+      rows.back().push_back(std::to_string(p.count));
     }
-  return out;
+  return io::in_columns(rows, 2);
 }
 
 std::vector<nlohmann::ordered_json> json_of(const std::vector<Tail>& tails) {

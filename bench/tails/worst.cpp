@@ -8,6 +8,7 @@
 #include "bench/speed/data_set.hpp"
 #include "bench/tails/tails.hpp"
 #include "bench/workers/worker_json.hpp"
+#include "scenarios/io/columns.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/core/file.hpp>
@@ -122,21 +123,16 @@ Worst find_worst(Engine& engine, const PoseSpace& space, Goal goal, const Search
 }
 
 std::string table_of(const Worst& worst) {
-  constexpr std::size_t kWidth = 12;
-  const auto row = [](const std::vector<std::string>& cells) {
-    std::string out;
-    for (const std::string& cell : cells)
-      out += std::string(cell.size() < kWidth ? kWidth - cell.size() : 1, ' ') + cell;
-    return out + "\n";
-  };
   const bool time = worst.goal == Goal::time;
-  std::string out = row({time ? "us" : "cost", "tests", "box tests", "face tests", "pairs", "query"});
+  std::vector<std::vector<std::string>> rows = {
+      {time ? "us" : "cost", "tests", "box tests", "face tests", "pairs", "query"}};
   for (const QueriedTrial& t : worst.poses) {
     const auto& kinds = t.answer.kinds;
-    out += row({cost_text(t.trial.cost), count_or_dash(t.answer.tests),
-                kinds ? std::to_string(kinds->boxes) : "-", kinds ? std::to_string(kinds->faces) : "-",
-                std::to_string(t.answer.pairs), std::to_string(t.trial.number)});
+    rows.push_back({cost_text(t.trial.cost), count_or_dash(t.answer.tests),
+                    kinds ? std::to_string(kinds->boxes) : "-", kinds ? std::to_string(kinds->faces) : "-",
+                    std::to_string(t.answer.pairs), std::to_string(t.trial.number)});
   }
+  std::string out = io::in_columns(rows, 0);
   if (worst.at_random)
     out += "At random, " + std::to_string(worst.options.budget) + " queries find " +
            cost_text(worst.at_random->highest(worst.options.budget)) + ".\n";

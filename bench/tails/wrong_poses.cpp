@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenarios/io/columns.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/core/file.hpp>
@@ -263,16 +264,9 @@ std::vector<std::vector<std::string>> rows_of(const WrongSearch& search) {
 }  // namespace
 
 std::string table_of(const WrongSearch& search) {
-  std::string out;
-  const auto add = [&](const std::vector<std::string>& cells) {
-    constexpr std::size_t kWidth = 15;
-    for (const std::string& cell : cells)
-      out += std::string(cell.size() < kWidth ? kWidth - cell.size() : 1, ' ') + cell;
-    out += "\n";
-  };
-  add(kKindColumns);
-  for (const auto& row : rows_of(search)) add(row);
-  return out;
+  std::vector<std::vector<std::string>> rows = rows_of(search);
+  rows.insert(rows.begin(), kKindColumns);
+  return io::in_columns(rows);
 }
 
 std::vector<nlohmann::ordered_json> json_of(const WrongSearch& search) {

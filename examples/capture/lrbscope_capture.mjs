@@ -1,11 +1,14 @@
 // Records collision queries in JavaScript, in the format of lrbscope_capture.h. With shapecast() of three-mesh-bvh:
 //
 //   const capture = new Capture("three-mesh-bvh 0.9"), cow = capture.meshBVH("cow", bvh);
-//   const box = capture.shape("box", new THREE.BoxGeometry());      // for pictures
+//   const box = capture.meshBVH("box", new MeshBVH(new THREE.BoxGeometry())); // for pictures; tested as a whole
 //   capture.begin(SHAPE, cow, null, box, null);
-//   const met = bvh.shapecast(capture.watched(callbacks));
+//   const met = bvh.shapecast({
+//     intersectsBounds(box, isLeaf, score, depth, node) { const is = ...; capture.node(node, 0, is); return is; },
+//     intersectsTriangle(triangle, number) { const is = ...; capture.prim(number, 0, is); return is; },
+//   });
 //   capture.end(met ? INTERSECTING : SEPARATE, met ? 1 : 0);
-//   fs.writeFileSync("run.lrbcap", capture.close());                // or a Blob to download
+//   fs.writeFileSync("run.lrbcap", capture.close()); // or a Blob to download
 //
 // MIT licence, as lrbscope_capture.h. docs/capture.md describes calls and format.
 
@@ -56,12 +59,6 @@ export class Capture {
     });
     return this.tree(name, positions(bvh.geometry), corners(bvh.geometry), nodes);
   }
-  shape(name, geometry) {
-    geometry.computeBoundingBox();
-    const { min, max } = geometry.boundingBox, triangles = corners(geometry);
-    const root = { box: [...min, ...max], children: [], prims: upTo(triangles.length / 3) };
-    return this.tree(name, positions(geometry), triangles, [root]);
-  }
 
   // Record a query, its tests and its answer. Poses: 3x4 numbers, row by row; null: the identity. Tree 0: any shape.
   begin(kind, treeA, poseA, treeB, poseB) {
@@ -76,18 +73,6 @@ export class Capture {
     this.#query = null;
     if (events) this.#chunk("EVTS", u32([this.#queries, 1, 0, 0, events, 0]), Uint8Array.from(bytes));
     this.#chunk("QRYE", u64([took]), u32([this.#queries, verdict]), u64([pairs, events, 0]));
-  }
-  // Returns callbacks of shapecast() that also record their tests, with a shape that is one node and one triangle. If
-  // intersectsTriangle returns false after a hit, to find all, leave it out and call prim(number, 0, hit) in it.
-  watched(callbacks) {
-    const recorded = (kind, at, call) => (...of) => { // of[at]: the number of the node or triangle
-      const result = call(...of);
-      this.#event(kind, of[at], 0, result);
-      return result;
-    };
-    const out = { ...callbacks, intersectsBounds: recorded(0, 4, callbacks.intersectsBounds) };
-    if (callbacks.intersectsTriangle) out.intersectsTriangle = recorded(1, 1, callbacks.intersectsTriangle);
-    return out;
   }
 
   // Return the bytes since the last call: take() to write them while the program runs, close() at the end.

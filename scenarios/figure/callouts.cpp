@@ -60,12 +60,16 @@ double length(const AlignedBox2d& box) {
   return box.sizes().norm();
 }
 
-/// Returns true if two segments intersect.
+/// Returns true if two segments intersect, also at their ends.
 bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
   const auto turn = [](const Vector2d& p, const Vector2d& q, const Vector2d& r) {
     return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
   };
-  return turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
+  const auto around = [](const Vector2d& p, const Vector2d& q) {
+    return AlignedBox2d(p.cwiseMin(q), p.cwiseMax(q));
+  };
+  return turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0 &&
+         around(a, b).intersects(around(c, d));
 }
 
 /// Returns true if a segment crosses a diagonal of a box.
@@ -209,12 +213,15 @@ Vector3d anchor(const Target& target, const LrbRep& rep, const Pose& pose) {
 }
 
 std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const AlignedBox2d& panel,
-                                         const render::Image& content, const std::vector<Vector2d>& anchors,
+                                         const render::Image& content,
+                                         const std::vector<std::vector<Vector2d>>& frames,
+                                         const std::vector<Vector2d>& anchors,
                                          const std::vector<Vector2d>& sizes) {
-  constexpr double kStep = 1.5, kFree = 3;  // between candidates; from a text to any anchor: points
-  // Costs: of a text entirely over content; of a leader as long as the panel's diagonal; of leaders that
-  // cross each other, or a text; of a text over an anchor; of a text over another.
-  constexpr double kCovering = 12, kLength = 0.8, kCrossing = 1, kOnAnchor = 15, kOnText = 40;
+  constexpr double kFree = 3;  // points from a text to any anchor
+  // Costs: of a text entirely over content; of a leader as long as the panel's diagonal; of a leader that
+  // crosses a text, or in the first turn another leader; of a text over an anchor; of a text over another or
+  // over a frame; of leaders that cross in later turns.
+  constexpr double kCovering = 12, kLength = 0.8, kCrossing = 1, kOnAnchor = 15, kOnText = 40, kCrossed = 1e4;
   // Step 1: the sums of covered pixels above and to the left, for the share of content under any box.
   const int w = content.width(), h = content.height();
   std::vector<int> sums(static_cast<std::size_t>(w + 1) * (h + 1), 0);
@@ -232,15 +239,20 @@ std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const AlignedB
     const int area = std::max((x1 - x0) * (y1 - y0), 1);  // with the pixels that are outside of the content
     return static_cast<double>(upto(x1, y1) - upto(x0, y1) - upto(x1, y0) + upto(x0, y0)) / area;
   };
-  // Step 2: one text after the other, at the place of least cost.
+  // Step 2: one text after the other, at the place of least cost. In later turns they are placed again,
+  // because the first ones are in the way of others.
+  constexpr std::size_t kTurns = 4;
   std::vector<CalloutPlace> out;
   std::vector<AlignedBox2d> texts;
-  for (std::size_t i = 0; i < anchors.size(); ++i) {
+  for (std::size_t place = 0; place < kTurns * anchors.size(); ++place) {
+    const std::size_t i = place % anchors.size();
+    const double crossing = place == i ? kCrossing : kCrossed;
     const Vector2d half = 0.5 * sizes[i], low = box.min() + half, room = (box.sizes() - sizes[i]).cwiseMax(0);
     CalloutPlace best;
     AlignedBox2d best_text;
     double least = std::numeric_limits<double>::infinity();
-    const int columns = 1 + static_cast<int>(room.x() / kStep), rows = 1 + static_cast<int>(room.y() / kStep);
+    const int columns = 1 + static_cast<int>(room.x() / kPlaceStep),
+              rows = 1 + static_cast<int>(room.y() / kPlaceStep);
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) {
         const Vector2d share(columns > 1 ? column / (columns - 1.0) : 0.5,
@@ -252,16 +264,20 @@ std::vector<CalloutPlace> place_callouts(const AlignedBox2d& box, const AlignedB
         double cost = kCovering * share_covered + kLength * (end - anchors[i]).norm() / length(box);
         for (const Vector2d& a : anchors)
           if ((nearest_point(text, a) - a).norm() < kFree) cost += kOnAnchor;
+        for (const std::vector<Vector2d>& frame : frames)
+          for (std::size_t k = 0; k < frame.size(); ++k)
+            if (crosses(frame[k], frame[(k + 1) % frame.size()], text)) cost += kOnText;
         for (std::size_t k = 0; k < out.size(); ++k) {
+          if (k == i) continue;
           if (texts[k].intersects(text)) cost += kOnText;
-          if (cross(end, anchors[i], out[k].leader, anchors[k])) cost += kCrossing;
+          if (cross(end, anchors[i], out[k].leader, anchors[k])) cost += crossing;
           if (crosses(end, anchors[i], texts[k]) || crosses(out[k].leader, anchors[k], text))
             cost += kCrossing;
         }
         if (cost < least) least = cost, best = {at, end, share_covered}, best_text = text;
       }
-    out.push_back(best);
-    texts.push_back(best_text);
+    if (place == i) out.emplace_back(), texts.emplace_back();
+    out[i] = best, texts[i] = best_text;
   }
   return out;
 }

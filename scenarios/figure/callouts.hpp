@@ -62,11 +62,15 @@ struct CalloutPlace {
   double covered = 0;            ///< share of the text that is over content
 };
 
-/// Chooses places for texts in a box: beside the content, close to their anchors, without overlaps.
-/// `content`: a picture of the part `panel` of the box, transparent where it is empty. `anchors`, `sizes`:
-/// one for each text. Each size must be smaller than the box.
+inline constexpr double kPlaceStep = 1.5;  ///< greatest step between places that are tried, points
+
+/// Chooses places for texts in a box: beside the content, close to their anchors, without overlaps, and with
+/// leaders that do not cross.
+/// `content`: a picture of the part `panel` of the box, transparent where it is empty. `frames`: closed lines
+/// that texts do not cover. `anchors`, `sizes`: one for each text. Each size must be smaller than the box.
 std::vector<CalloutPlace> place_callouts(const Eigen::AlignedBox2d& box, const Eigen::AlignedBox2d& panel,
                                          const render::Image& content,
+                                         const std::vector<std::vector<Eigen::Vector2d>>& frames,
                                          const std::vector<Eigen::Vector2d>& anchors,
                                          const std::vector<Eigen::Vector2d>& sizes);
 

@@ -387,9 +387,13 @@ class FigureJob {
     raster.background.reset();
     const render::Image content =
         rasterizer_.draw(list, part_of(camera(*piece.view, piece.moment), piece.shown), raster);
+    std::vector<render::Canvas::Loop> frames;
+    for (const Piece& p : pieces_)
+      if (piece.inset == nullptr && p.inset != nullptr && p.panel == piece.panel)
+        for (const render::Canvas::Loop& line : frame_of(piece, p)) frames.push_back(line);
     const Space& space = piece.place.space;
     places = place_callouts({box.min() - Vector2d(0, space.above), box.max() + Vector2d(0, space.below)}, box,
-                            content, anchors, sizes);
+                            content, frames, anchors, sizes);
     return out;
   }
 
@@ -408,7 +412,7 @@ class FigureJob {
         for (std::size_t i = 0; i < texts.places.size(); ++i) {
           if (texts.places[i].covered <= kCoveringText) continue;
           const bool above = texts.anchors[i].y() < piece.place.box.center().y();
-          (above ? space.above : space.below) += layout_.text_height;
+          (above ? space.above : space.below) += layout_.text_height + kPlaceStep;
           any = true;
           break;
         }
@@ -437,23 +441,25 @@ class FigureJob {
                    style().paper});
   }
 
-  /// Paints the frame of an inset in its panel, and the lines that connect both.
-  void paint_frame(render::Canvas& canvas, const Piece& panel, const Piece& inset) const {
+  /// Returns the frame of an inset in its panel, and the two lines that connect both.
+  static std::array<render::Canvas::Loop, 3> frame_of(const Piece& panel, const Piece& inset) {
     const auto on_paper = [&](const Vector2d& x) {
       return Vector2d(panel.place.box.min() + (x - panel.shown.min()) * panel.scale);
     };
     const AlignedBox2d frame(on_paper(inset.shown.min()), on_paper(inset.shown.max())),
         &box = inset.place.box;
+    return {render::corners(frame),
+            {Vector2d(frame.min().x(), frame.max().y()), box.min()},
+            {frame.max(), Vector2d(box.max().x(), box.min().y())}};
+  }
+
+  void paint_frame(render::Canvas& canvas, const Piece& panel, const Piece& inset) const {
     const double width = std::max(kHairline, 1.5 * figure_.line_width);
-    const std::array<render::Canvas::Loop, 2> sides = {
-        {{Vector2d(frame.min().x(), frame.max().y()), box.min()},
-         {frame.max(), Vector2d(box.max().x(), box.min().y())}}};
     // The halos of all lines lie under all lines.
-    for (const double halo : {3 * width, 0.0}) {
-      const render::Pen pen{halo > 0 ? style().paper : style().ink, halo > 0 ? halo : width, 0};
-      canvas.stroke(render::corners(frame), true, pen);
-      for (const render::Canvas::Loop& side : sides) canvas.stroke(side, false, pen);
-    }
+    for (const double halo : {3 * width, 0.0})
+      for (const render::Canvas::Loop& line : frame_of(panel, inset))
+        canvas.stroke(line, line.size() > 2,
+                      {halo > 0 ? style().paper : style().ink, halo > 0 ? halo : width, 0});
   }
 
   // ---- panels that look alike

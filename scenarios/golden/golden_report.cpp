@@ -221,16 +221,13 @@ std::string answers_text(const GoldenResult& r) {
   return "differ in " + std::to_string(steps.size()) + " of " + render::counted(r.steps, "step", "steps");
 }
 
-/// Returns "132 events", of a crowd "132 queries".
-std::string event_count(const GoldenResult& r) {
-  return r.spec.is_crowd ? render::counted(r.events, "query", "queries")
-                         : render::counted(r.events, "event", "events");
-}
-
+/// Returns "132 events equal", of a crowd "132 queries equal".
 std::string events_text(const GoldenResult& r) {
   if (!r.verdict.rejection.empty()) return r.verdict.rejection;
   if (!r.spec.compares(Level::events)) return "not compared";
-  return r.verdict.divergence ? r.verdict.divergence->message() : event_count(r) + ": equal";
+  return (r.spec.is_crowd ? render::counted(r.events, "query", "queries")
+                          : render::counted(r.events, "event", "events")) +
+         (r.verdict.divergence ? " differ" : " equal");
 }
 
 /// Returns why a test failed, on one line; empty if it passed.
@@ -354,8 +351,7 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
     for (const ImageVerdict& image : v.images) images_failed += image.passed ? 0 : 1;
     events += r.events;
     scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", cause_text(r), answers_text(r),
-                              v.divergence ? event_count(r) + ": differ" : events_text(r), work_text(r),
-                              images_text(r), io::fixed_text(r.seconds, 1)});
+                              events_text(r), work_text(r), images_text(r), io::fixed_text(r.seconds, 1)});
     scenarios.targets.push_back(!v.passed()             ? "#" + r.name
                                 : r.comparisons.empty() ? std::string()
                                                         : "#" + r.comparisons.front().id);
@@ -408,7 +404,7 @@ std::string result_text(const GoldenResult& r) {
   std::string head = v.answers_differ                  ? "answers " + answers_text(r)
                      : v.divergence                    ? "events or counters differ"
                      : more_work                       ? "more work than allowed"
-                     : r.spec.compares(Level::events)  ? event_count(r) + " equal"
+                     : r.spec.compares(Level::events)  ? events_text(r)
                      : r.spec.compares(Level::answers) ? "answers of " + answers_text(r)
                      : r.spec.compares(Level::work)    ? "work " + work_text(r)
                                                        : "answers not compared";

@@ -1,7 +1,6 @@
 /// The meaning of each column and key figure on the page of a run, for tooltips.
 
-#include <algorithm>
-#include <iterator>
+#include <string>
 #include <utility>
 
 #include "scenarios/run/run_charts.hpp"
@@ -16,7 +15,6 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     {"Intersecting pairs", "pairs of intersecting faces, one of A and one of B; none is missed"},
     {"Contact regions", "connected groups of intersecting pairs"},
     {"First contact", "the step, with fraction, at which the surfaces first touch; proven"},
-    {"Face tests", "exact tests of two triangles (2D: segments)"},
     {"Refined regions", "regions that the query removed from the wrappers because the other body is near"},
     {"Real faces", "faces of the bodies themselves, without pseudo faces"},
     {"Pseudo faces", "faces of the wrappers that are not faces of the body"},
@@ -24,10 +22,6 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     {"Regions", "spaces between wrappers and body, removed one by one"},
     {"Without wrapper", "bodies without regions: the query compares all their faces"},
     {"Error bound", "largest deviation of the compared wrappers from the bodies, in mesh units; proven"},
-    {"Distance", "smallest distance of the two surfaces, in mesh units; proven bounds"},
-    {"Near pairs", "pairs of triangles that are closer than the requested distance"},
-    {"Contact manifolds", "groups of contact points with one normal"},
-    {"Contact kind", "clash class of the contact"},
     {"Penetration depth", "length of the shortest translation of B that separates the bodies; proven bounds"},
     {"Shared volume", "volume common to both bodies; proven bounds"},
     {"Passes", "passes of the builder that made regions"},
@@ -37,8 +31,6 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     {"Right pairs", "pairs of triangles that the engine found and that intersect"},
     {"Missed pairs", "pairs of triangles that intersect and that the engine did not find"},
     {"False pairs", "pairs of triangles that the engine found and that are disjoint"},
-    {"Tests of volumes", "tests of two bounding volumes by the engine"},
-    {"Tests of triangles", "tests of two triangles by the engine"},
     // Columns.
     {"step", "number of the time step"},
     {"query", "number of the query"},
@@ -121,10 +113,12 @@ std::string_view meaning_for_engines(std::string_view name) {
 }
 
 std::string_view meaning_of_column(std::string_view name) {
-  const auto* const end = std::end(kMeaningOfNames);
-  const auto* const at =
-      std::find_if(std::begin(kMeaningOfNames), end, [&](const auto& entry) { return entry.first == name; });
-  return at == end ? std::string_view() : at->second;
+  std::string column(name);  // a key figure without its own entry is named like a column
+  if (!column.empty() && column[0] >= 'A' && column[0] <= 'Z') column[0] += 'a' - 'A';
+  for (const std::string_view key : {name, std::string_view(column)})
+    for (const auto& [entry, meaning] : kMeaningOfNames)
+      if (entry == key) return meaning;
+  return {};
 }
 
 }  // namespace lrb::run

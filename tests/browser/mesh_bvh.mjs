@@ -21,30 +21,30 @@ function record() {
     return { bvh, tree: capture.meshBVH(indirect ? "indirect" : "direct", bvh) };
   });
   const spheres = [[9, 1, true], [1, 0.5, true], [1, 0.5, false], [1.2, 2, false]]; // x of the centre, radius, stops at the first triangle
-  const balls = spheres.map(([, radius]) => capture.shape("ball", new THREE.SphereGeometry(radius, 16, 8)));
+  const balls = spheres.map(([, radius]) => capture.meshBVH("ball", new MeshBVH(new THREE.SphereGeometry(radius, 16, 8))));
   for (const { bvh, tree } of knots)
     for (const [i, [x, radius, first]] of spheres.entries()) {
       const sphere = new THREE.Sphere(new THREE.Vector3(x, 0, 0), radius);
       const query = { nodes: [], triangles: [], boxes: [] };
       capture.begin(SHAPE, tree, null, balls[i], [1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0]);
-      const bounds = {
+      const met = bvh.shapecast({
         boundsTraverseOrder: first ? undefined : (box) => box.distanceToPoint(sphere.center),
         intersectsBounds(box, isLeaf, score, depth, node) {
           const furthest = box.getCenter(new THREE.Vector3()).sub(sphere.center), size = box.getSize(new THREE.Vector3());
           for (const k of "xyz") furthest[k] = Math.abs(furthest[k]) + size[k] / 2;
           const result = furthest.length() <= radius ? CONTAINED : sphere.intersectsBox(box);
+          capture.node(node, 0, result);
           query.nodes.push([node, Boolean(result)]);
           query.boxes.push([...box.min, ...box.max]);
           return result;
         },
-      };
-      const intersectsTriangle = (triangle, number) => {
-        const result = triangle.intersectsSphere(sphere);
-        query.triangles.push([number, result]);
-        if (!first) capture.prim(number, 0, result); // which watched() cannot know
-        return result && first;
-      };
-      const met = bvh.shapecast(first ? capture.watched({ ...bounds, intersectsTriangle }) : { ...capture.watched(bounds), intersectsTriangle });
+        intersectsTriangle(triangle, number) {
+          const result = triangle.intersectsSphere(sphere);
+          capture.prim(number, 0, result);
+          query.triangles.push([number, result]);
+          return result && first;
+        },
+      });
       const pairs = query.triangles.filter(([, result]) => result).length;
       capture.end(met || pairs ? INTERSECTING : SEPARATE, pairs);
       found.queries.push(query);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include <doctest/doctest.h>
 
@@ -16,6 +17,7 @@
 #include "tests/support/pixels.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
+#include <lrbscope/core/random.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
 
@@ -51,6 +53,23 @@ Block squares(std::size_t n) {
   Block block;
   for (std::size_t i = 0; i < n; ++i) block.seen.emplace_back(Vector2d(0, 0), Vector2d(100, 80));
   return block;
+}
+
+/// Returns the bounding boxes of the paths in an SVG file that have an attribute.
+std::vector<AlignedBox2d> boxes_of(const std::string& svg, const std::string& attribute) {
+  std::vector<AlignedBox2d> out;
+  std::istringstream lines(svg);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t begin = line.find(" d=\"M");
+    if (begin == std::string::npos || line.find(attribute) == std::string::npos) continue;
+    std::string numbers = line.substr(begin + 4, line.find('"', begin + 4) - begin - 4);
+    for (char& c : numbers)
+      if (c >= 'A' && c <= 'Z') c = ' ';
+    std::istringstream values(numbers);
+    out.emplace_back();
+    for (Vector2d x; values >> x.x() >> x.y();) out.back().extend(x);
+  }
+  return out;
 }
 
 LayoutOptions at_width(double width) {
@@ -399,7 +418,7 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
   for (int y = 30; y < 70; ++y)
     for (int x = 30; x < 70; ++x) content.at(x, y) = render::kBlack;
   const std::vector<Vector2d> anchors = {{50, 60}, {52, 60}, {70, 80}}, sizes(3, Vector2d(25, 8));
-  const std::vector<CalloutPlace> places = place_callouts(box, box, content, anchors, sizes);
+  const std::vector<CalloutPlace> places = place_callouts(box, box, content, {}, anchors, sizes);
   const AlignedBox2d centre(Vector2d(40, 50), Vector2d(80, 90));
   for (std::size_t i = 0; i < places.size(); ++i) {
     const AlignedBox2d text(places[i].text - sizes[i] / 2, places[i].text + sizes[i] / 2);
@@ -410,13 +429,62 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
     for (std::size_t k = 0; k < i; ++k)
       CHECK((places[i].text - places[k].text).cwiseAbs().cwiseQuotient(sizes[i]).maxCoeff() >= 1);
   }
+  const std::vector<std::vector<Vector2d>> frames = {{{95, 20}, {95, 120}}};
+  CHECK(std::abs(places[2].text.x() - 95) < sizes[2].x() / 2);
+  for (const CalloutPlace& p : place_callouts(box, box, content, frames, anchors, sizes))
+    CHECK(std::abs(p.text.x() - 95) > sizes[0].x() / 2);
   const render::Image full(100, 100, render::kBlack);
-  CHECK(place_callouts(box, box, full, anchors, sizes)[0].covered == 1);
+  CHECK(place_callouts(box, box, full, {}, anchors, sizes)[0].covered == 1);
   const AlignedBox2d larger(box.min() - Vector2d(0, 12), box.max() + Vector2d(0, 24));
-  for (const CalloutPlace& p : place_callouts(larger, box, full, anchors, sizes)) {
+  for (const CalloutPlace& p : place_callouts(larger, box, full, {}, anchors, sizes)) {
     CHECK(p.covered == 0);
     CHECK(box.exteriorDistance(p.text) > 0);
   }
+}
+
+TEST_CASE("leaders of callouts with close anchors do not cross") {
+  const auto side = [](const Vector2d& p, const Vector2d& q, const Vector2d& r) {
+    return (q - p).x() * (r - p).y() - (q - p).y() * (r - p).x() > 0;
+  };
+  const AlignedBox2d box(Vector2d(0, 0), Vector2d(120, 90));
+  render::Image content(120, 90, render::kTransparent);
+  for (int y = 30; y < 90; ++y)
+    for (int x = 0; x < 120; ++x) content.at(x, y) = render::kBlack;
+  Random random(1);
+  for (int round = 0; round < 40; ++round) {
+    std::vector<Vector2d> anchors, sizes;
+    for (int i = 0; i < 5; ++i) {
+      anchors.emplace_back(random.in(40, 80), random.in(35, 55));
+      sizes.emplace_back(random.in(12, 40), 8);
+    }
+    const std::vector<CalloutPlace> places = place_callouts(box, box, content, {}, anchors, sizes);
+    for (std::size_t i = 0; i < anchors.size(); ++i) {
+      CHECK(places[i].covered == 0);
+      for (std::size_t k = 0; k < i; ++k) {
+        const Vector2d &a = anchors[i], &b = places[i].leader, &c = anchors[k], &d = places[k].leader;
+        CHECK_FALSE((side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b)));
+      }
+    }
+  }
+}
+
+TEST_CASE("panels whose bodies leave no room for callouts get lines above or below them") {
+  const Shipped s("figure1");
+  FigureSpec spec;
+  spec.format = FigureSpec::Format::svg;
+  spec.choice.panels = 2;
+  const auto height = [&](const std::vector<std::string>& callouts) {
+    spec.callouts.clear();
+    for (const std::string& c : callouts) spec.callouts.push_back(parse_callout(c));
+    const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
+    CHECK(svg.notes.empty());  // no text covers the bodies
+    return std::stod(svg.bytes.substr(svg.bytes.find(" height=\"") + 9));
+  };
+  const double bare = height({}), line = height({"a:face:2=a long text at the face"}) - bare;
+  CHECK(line > 3);  // mm: a text of 8 points
+  CHECK(height({"a:face:2"}) == bare);
+  CHECK(height({"a:face:2=a long text at the face", "a:face:3=a long text at a face"}) ==
+        doctest::Approx(bare + 2 * line).epsilon(0.01));
 }
 
 TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in the panel as well") {
@@ -434,14 +502,36 @@ TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in 
     CHECK(inset.max().y() <= layout.height);
     CHECK(inset.sizes().x() == doctest::Approx(inset.sizes().y()));
   }
-  const Figure plain = draw_figure(s.run, {}, spec, run::kSilent);
+  render::FrameSpec print;
+  print.style = render::StyleName::print;
+  const Figure plain = draw_figure(s.run, print, spec, run::kSilent);
   spec.insets = {parse_inset("b:contact:3"), parse_inset("a:region:b0")};
   spec.callouts = {parse_callout("face:b2"), parse_callout("a:region:b0=end")};
-  const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
+  const Figure svg = draw_figure(s.run, print, spec, run::kSilent);
   CHECK(svg.notes.empty());
   CHECK(count(svg.bytes, "<clipPath") == count(plain.bytes, "<clipPath") + 2);
   CHECK(count(svg.bytes, "aria-label=\"face 2 of B\"") == 2);
   CHECK(count(svg.bytes, "aria-label=\"end\"") == 1);
+  // By panel: a frame, two lines from it to the inset, and the inset's rim. Texts are legible and in one
+  // part.
+  const std::vector<AlignedBox2d> lines = boxes_of(svg.bytes, "stroke=\"#000000\" stroke-width=\"0.52\"");
+  REQUIRE(lines.size() == 8);
+  for (const std::size_t i : {0, 4}) {
+    const AlignedBox2d &frame = lines[i], &left = lines[i + 1], &right = lines[i + 2], &rim = lines[i + 3];
+    CHECK(rim.sizes().x() > 2 * frame.sizes().x());
+    for (const AlignedBox2d& line : {left, right}) {
+      CHECK(line.min().y() == frame.max().y());
+      CHECK(line.max().y() == rim.min().y());
+    }
+    CHECK(left.min().x() == std::min(frame.min().x(), rim.min().x()));
+    CHECK(right.max().x() == std::max(frame.max().x(), rim.max().x()));
+    for (const char* text : {"aria-label=\"end\"", "aria-label=\"face 2 of B\""})
+      for (const AlignedBox2d& letters : boxes_of(svg.bytes, text)) {
+        CHECK(letters.sizes().y() > 4);
+        for (const AlignedBox2d& part : {frame, rim})
+          CHECK((part.contains(letters) || !part.intersects(letters)));
+      }
+  }
   CHECK(count(svg.caption, " (inset: contact, 3 times as large)") == 1);
   CHECK(count(svg.caption, " (inset: region 0 of B, ") == 1);
   spec.vector_faces = 10;

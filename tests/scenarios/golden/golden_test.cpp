@@ -185,6 +185,9 @@ TEST_CASE("goldens: a table for CI has failures first; a repeated failure is cha
   CHECK(table.find("### Goldens: 1 of 1 failed\n") == 0);
   CHECK(table.find("| balls | **failed** | ") != std::string::npos);
   CHECK(table.find("the scenario changed: motion.from: ") != std::string::npos);
+  CHECK(has(table, " events differ | 2 of 2 differ | "));
+  CHECK(has(slurp(folder / "out/golden/index.html"), " events differ"));
+  CHECK(has(test::run(folder, {"golden", "list"}).out, "\n1 golden, "));
   CHECK(has(table, "src=\"out/golden/balls/frame_1.expected.png\""));  // thumbnails, from beside the table
   CHECK(fs::exists(folder / "out/golden/balls/frame_1.expected.png"));
   CHECK(folder.test({"--markdown", "sub/summary.md", "--picture-url", "https://ci/7"}).code == 1);
