@@ -52,9 +52,8 @@ class PairMeter {
       }
   }
 
-  /// Calls near(pair) for the pairs whose distance is at most `within`, in their order.
-  template <class Near>
-  void measure(std::span<const SimplexPair> pairs, Near&& near) {
+  /// Appends the pairs whose distance is at most `within`, in their order.
+  void measure(std::span<const SimplexPair> pairs, std::vector<NearPair>& near) {
     for (; !pairs.empty(); pairs = pairs.subspan(std::min(pairs.size(), kAtOnce)))
       measure_some(pairs.first(std::min(pairs.size(), kAtOnce)), near);
   }
@@ -64,8 +63,7 @@ class PairMeter {
  private:
   static constexpr std::size_t kEights = 8, kAtOnce = 8 * kEights;
 
-  template <class Near>
-  void measure_some(std::span<const SimplexPair> pairs, Near&& near) {
+  void measure_some(std::span<const SimplexPair> pairs, std::vector<NearPair>& near) {
     kernel_.pairs = eights_;
     kernel_.block_count = static_cast<std::uint32_t>((pairs.size() + 7) / 8);
     for (std::size_t i = 0; i < 8 * kernel_.block_count; ++i) {
@@ -79,11 +77,13 @@ class PairMeter {
       const EightPairsMeasured& eight = eights_[i / 8];
       const double lower = eight.lower[i % 8], upper = eight.upper[i % 8];
       if (lower > kernel_.within) continue;
-      NearPair pair{pairs[i].a, pairs[i].b, exact::Meet::disjoint, lower, upper, {}};
+      NearPair& pair = near.emplace_back();
+      pair.a = pairs[i].a, pair.b = pairs[i].b;
+      pair.lower = lower, pair.upper = upper;
       for (int side = 0; side < 2; ++side)
         for (int x = 0; x < 3; ++x) pair.point[side][x] = eight.point[side][x][i % 8];
-      if ((lower > 0 && upper <= kernel_.within) || decide(lower > 0 && std::isfinite(upper), pair))
-        near(pair);
+      if (!(lower > 0 && upper <= kernel_.within) && !decide(lower > 0 && std::isfinite(upper), pair))
+        near.pop_back();
     }
   }
 
@@ -178,7 +178,7 @@ class NearPairsSearch {
     std::vector<NearPair>& pairs = result_.pairs;
     if (request_.nearest > 0)
       std::sort_heap(pairs.begin(), pairs.end(), is_nearer);
-    else if (!std::is_sorted(pairs.begin(), pairs.end(), by_ids))
+    else if (!is_sorted_)
       std::sort(pairs.begin(), pairs.end(), by_ids);
   }
 
@@ -231,40 +231,50 @@ class NearPairsSearch {
     std::vector<SimplexPair>& candidates = context_.candidates;
     result_.counters.candidates += candidates.size();
     context_.order.sort(candidates);
-    if (workers_.count() == 1) {
-      meters_[0].measure(candidates, [&](const NearPair& pair) { add(pair); });
-    } else {
-      measure_in_chunks();
+    is_sorted_ = result_.found == 0;
+    const std::size_t chunks = (candidates.size() + kCandidatesOfChunk - 1) / kCandidatesOfChunk;
+    const auto chunk = [&](std::size_t i) {
+      const auto rest = std::span(candidates).subspan(i * kCandidatesOfChunk);
+      return rest.first(std::min(rest.size(), kCandidatesOfChunk));
+    };
+    if (workers_.count() == 1 && request_.nearest == 0) {
+      // Without a copy.
+      for (std::size_t i = 0; i < chunks; ++i) {
+        meters_[0].measure(chunk(i), result_.pairs);
+        result_.found = result_.pairs.size();
+        check_limit();
+      }
+      return candidates.clear();
+    }
+    // On one thread, one chunk at a time, so that pairs need little memory.
+    const std::size_t at_once = workers_.count() == 1 ? 1 : chunks;
+    std::vector<std::vector<NearPair>>& near = context_.near;
+    if (near.size() < at_once) near.resize(at_once);
+    for (std::size_t first = 0; first < chunks; first += at_once) {
+      workers_.for_each(at_once, [&](std::size_t i, unsigned worker) {
+        near[i].clear();
+        meters_[worker].measure(chunk(first + i), near[i]);
+      });
+      for (std::size_t i = 0; i < at_once; ++i)
+        for (const NearPair& pair : near[i]) add(pair);
     }
     candidates.clear();
   }
 
-  void measure_in_chunks() {
-    const std::vector<SimplexPair>& candidates = context_.candidates;
-    const std::size_t chunks = (candidates.size() + kCandidatesOfChunk - 1) / kCandidatesOfChunk;
-    std::vector<std::vector<NearPair>>& near = context_.near;
-    if (near.size() < chunks) near.resize(chunks);
-    workers_.for_each(chunks, [&](std::size_t i, unsigned worker) {
-      near[i].clear();
-      const std::size_t begin = i * kCandidatesOfChunk;
-      meters_[worker].measure(
-          std::span(candidates).subspan(begin, std::min(candidates.size() - begin, kCandidatesOfChunk)),
-          [&](const NearPair& pair) { near[i].push_back(pair); });
-    });
-    for (std::size_t i = 0; i < chunks; ++i)
-      for (const NearPair& pair : near[i]) add(pair);
+  void check_limit() const {
+    const std::uint64_t limit = request_.max_pairs > 0 ? request_.max_pairs : kMaxPairs;
+    if (result_.pairs.size() > limit)
+      throw InputError("more than " + std::to_string(limit) +
+                       " pairs of triangles are within the distance, the limit set by max_pairs; raise it "
+                       "(--max-pairs), or ask for the nearest ones (--nearest)");
   }
 
   void add(const NearPair& pair) {
     ++result_.found;
     std::vector<NearPair>& pairs = result_.pairs;
     if (request_.nearest == 0) {
-      const std::uint64_t limit = request_.max_pairs > 0 ? request_.max_pairs : kMaxPairs;
-      if (pairs.size() == limit)
-        throw InputError("more than " + std::to_string(limit) +
-                         " pairs of triangles are within the distance, the limit set by max_pairs; raise it "
-                         "(--max-pairs), or ask for the nearest ones (--nearest)");
       pairs.push_back(pair);
+      check_limit();
       return;
     }
     // A heap with the farthest of the nearest pairs on top.
@@ -284,6 +294,7 @@ class NearPairsSearch {
   NearPairsContext& context_;
   NearPairsResult& result_;
   std::vector<PairMeter> meters_;  ///< (threads)
+  bool is_sorted_ = true;          ///< the pairs found so far are in order
 };
 
 }  // namespace

@@ -124,25 +124,28 @@ inline void measure(const PairBoundsKernel& k, EightPairsMeasured& pairs, int la
   const OnFeature on_a(world[0], closest, 0, origin), on_b(world[1], closest, 1, origin);
   Doubles way[3], lower{};
   subtract(on_b.relative, on_a.relative, way);
-  const auto see = [&](const Doubles* direction) {
-    lower = larger(slab(direction, relative[0], relative[1], splat_as(Doubles{}, 0.25) * rounding, Doubles{},
-                        splat_as(Doubles{}, kPairDown)),
-                   lower);
+  const auto width = [&](const Doubles* direction) {
+    return slab(direction, relative[0], relative[1], splat_as(Doubles{}, 0.25) * rounding, Doubles{},
+                splat_as(Doubles{}, kPairDown));
   };
-  // The lanes that may be near, and whose interval is wider than rounding explains.
+  // The lanes that may be near, and whose interval is wider than rounding explains. Only they take other
+  // directions, so that the result for a pair does not depend on the others.
   const auto wide = [&] {
-    return bits(greater(upper - (rounding + rounding), lower)) &
-           ~bits(greater(lower, splat_as(Doubles{}, k.within)));
+    return both(greater(upper - (rounding + rounding), lower),
+                static_cast<DoubleLanes>(~greater(lower, splat_as(Doubles{}, k.within))));
   };
-  see(way);
-  if (wide() != 0) {
+  const auto see = [&](const Doubles* direction, DoubleLanes lanes) {
+    lower = select(lanes, larger(width(direction), lower), lower);
+  };
+  lower = larger(width(way), lower);
+  if (DoubleLanes lanes = wide(); bits(lanes) != 0) {
     Doubles normal[3];
     normal_of_features(on_a, on_b, way, normal);
-    see(normal);
-    if (wide() != 0)
+    see(normal, lanes);
+    if (lanes = wide(); bits(lanes) != 0)
       for (const EdgesOf<Doubles>* t : {&of_a, &of_b}) {
         cross(t->along[0], t->along[1], normal);
-        see(normal);
+        see(normal, lanes);
       }
   }
   // Only rounding can raise the lower bound above the upper one.

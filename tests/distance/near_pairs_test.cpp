@@ -194,6 +194,25 @@ TEST_CASE("near pairs do not depend on threads; the nearest ones come first") {
   CHECK(few.pairs[0].upper >= least.lower);
 }
 
+TEST_CASE("the bounds of a near pair do not depend on the other pairs") {
+  const LrbRep ball = closed(shapes::bumpy_sphere(4, 1));
+  const Pose pose = Pose::translation({1.98, 0.1, 0.2});
+  NearPairsRequest request;
+  request.within = 0.3;
+  const NearPairsResult all = near_pairs(ball, {}, ball, pose, request);
+  request.within = 0.05;
+  const NearPairsResult some = near_pairs(ball, {}, ball, pose, request);
+  REQUIRE(some.pairs.size() > 100);
+  auto same = all.pairs.begin();
+  for (const NearPair& pair : some.pairs) {
+    while (same->a != pair.a || same->b != pair.b) ++same;
+    CHECK(same->lower == pair.lower);
+    CHECK(same->upper == pair.upper);
+    CHECK(same->point[0] == pair.point[0]);
+    CHECK(same->point[1] == pair.point[1]);
+  }
+}
+
 TEST_CASE("near pairs with a workspace are those without, also after errors") {
   RandomEngine random(3);
   const LrbRep ball = closed(shapes::icosphere(2)), box = closed(shapes::quad_box()),
