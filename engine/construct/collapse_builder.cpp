@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/builders.hpp"
 #include "engine/construct/closing.hpp"
 #include "engine/construct/complex_builder.hpp"
@@ -17,6 +20,8 @@
 #include "engine/construct/front_simplifier.hpp"
 #include "engine/construct/half_spaces.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/exact/predicates.hpp"
 #include "engine/mesh/nesting.hpp"
 #include "engine/mesh/point_inside.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
@@ -101,52 +106,81 @@ std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const FrontMesh& front
   return home;
 }
 
-// Finds the faces of a self-intersecting body that are inside other components:
-// 1. Connect the triangles that intersect nothing into sheets. A sheet is on one side of every component.
-// 2. For one vertex of each sheet, count the solids that cover the space in front of it, by exact rays.
-// 3. A sheet with a positive count is buried.
+// Finds the faces of a self-intersecting body in front of which is not the outside:
+// 1. Connect the triangles that intersect nothing into sheets. No sheet crosses a surface, so the winding
+//    number of the surface is the same everywhere in front of it.
+// 2. Compute it at one vertex of each sheet, by an exact ray.
+// 3. A sheet whose number is not 0 is buried.
 
-/// Returns the faces that are inside another component, of a mesh whose components cross. `meeting`: the
-/// faces that intersect others in more than shared vertices and edges, ascending; they are not among those
-/// returned. `front`: the mesh itself.
+/// Returns the sign of the x coordinate of a triangle's normal. Exact.
+int facing_x(const FrontMesh& front, Slot s) {
+  const auto& v = front[s].v;
+  // The coordinates y and z.
+  return exact::orient2d(front.x(v[0]).data() + 1, front.x(v[1]).data() + 1, front.x(v[2]).data() + 1);
+}
+
+/// Returns the winding number of the front just in front of the triangles around v, which intersect no
+/// others. Returns nullopt if these face both to +x and to -x, or if another triangle touches v.
+std::optional<int> winding_in_front(const FrontMesh& front, const AabbTree& tree, Corner v) {
+  // Step 1: does the ray from v to +x start in front of the triangles around v, or behind them?
+  const Eigen::Vector3d& p = front.x(v);
+  int side = 0;
+  bool is_decided = true;
+  front.for_each_around(v, [&](Slot s, int i) {
+    if (const int facing = facing_x(front, s); facing != 0) {
+      is_decided &= side != -facing;
+      side = facing;
+      return;
+    }
+    // A triangle parallel to the ray must not contain it.
+    for (int k = 1; k < 3; ++k) is_decided &= front.x(front[s].v[(i + k) % 3]).x() <= p.x();
+  });
+  if (!is_decided || side == 0) return std::nullopt;
+  // Step 2: where the ray leaves the surface, the winding number falls by 1; far away it is 0.
+  int winding = side > 0 ? 0 : -1;
+  const Eigen::Vector3d far(std::numeric_limits<double>::infinity(), p.y(), p.z());
+  tree.for_each_in(Eigen::AlignedBox3d(p, far), [&](Slot s) {
+    const auto& t = front[s].v;
+    if (t[0] == v || t[1] == v || t[2] == v) return;
+    const double* const triangle[3] = {front.x(t[0]).data(), front.x(t[1]).data(), front.x(t[2]).data()};
+    const exact::RayHit hit = exact::ray_crosses(p.data(), triangle);
+    if (hit == exact::RayHit::crosses) winding += facing_x(front, s);
+    is_decided &= hit != exact::RayHit::on_face;
+  });
+  return is_decided ? std::optional(winding) : std::nullopt;
+}
+
+/// Returns the faces of a mesh that crosses itself in front of which is not the outside: they are in another
+/// component, in another part of their own, or turned inward. `meeting`: the faces that intersect others in
+/// more than shared vertices and edges, ascending; they are not among those returned. `front`: the mesh
+/// itself.
 ///
-/// A cap over such faces would be inside the other component, where no front stops it, and could pass through
-/// the faces under that component's caps.
-std::vector<FaceId> find_buried(const Mesh& mesh, const FrontMesh& front,
-                                const std::vector<FaceId>& meeting) {
-  // Nothing can be buried in a body that does not cross itself, or that has a single component.
-  if (meeting.empty() || front.component_count() == 1) return {};
+/// A cap over such faces would be inside another part of the body, where no front stops it, and could pass
+/// through the faces under that part's caps.
+std::vector<FaceId> find_buried(const FrontMesh& front, const std::vector<FaceId>& meeting) {
+  if (meeting.empty()) return {};
   const auto meets = [&](Slot s) {
     return std::binary_search(meeting.begin(), meeting.end(), front[s].face);
   };
-  std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
-  DisjointSets sheets(front.slot_count());  // connected over edges; no sheet crosses a surface
-  for (Slot s = 0; s < front.slot_count(); ++s) {
-    // Step 1. Intersecting triangles are the borders of sheets.
-    component_of[front[s].face] = front[s].component;
-    if (meets(s)) continue;
+  // Step 1. Intersecting triangles are the borders of sheets.
+  DisjointSets sheets(front.slot_count());  // connected over edges
+  for (Slot s = 0; s < front.slot_count(); ++s)
     for (const Slot t : front[s].across)
-      if (!meets(t)) sheets.join(s, t);
-  }
-  const SideFinder finder(mesh, std::move(component_of));
-  std::vector<int> signs;  // +1 for components that are solid, -1 for voids
-  for (const Component& c : components_of(front)) signs.push_back(volume_sign(mesh, c.faces) < 0 ? -1 : 1);
+      if (!meets(s) && !meets(t)) sheets.join(s, t);
+  // Step 2. A sheet that was not decided is tried again at its next triangle.
   enum class SheetKind : std::uint8_t { unknown, free, buried };
-  // Step 2. The space in front of a face is in a solid if more solids than voids contain it. Undecided if the
-  // first vertex is on another component's surface.
+  const AabbTree tree(front);
   const auto look_at = [&](Slot s) {
-    // In front of a void's wall, the component itself counts as a void.
-    int solids = signs[front[s].component] < 0 ? -1 : 0;
-    for (const SideFinder::Side& side : finder.sides(front.x(front[s].v[0]))) {
-      if (side.surface == front[s].component) continue;
-      if (side.side == PointSide::on_surface) return SheetKind::unknown;
-      solids += signs[side.surface];
+    for (const Corner v : front[s].v) {
+      bool is_inner = true;
+      front.for_each_around(v, [&](Slot t, int) { is_inner &= !meets(t); });
+      if (!is_inner) continue;
+      if (const auto winding = winding_in_front(front, tree, v))
+        return *winding == 0 ? SheetKind::free : SheetKind::buried;
     }
-    return solids > 0 ? SheetKind::buried : SheetKind::free;
+    return SheetKind::unknown;
   };
   std::vector<SheetKind> known(front.slot_count(), SheetKind::unknown);  // at a sheet's leader
-  // A sheet with an undecided vertex is tried again from its next triangle: at worst one query for each
-  // triangle.
   for (Slot s = 0; s < front.slot_count(); ++s)
     if (SheetKind& sheet = known[sheets.leader(s)]; !meets(s) && sheet == SheetKind::unknown)
       sheet = look_at(s);
@@ -169,9 +203,9 @@ class CollapseBuilder {
         frozen_(mesh.face_count(), false),
         component_boxes_(front_.component_count()),
         passes_(options) {
-    // Faces that intersect others, or are buried in other components, are never covered.
+    // Faces that intersect others, and faces in front of which is not the outside, are never covered.
     for (const FaceId f : meeting) frozen_[f] = true;
-    for (const FaceId f : find_buried(mesh, front_, meeting)) frozen_[f] = true;
+    for (const FaceId f : find_buried(front_, meeting)) frozen_[f] = true;
     for (Slot s = 0; s < front_.slot_count(); ++s)
       component_boxes_[front_[s].component].extend(box_of(front_, s));
   }
@@ -318,7 +352,7 @@ class CollapseBuilder {
   ComplexBuilder complex_;
   const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()
   BodyBounds bounds_;
-  /// (|real faces|) true for faces that intersect others or are inside other components
+  /// (|real faces|) true for faces that are never covered
   std::vector<bool> frozen_;
   std::vector<Eigen::AlignedBox3d> component_boxes_;
   Mesh polytope_;  ///< empty until planned

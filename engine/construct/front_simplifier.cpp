@@ -55,7 +55,7 @@ constexpr float kSpacing = 12;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 /// Deviation limit of levels without one: less than kNever.
 constexpr float kUnlimited = std::numeric_limits<float>::max();
-/// A level without a limit on the deviation that leaves more than this share of the front is the last.
+/// A level without a limit on the deviation that leaves more than this share of the front gains too little.
 constexpr double kFreeGain = 0.85;
 /// A component of such a level has at most one in this many faces of the front beneath it, so that there are
 /// several components.
@@ -102,13 +102,14 @@ void FrontSimplifier::simplify(const std::function<void()>& before_level) {
   limit_ = kUnlimited;
   new_hints_.clear();
   new_off_ = 0;
-  for (std::uint32_t before = 0, now = front_.triangle_count();
-       now > options_.max_outer_faces && (before == 0 || now <= kFreeGain * before);
-       before = now, now = front_.triangle_count()) {
+  // A level that gains too little is followed by another one, which proves each collapse where lids failed.
+  for (int stalled = 0; stalled < 2 && front_.triangle_count() > options_.max_outer_faces;) {
+    const std::uint32_t before = front_.triangle_count();
     before_level();
-    max_floor_ =
-        std::clamp(now / kParts, kMinFloor, std::max(kMinFloor, kFloorPerInterior * options_.patch_interior));
+    max_floor_ = std::clamp(before / kParts, kMinFloor,
+                            std::max(kMinFloor, kFloorPerInterior * options_.patch_interior));
     level(BuildStage::simplify, 0, kLastCapWorth);
+    stalled = front_.triangle_count() > kFreeGain * before ? stalled + 1 : 0;
   }
 }
 

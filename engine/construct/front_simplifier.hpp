@@ -39,7 +39,7 @@ class FrontSimplifier {
   /// than `least` triangles. The front must still be the mesh itself. Calls before_level(), which may change
   /// the bounds, before each level.
   void fit(std::uint32_t least, const std::function<void()>& before_level);
-  /// Makes levels without a limit on the deviation, until one gains too little.
+  /// Makes levels without a limit on the deviation, until two gain too little.
   void simplify(const std::function<void()>& before_level);
 
  private:

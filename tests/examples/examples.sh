@@ -53,7 +53,7 @@ case "$name" in
   build_and_validate)
     "$lrbscope" -q export tolerance --what body --of a -o rock.obj >/dev/null
     try rock.obj rock.lrb
-    expect '^5120 real faces, .* 20 faces in the outermost wrapper$' '^proven: ' '^crossing: 90 pairs .* 275 exact pairs$'
+    expect '^5120 real faces, .* 20 faces in the outermost wrapper$' '^proven: ' '^crossing: 92 pairs .* 275 exact pairs$'
     "$lrbscope" -q inspect rock.lrb >said || fail "lrbscope cannot read rock.lrb"
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >open.obj
     refuse "open.obj: an edge has only one face" open.obj open.lrb
@@ -77,7 +77,7 @@ case "$name" in
     ;;
   watch)
     try "$gear" "$block" 0.7 0.1 -0.1
-    expect '^refine region 52 of A: 28 faces more$' '^test triangle 266 of A \(depth 7\) and 3 of B \(depth 0\): cross$' \
+    expect '^refine region 51 of A: 28 faces more$' '^test triangle 266 of A \(depth 8\) and 3 of B \(depth 0\): cross$' \
       '^crossing after 3 tests$'
     refuse "missing.obj: no such file" "$gear" missing.obj 0 0 0
     ;;
@@ -100,7 +100,7 @@ case "$name" in
     ;;
   record_and_draw)
     try "$gear" "$block" 0.7 0.1 -0.1 found
-    expect '^141 events$'
+    expect '^140 events$'
     png found.png
     head -c 100 found.json | grep -qF traceEvents || fail "found.json is not a trace"
     try "$gear" "$block" 3 0 0 separate

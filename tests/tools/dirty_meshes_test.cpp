@@ -10,6 +10,7 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
+#include "tests/support/figure_eight.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include "tests/support/json_lines.hpp"
 #include "tests/support/shared_meshes.hpp"
@@ -24,19 +25,6 @@ using namespace shapes;
 namespace {
 
 using nlohmann::json;
-
-/// A tube that crosses itself all the way round: an 8, turned about the z axis.
-Mesh figure_eight() {
-  Mesh m = torus(24, 16);
-  const auto angle = [](std::size_t i, std::size_t n) {
-    return 2 * std::numbers::pi * double(i) / double(n);
-  };
-  for (std::size_t i = 0; i < m.vertices.size(); ++i) {
-    const double u = angle(i / 16, 24), v = angle(i % 16, 16), r = 2 + std::sin(v);
-    m.vertices[i] = {r * std::cos(u), r * std::sin(u), 0.6 * std::sin(2 * v)};
-  }
-  return m;
-}
 
 Mesh moebius() {
   constexpr int kSteps = 9;
