@@ -7,6 +7,7 @@
 
 #include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb::construct {
 namespace {

@@ -84,21 +84,19 @@ TEST_CASE("folded quads: bridging does not split polygons that are not planar") 
 }
 
 TEST_CASE("caps do not cover the parts of a surface that face its own inside") {
-  // One of the two lobes is always inside out.
-  for (const Mesh& mesh : {turned_inside_out(figure_eight()), figure_eight()}) {
-    if (!check_mesh(mesh).buildable()) continue;
-    for (std::uint64_t seed = 1; seed <= 6; ++seed)
-      for (const bool lean : {false, true}) {
-        BuildOptions options;
-        options.seed = seed;
-        options.lean = lean;
-        const LrbRep rep = build_lrb(mesh, options);
-        check_valid(rep);
-        CHECK(rep.self_intersecting());
-        CHECK(rep.outermost_faces().size() <= 20);
-        CHECK(rep.region_count() > 10);
-      }
-  }
+  // One of the two lobes is inside out.
+  const Mesh mesh = turned_inside_out(figure_eight());
+  for (std::uint64_t seed = 1; seed <= 6; ++seed)
+    for (const bool lean : {false, true}) {
+      BuildOptions options;
+      options.seed = seed;
+      options.lean = lean;
+      const LrbRep rep = build_lrb(mesh, options);
+      check_valid(rep);
+      CHECK(rep.self_intersecting());
+      CHECK(rep.outermost_faces().size() <= 20);
+      CHECK(rep.region_count() > 10);
+    }
 }
 
 TEST_CASE("a sufficiently simple body gets no regions") {

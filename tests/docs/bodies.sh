@@ -72,7 +72,7 @@ while IFS= read -r line; do
     *"build cow.obj -o"*) grep -q 'low-quality' said && complain "a warning" ;;
     *"twin.lrb"*--try*) grep -q '^  --max-outer 80 has the closest outermost wrapper: 5' said || complain "other advice" ;;
     *"cow.lrb"*--try*) grep -q '^  --lean --patch 40 has the fewest faces: 1\.' said || complain "other advice" ;;
-    *"--regions"*) grep -qE '^ +region +layer +lids +floor +volume +distance +parent +waste$' said || complain "no table" ;;
+    *"--regions"*) grep -qE '^ *region +layer +lids +floor +volume +distance +parent +waste$' said || complain "no table" ;;
   esac
 done <<<"$commands"
 figure() { "$program" inspect "$1" --json | grep -oE "\"$2\":[0-9.e+-]+" | cut -d: -f2; }
