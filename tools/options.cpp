@@ -132,9 +132,7 @@ void add_build_options(CLI::App& app, BuildOptions& options) {
   app.add_flag("--lean", options.lean,
                "Build fewer pseudo faces (about 1.4 faces in total per real face instead of 2); wrappers fit "
                "less tightly");
-  app.add_option("--seed", options.seed, "Random seed for the order in which patches are grown")
-      ->capture_default_str()
-      ->type_name("N");
+  app.add_option("--seed", options.seed, "Random seed of the builder")->capture_default_str()->type_name("N");
   app.add_option("--threads", options.threads,
                  "Number of threads [all cores]; the result does not depend on it")
       ->check(CLI::Range(1, 1024))

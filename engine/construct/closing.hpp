@@ -43,7 +43,7 @@ double volume_of(const Mesh& mesh);
 /// Returns a convex polytope of at most `max_faces` triangles around a convex triangle mesh, up to rounding,
 /// with a small volume, or an empty mesh if none is found.
 ///
-/// In each step some edges collapse outward as in patches (patch_cap.hpp; `depth` is described there). This
+/// In each step some edges collapse outward (outward_collapse.hpp; `depth` is described there). This
 /// requires more than necessary: the new vertex is in front of all faces that are removed. Therefore each
 /// vertex is then moved to the position of least volume with the input still behind the faces around it, and
 /// the result is made convex again.

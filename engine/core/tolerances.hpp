@@ -185,7 +185,7 @@ inline constexpr double kPlacementMargin = 1e-6;
 /// Tolerance of the comparisons during placement, relative to the same radius: well below the margin, but
 /// above rounding.
 inline constexpr double kPlacementSlack = 1e-9;
-/// Maximum volume that one collapse in a cap may add, relative to the patch's area^1.5. Larger: simpler
+/// In 2D: maximum area that a cap may add, relative to its chain's length^2. Larger: simpler
 /// fronts with a larger deviation. Smaller: more layers.
 inline constexpr double kCapVolumeLimit = 0.1;
 /// Weight of the worst new triangle's shape, relative to volume, in the cost of a collapse: a needle costs

@@ -100,13 +100,13 @@ struct PassStart {
 /// State at the end of a pass.
 struct PassEnd {
   std::uint32_t front_faces = 0;
-  /// Number of faces excluded from patches: they intersect others, are inside another component, or belong to
-  /// a very large polygon or fan.
+  /// Number of faces that no cap may cover: they intersect others, do not face the outside, or lie where the
+  /// proof of a cap has failed.
   std::uint32_t excluded = 0;
-  /// Number of vertices at which no patch could be grown, most of them next to other patches.
+  /// Always 0 and false: only traces of older versions have other values.
   std::uint32_t no_patch = 0;
-  std::uint32_t waiting = 0;  ///< vertices that are skipped until caps may have a larger deviation
-  bool given_up = false;      ///< too few caps were accepted: the rest of the front was not tried
+  std::uint32_t waiting = 0;
+  bool given_up = false;
 };
 
 /// A part of the front to be covered by a cap: a disk of triangles, a chain of segments, or a whole
@@ -155,8 +155,8 @@ class ConstructProbe {
 };
 
 struct BuildOptions {
-  /// Target number of interior vertices of a patch. Small values make the paper's recursion cheap, large ones
-  /// make the structure small.
+  /// Size of regions: in 3D, at most 7 times as many faces beneath a cap. Small values make the paper's
+  /// recursion cheap, large ones make the structure small.
   std::uint32_t patch_interior = 16;
   std::uint32_t max_outer_faces = 20;  ///< target number of faces of the outermost wrapper
   /// Builds a small structure (about 1.4 faces per real face) instead of tightly fitting wrappers (about 2).
