@@ -300,7 +300,7 @@ void FrontSimplifier::unite(const Star& star, Union& united) const {
 /// relative to the limit. (A long edge over a crease can be far off between few sample points, and its lid
 /// would keep out all others above it.)
 int FrontSimplifier::steps_along(const SurfaceWalk::Point& a, const SurfaceWalk::Point& b) const {
-  const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  const float x = a.x() - b.x(), y = a.y() - b.y(), z = a.z() - b.z();
   const float steps = std::sqrt(x * x + y * y + z * z) / (kSpacing * limit_);
   return steps < kSteps ? kSteps : static_cast<int>(std::min(steps, static_cast<float>(kMaxSteps)));
 }
@@ -310,9 +310,7 @@ int FrontSimplifier::steps_along(const SurfaceWalk::Point& a, const SurfaceWalk:
 float FrontSimplifier::excess(const Star& star, const Vector3& w) {
   using Point = SurfaceWalk::Point;
   const float enough = limit_ * limit_;
-  const auto mix = [](float s, const Point& a, float t, const Point& b) {
-    return Point{s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
-  };
+  const auto mix = [](float s, const Point& a, float t, const Point& b) { return Point(s * a + t * b); };
   const Point tip = body_->local(w);
   FrontMesh::Slot hint = open_.state(star.faces[0]).hint;
   float most = 0, failed = 0;
@@ -325,7 +323,7 @@ float FrontSimplifier::excess(const Star& star, const Vector3& w) {
   };
   if (!star.onto_v && !is_near(tip)) return failed;
   new_hints_.clear();
-  Point a = body_->local(open_.x(star.rim[0].a)), b{};
+  Point a = body_->local(open_.x(star.rim[0].a)), b;
   for (std::size_t k = 0; k < star.rim.size(); ++k, a = b) {
     b = body_->local(open_.x(star.rim[k].b));
     hint = open_.state(star.rim[k].face).hint;

@@ -9,6 +9,7 @@
 
 #include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/front_mesh.hpp"
+#include "engine/mesh/nearest_on_simplex.hpp"
 
 namespace lrb::construct {
 
@@ -17,18 +18,13 @@ namespace lrb::construct {
 class SurfaceWalk {
  public:
   using Slot = FrontMesh::Slot;
-  struct Point {
-    float x, y, z;
-  };
+  using Point = Eigen::Vector3f;
 
   /// `front`: still the mesh itself. `tree`: over it; both are only read here. `unit`: of points and
   /// distances.
   SurfaceWalk(const FrontMesh& front, const AabbTree& tree, double unit);
 
-  Point local(const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d x = (p - centre_) * scale_;
-    return {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])};
-  }
+  Point local(const Eigen::Vector3d& p) const { return ((p - centre_) * scale_).cast<float>(); }
   /// Walks downhill from triangle `hint` to a triangle near p, which becomes the hint. Returns the squared
   /// distance from it; stops as soon as that is at most `enough`. May end at a local minimum.
   float walk(const Point& p, Slot& hint, float enough) const;
@@ -41,13 +37,9 @@ class SurfaceWalk {
     Point a, ab, ac;
     std::array<std::uint32_t, 3> v, across;
   };
-  /// Where the point of a triangle nearest to another point is.
-  enum class Feature : std::uint8_t { inside, edge_ab, edge_bc, edge_ca, corner_a, corner_b, corner_c };
-  struct Nearest {
-    float distance_sq;
-    Feature feature;
-  };
-  static Nearest nearest(const Triangle& t, const Point& p);
+  static ClosestPart<float> nearest(const Triangle& t, const Point& p) {
+    return closest_part<float>(t.ab, t.ac, p - t.a);
+  }
 
   std::vector<Triangle> triangles_;
   AabbTree tree_;

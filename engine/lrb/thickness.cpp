@@ -31,6 +31,7 @@
 
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/mesh/nearest_on_simplex.hpp"
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -90,50 +91,34 @@ std::vector<RealSimplex> real_simplices(const LrbRep& rep) {
 
 namespace {
 
-struct ClosestPoint {
-  double distance_sq;
-  unsigned borders;  ///< bit e: the point is on border e (an edge; 2D: an end)
-};
+ClosestPart<double> closest_part(const RealSimplex& t, const Eigen::Vector3d& p) {
+  return lrb::closest_part<double>(t.ab, t.ac, p - t.a);
+}
 
-/// Returns the squared distance from p to an actual point of the simplex (up to rounding), the closest one
-/// unless the simplex is nearly degenerate (Ericson, "Real-Time Collision Detection", 5.1.5, with the
-/// interior tested first).
-ClosestPoint closest_point(const RealSimplex& t, const Eigen::Vector3d& p, bool is_segment) {
-  const Eigen::Vector3d ap = p - t.a;
-  const double d1 = dot3(t.ab, ap), d2 = dot3(t.ac, ap);
-  const double bb = squared_norm3(t.ab), bc = dot3(t.ab, t.ac), cc = squared_norm3(t.ac);
-  const double vb = cc * d1 - bc * d2, vc = bb * d2 - bc * d1, all = bb * cc - bc * bc;
-  if (vb >= 0 && vc >= 0 && vb + vc <= all && all > 0)
-    return {squared_norm3(ap - (vb / all) * t.ab - (vc / all) * t.ac), 0};
-  const double d3 = d1 - bb, d4 = d2 - bc, d5 = d1 - bc, d6 = d2 - cc;
-  if (d1 <= 0 && d2 <= 0) return {squared_norm3(ap), is_segment ? 1u : 5u};
-  if (d3 >= 0 && d4 <= d3) return {squared_norm3(ap - t.ab), is_segment ? 2u : 3u};
-  if (d6 >= 0 && d5 <= d6) return {squared_norm3(ap - t.ac), 6};
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {squared_norm3(ap - (d1 / bb) * t.ab), is_segment ? 0u : 1u};
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {squared_norm3(ap - (d2 / cc) * t.ac), 4};
-  const double length = (d4 - d3) + (d5 - d6);
-  const double share = length > 0 ? std::clamp((d4 - d3) / length, 0.0, 1.0) : 0;
-  return {squared_norm3(ap - t.ab - share * (t.ac - t.ab)), 2};
+/// Returns the borders that have the closest point, as bits: 2D, ends; 3D, edges.
+unsigned borders(TrianglePart part, bool is_segment) {
+  constexpr unsigned kOfTriangle[] = {0, 1, 2, 4, 1 | 4, 1 | 2, 2 | 4}, kOfSegment[] = {0, 0, 2, 0, 1, 2, 0};
+  return (is_segment ? kOfSegment : kOfTriangle)[static_cast<int>(part)];
 }
 
 }  // namespace
 
 double NearestFace::distance(const Eigen::Vector3d& p, SimplexId s) const {
-  return std::sqrt(closest_point(simplices_[s], p, is_segment_).distance_sq);
+  return std::sqrt(closest_part(simplices_[s], p).distance_sq);
 }
 
 /// A closer point can be beyond a border only if the closest point so far is on that border.
 NearFace NearestFace::walk(const Eigen::Vector3d& p, SimplexId from) const {
   // Greedy descent on the surface. The distance decreases at each step, so the walk terminates. It may end in
   // a local minimum, which callers account for.
-  ClosestPoint nearest = closest_point(simplices_[from], p, is_segment_);
+  auto nearest = closest_part(simplices_[from], p);
   for (bool moves = true; moves;) {
     moves = false;
-    const unsigned borders = nearest.borders;
+    const unsigned on = borders(nearest.part, is_segment_);
     const Across& across = simplices_[from].across;
     for (int e = 0; e < 3; ++e) {
-      if ((borders >> e & 1) == 0 || across[e] == kNull) continue;
-      const ClosestPoint there = closest_point(simplices_[across[e]], p, is_segment_);
+      if ((on >> e & 1) == 0 || across[e] == kNull) continue;
+      const auto there = closest_part(simplices_[across[e]], p);
       if (there.distance_sq < nearest.distance_sq) nearest = there, from = across[e], moves = true;
     }
   }
@@ -167,7 +152,7 @@ NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
     // Leaf: distances to the simplices in double. Boxes are sorted, so the first one too far ends the loop.
     for (std::uint32_t i = 0; i < count && static_cast<double>(d[order[i]]) < best_sq; ++i) {
       const SimplexId s = tree_.blocks()[node.first].simplex[order[i]];
-      const double square = closest_point(simplices_[s], p, is_segment_).distance_sq;
+      const double square = closest_part(simplices_[s], p).distance_sq;
       if (square < best_sq) best_sq = square, best.simplex = s;
     }
   }
