@@ -47,7 +47,7 @@ int run_build_survey(const BenchOptions& o, std::vector<bench::BodyPair> bodies,
   const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n";
   const std::string text = head + bench::build_text(results);
   print(text);
-  report::Document page = bench::build_page(results);
+  report::Document page = bench::build_page(results, o.tex);
   page.number({"Machine", bench::machine(), bench::build_flags()}).command(globals.command_line);
   page.file("builds.csv", bench::build_csv(results), "every build");
   page.file("builds.txt", text, "the tables as text");
@@ -94,8 +94,17 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
   const bench::PeerTable table = bench::peer_table(survey_options.sets, infos, records);
   const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n\n";
   print(head + bench::in_brief(table));
-  io::write_text(o.folder + "/peers.txt", head + bench::in_brief(table) + "\n" + bench::in_full(table));
-  print(o.folder + "/peers.txt\n" + o.folder + "/records.jsonl\n");
+  const report::Table cells = bench::table_of_cells(table);
+  io::write_text(o.folder + "/peers.txt",
+                 head + bench::in_brief(table) + "\n" + report::in_columns(cells, 4));
+  io::write_text(o.folder + "/peers.csv", report::csv(cells));
+  print(o.folder + "/peers.txt\n" + o.folder + "/peers.csv\n" + o.folder + "/records.jsonl\n");
+  if (!o.tex) return kOk;
+  for (const auto& [mode, name] :
+       {std::pair{Mode::all_pairs, "/all_pairs.tex"}, std::pair{Mode::first_pair, "/first_pair.tex"}}) {
+    io::write_text(o.folder + name, report::booktabs(bench::table_of_ratios(table, mode)));
+    print(o.folder + name + "\n");
+  }
   return kOk;
 }
 
@@ -111,6 +120,7 @@ Command add_bench(CLI::App& root, const Globals& globals) {
                   "others; 0: none [20000 100000]")
       ->check(CLI::Range(0, 2000000))
       ->type_name("N");
+  add_tex_option(*app, o->tex, "the tables");
   app->add_flag("--build", o->build,
                 "Compare the time to build, the first answer and memory instead of queries");
   app->add_option("--rounds", o->rounds, "With --build: number of times that each structure is built [5]")

@@ -28,7 +28,7 @@ struct ChartOptions : MeasureOptions {
   }
   std::uint32_t faces = 2000;
   unsigned rounds = 3;
-  bool scenes = true, tex = false;
+  bool scenes = true;
   std::string width;
   bench::ChartPrint print;
 };
@@ -161,8 +161,7 @@ Command add_chart(CLI::App& root, const Globals& globals) {
                   "Panels of the figure: pairs of bodies, classes of poses, or BODIES/CLASS [all]")
       ->delimiter(',')
       ->type_name("NAME,NAME,...");
-  app->add_flag("--tex", o->tex,
-                "Also write settings.tex, the table of settings for LaTeX with the package booktabs");
+  add_tex_option(*app, o->tex, "settings.tex, the table of settings,");
   app->add_flag("!--no-scenes", o->scenes, "Do not run the scenarios that the chart's points link to");
   return {app, [o, &globals, measures, draws] {
             return run_chart(*o, !draws->parsed(), !measures->parsed(), globals);

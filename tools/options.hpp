@@ -62,7 +62,13 @@ struct MeasureOptions {
   std::vector<std::string> methods;
   bench::SetOptions set;
   double timeout = 20;
+  bool tex = false;
 };
+
+/// Adds --tex.
+inline void add_tex_option(CLI::App& app, bool& tex, const char* what) {
+  app.add_flag("--tex", tex, std::string("Also write ") + what + " for LaTeX with the package booktabs");
+}
 
 /// Adds the options; the help shows the values in `o` as defaults.
 inline void add_measure_options(CLI::App& app, MeasureOptions& o) {

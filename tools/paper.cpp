@@ -100,7 +100,7 @@ struct PaperOptions {
   std::optional<std::uint64_t> seed;
   std::uint32_t jobs = 0;  ///< 0: all cores
   PaperSeriesOptions series;
-  bool json = false, print = false;
+  bool json = false, print = false, tex = false;
 };
 
 paper::PaperExperiment experiment_of(const PaperOptions& o) {
@@ -290,7 +290,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
 
   const auto write = [&](const paper::SeriesReport* series) {
     return paper::write_paper_report(
-        {objects, steps.objects, steps.settings, experiment, globals.command_line, series}, folder);
+        {objects, steps.objects, steps.settings, experiment, globals.command_line, series, o.tex}, folder);
   };
   if (computes) {
     steps.objects = paper::merged(paper::run_seeds(objects, sweep));
@@ -371,6 +371,7 @@ Command add_paper(CLI::App& root, const Globals& globals) {
   for (const char* of_shards : {"--collisions", "--step", "--steps-after", "--seed", "--seeds",
                                 "--resolutions", "--subdivide", "--lean"})
     merge->excludes(app->get_option(of_shards));
+  add_tex_option(*app, o->tex, "each table");
   app->add_flag("--json", o->json, "Print the tables as JSON instead of the page's path");
   return {app, [o, &globals] { return run_paper(*o, globals); }};
 }

@@ -33,7 +33,7 @@ struct StabilityOptions {
   std::uint64_t cases = 100, seed = 1;
   unsigned jobs = 2;
   double timeout = 5;
-  bool pairs = false, minimise = false;
+  bool pairs = false, minimise = false, tex = false;
   Quantity quantity = Quantity::pairs;
 };
 
@@ -241,6 +241,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
   bar.finish();
   options.command = [&](const stability::Record& r) { return command_of(r, o.quantity); };
   options.links = {{"records.jsonl", "every answer of every method, one JSON object a line"}};
+  options.tex = o.tex;
   const report::Document page = write_stability_report(grid, folder, options);
   for (const std::string& line : page.notes()) std::cerr << "lrbscope: " << line << "\n";
   for (const std::string& f : page.written()) print(o.folder + "/" + f + "\n");
@@ -350,6 +351,7 @@ Command add_stability(CLI::App& root, const Globals& globals) {
   app->add_flag("--minimise", o->minimise,
                 "With --save and one --method: shrink a case that it fails on to the fewest triangles and "
                 "bits, and write that with a picture and a report for the engine's tracker");
+  add_tex_option(*app, o->tex, "the table of failures, grid.tex,");
   app->add_flag("--pairs", o->pairs, "With --only or --saved: print the expected and the found pairs");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
 }

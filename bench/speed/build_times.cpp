@@ -395,10 +395,11 @@ std::map<std::string, report::SeriesStyle> line_styles(const std::vector<methods
 
 }  // namespace
 
-report::Document build_page(const BuildResults& r) {
+report::Document build_page(const BuildResults& r, bool tex) {
   report::Document page("Building beside other engines",
                         "Time to build each structure from the same triangles, time to the first answer, and "
                         "memory.");
+  page.tables_as_tex(tex);
   page.text(
       {"Measured",
        "Each build runs in its own process. A round runs all structures, one after the other; values are "

@@ -68,7 +68,8 @@ BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport&
 std::string build_text(const BuildResults& results);
 /// Returns a line per body, method and round.
 std::string build_csv(const BuildResults& results);
-/// Returns the page: the tables, and charts of the time to build, of the first answer, and of memory.
-report::Document build_page(const BuildResults& results);
+/// Returns the page: the tables (with `tex` also as files for LaTeX), and charts of the time to build, of the
+/// first answer, and of memory.
+report::Document build_page(const BuildResults& results, bool tex = false);
 
 }  // namespace lrb::bench

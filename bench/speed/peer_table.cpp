@@ -111,28 +111,31 @@ std::string ratio_text(const PeerCell* c, double ratio) {
   return text(ratio < 9.95 ? "%.2f" : "%.0f", ratio);
 }
 
-std::string ratios_of(const PeerTable& t, Mode mode) {
-  const std::string head =
-      mode == Mode::all_pairs
-          ? "ALL PAIRS. lrbscope's time in microseconds, hot; then the others' times relative to it, hot\n"
-          : "FIRST PAIR (boolean). As above\n";
-  std::vector<std::vector<std::string>> rows = {{"bodies", "pose", "pairs", "ours us", "p95"}};
+}  // namespace
+
+report::Table table_of_ratios(const PeerTable& t, Mode mode) {
+  report::Table table{mode == Mode::all_pairs ? "ALL PAIRS. lrbscope's time in microseconds, hot; then the "
+                                                "others' times relative to it, hot"
+                                              : "FIRST PAIR (boolean). As above",
+                      {"bodies", "pose", "pairs", "ours us", "p95"}};
   for (const methods::MethodInfo& m : t.methods)
-    if (m.role != Role::ours && m.present) rows[0].push_back(m.name);
+    if (m.role != Role::ours && m.present) table.columns.push_back(m.name);
   for (const std::string& set : t.sets)
     for (const PoseClass c : classes_of(Quantity::pairs)) {
       const PeerCell* ours = t.find(set, method_in(t.methods, Role::ours), c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
-      rows.push_back(
+      table.rows.push_back(
           {set, title(c), text("%.0f", ours->pairs), text("%.1f", ours->hot), text("%.1f", ours->hot_p95)});
       for (const methods::MethodInfo& m : t.methods) {
         if (m.role == Role::ours || !m.present) continue;
         const PeerCell* cell = t.find(set, m.name, c, mode);
-        rows.back().push_back(ratio_text(cell, cell == nullptr ? 0 : cell->ratio));
+        table.rows.back().push_back(ratio_text(cell, cell == nullptr ? 0 : cell->ratio));
       }
     }
-  return head + io::in_columns(rows, 2) + "\n";
+  return table;
 }
+
+namespace {
 
 /// Returns the geometric mean of a method's ratios over data sets and classes of poses.
 double mean_ratio(const PeerTable& t, const std::string& method, Mode mode, bool apart, bool cold) {
@@ -269,29 +272,33 @@ PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods
 
 std::string in_brief(const PeerTable& t) {
   std::string out;
-  for (const Mode mode : kModes) out += ratios_of(t, mode);
+  for (const Mode mode : kModes) {
+    const report::Table table = table_of_ratios(t, mode);
+    out += table.title + "\n" + report::in_columns(table, 2) + "\n";
+  }
   return out + means_of(t) + targets_of(t) + price_of(t);
 }
 
-std::string in_full(const PeerTable& t) {
-  std::vector<std::vector<std::string>> rows = {{"bodies", "pose", "mode", "method", "hot us", "p95",
-                                                 "cold us", "p95", "x ours", "cold", "pairs", "missed",
-                                                 "extra"}};
+report::Table table_of_cells(const PeerTable& t) {
+  report::Table table{"",
+                      {"bodies", "pose", "mode", "method", "hot us", "hot p95", "cold us", "cold p95",
+                       "x ours", "cold x ours", "pairs", "missed", "extra", "no answer"}};
   for (const PeerCell& c : t.cells) {
     if (c.questions == 0) continue;
-    rows.push_back({c.set, title(c.pose_class), c.mode == Mode::all_pairs ? "all" : "first", c.method});
-    std::vector<std::string>& row = rows.back();
+    table.rows.push_back({c.set, title(c.pose_class), c.mode == Mode::all_pairs ? "all" : "first", c.method});
+    std::vector<std::string>& row = table.rows.back();
     if (c.answered > 0) {
       for (const double x : {c.hot, c.hot_p95, c.cold, c.cold_p95}) row.push_back(text("%.1f", x));
       for (const double x : {c.ratio, c.cold_ratio}) row.push_back(text("%.2f", x));
       row.push_back(text("%.1f", c.pairs));
       for (const std::uint64_t n : {c.missed, c.extra}) row.push_back(std::to_string(n));
     }
+    row.resize(table.columns.size());
     if (c.answered < c.questions)
-      row.push_back(text("%zu of %zu answered, %zu crashed, %zu timed out", c.answered, c.questions,
-                         c.crashed, c.timed_out));
+      row.back() = text("%zu of %zu answered, %zu crashed, %zu timed out", c.answered, c.questions, c.crashed,
+                        c.timed_out);
   }
-  return io::in_columns(rows, 4);
+  return table;
 }
 
 }  // namespace lrb::bench

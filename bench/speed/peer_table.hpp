@@ -6,6 +6,7 @@
 
 #include "bench/methods/method.hpp"
 #include "bench/speed/record.hpp"
+#include "scenarios/report/document.hpp"
 
 namespace lrb::bench {
 
@@ -41,7 +42,9 @@ PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods
 /// Returns the text for stdout: ratios, their geometric means compared to the targets, where another engine
 /// is faster, the cost of exactness, and the methods that were exact.
 std::string in_brief(const PeerTable& table);
-/// Returns a line for every cell, with all its numbers.
-std::string in_full(const PeerTable& table);
+/// Returns lrbscope's times in one mode, and the ratios of all other methods to them.
+report::Table table_of_ratios(const PeerTable& table, Mode mode);
+/// Returns a row for every cell, with all its numbers.
+report::Table table_of_cells(const PeerTable& table);
 
 }  // namespace lrb::bench

@@ -4,7 +4,6 @@
 #include <sstream>
 #include <tuple>
 
-#include "scenarios/io/columns.hpp"
 #include "scenarios/io/files.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
@@ -184,9 +183,12 @@ std::string total(const Grid& grid, std::size_t method, Counts Cell::*counts) {
   return std::to_string(n);
 }
 
-std::vector<std::vector<std::string>> rows_of(const Grid& grid) {
-  std::vector<std::vector<std::string>> rows(1, {"family"});
-  for (const workers::MethodColumn& m : grid.methods) rows[0].push_back(m.name);
+}  // namespace
+
+report::Table table_of(const Grid& grid) {
+  report::Table table{"", {"family"}};
+  for (const workers::MethodColumn& m : grid.methods) table.columns.push_back(m.name);
+  std::vector<std::vector<std::string>>& rows = table.rows;
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     rows.push_back({grid.families[f].name});
     for (std::size_t m = 0; m < grid.methods.size(); ++m)
@@ -202,15 +204,28 @@ std::vector<std::vector<std::string>> rows_of(const Grid& grid) {
     for (std::size_t m = 0; m < grid.methods.size(); ++m)
       rows.back().push_back(grid.methods[m].present ? total(grid, m, counts) : "absent");
   }
-  return rows;
+  return table;
 }
 
-}  // namespace
+std::string csv_of(const Grid& grid) {
+  report::Table table{
+      "", {"family", "method", "difficulty", "cases", "wrong", "crashed", "timed_out", "refused"}};
+  for (std::size_t f = 0; f < grid.families.size(); ++f)
+    for (std::size_t m = 0; m < grid.methods.size(); ++m)
+      for (std::size_t d = 0; d < kDifficulties; ++d) {
+        const Cell& c = grid.at(f, m);
+        if (c.cases[d] == 0) continue;
+        table.rows.push_back({grid.families[f].name, grid.methods[m].name, std::to_string(d)});
+        for (const std::uint64_t n : {c.cases[d], c.wrong[d], c.crashed[d], c.timed_out[d], c.rejected[d]})
+          table.rows.back().push_back(std::to_string(n));
+      }
+  return report::csv(table);
+}
 
 std::string table(const Grid& grid) {
   std::ostringstream out;
   out.exceptions(std::ios::badbit);
-  out << io::in_columns(rows_of(grid));
+  out << report::in_columns(table_of(grid));
   out << "\nIn each cell: failures/cases answered, @ the lowest difficulty (0 benign, " << kDifficulties - 1
       << " degenerate) with a failure.\n";
   for (const workers::MethodColumn& m : grid.methods)

@@ -17,6 +17,7 @@
 #include "bench/cases/families.hpp"
 #include "bench/methods/method.hpp"
 #include "bench/workers/workers.hpp"
+#include "scenarios/report/document.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/enum_names.hpp>
 
@@ -161,8 +162,12 @@ inline Cell sum_of_column(const Grid& grid, std::size_t method) {
   return sum;
 }
 
-/// Returns the grid as text: a row per family; in each cell failures/answered and the lowest difficulty with
-/// a failure; then the meaning of the columns.
+/// Returns the grid as a table: a row per family; in each cell failures/answered and the lowest difficulty
+/// with a failure.
+report::Table table_of(const Grid& grid);
+/// Returns that table as text, then the meaning of the columns.
 std::string table(const Grid& grid);
+/// Returns the counts of every family, method and difficulty as CSV.
+std::string csv_of(const Grid& grid);
 
 }  // namespace lrb::stability

@@ -230,6 +230,9 @@ report::Document stability_page(const Grid& whole, const std::string& folder, co
 report::Document write_stability_report(const Grid& grid, const report::Folder& folder,
                                         const ReportOptions& options) {
   report::Document doc = stability_page(grid, folder, options);
+  doc.file("grid.csv", csv_of(grid), "the outcomes of each method, family and difficulty");
+  if (options.tex)
+    doc.file("grid.tex", report::booktabs(table_of(present_part(grid))), "the grid, for LaTeX");
   doc.print("stability", "the grid, for print", grid_chart(grid));
   if (doc.notes().empty())
     doc.print("stability-profiles", "failures by difficulty, for print", profile_chart(grid));

@@ -17,12 +17,13 @@ struct ReportOptions {
   /// Returns the command that runs one case again; may be null.
   std::function<std::string(const Record&)> command;
   std::vector<report::Link> links;  ///< such as one to the raw records
+  bool tex = false;                 ///< also write grid.tex, the table for LaTeX
 };
 
-/// Writes index.html, and the charts stability (the grid) and stability-profiles (failures by difficulty, per
-/// family) as .svg and .png. Without gnuplot only the page is written, and the document's notes report it.
-/// Throws InputError if the sizes of the grid's arrays do not match, EnvironmentError if a file cannot be
-/// written.
+/// Writes index.html, grid.csv with the counts by difficulty, and the charts stability (the grid) and
+/// stability-profiles (failures by difficulty, per family) as .svg and .png. Without gnuplot only the page is
+/// written, and the document's notes report it. Throws InputError if the sizes of the grid's arrays do not
+/// match, EnvironmentError if a file cannot be written.
 report::Document write_stability_report(const Grid& grid, const report::Folder& folder,
                                         const ReportOptions& options = {});
 

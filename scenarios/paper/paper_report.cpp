@@ -364,7 +364,7 @@ std::vector<std::string> write_paper_report(const PaperReport& r, const report::
           : "C. Gonzalez-Ochoa, \"2-Body Collision Detection using LRB-reps\", tables 1 and 2 and figures 3.1 "
             "and 3.2, measured beside the published numbers.");
   report::Document& doc = out.page;
-  doc.command(r.command);
+  doc.command(r.command).tables_as_tex(r.tex);
   // The paper's own tables and figures first; each chart has the whole width, because a table follows it.
   if (wants(PaperPart::table1)) out.table(table1(r));
   if (wants(PaperPart::table2)) out.table(table2(rows));

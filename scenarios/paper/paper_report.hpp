@@ -17,6 +17,7 @@ struct PaperReport {
   const PaperExperiment& experiment;
   std::string command;                   ///< the command that made it
   const SeriesReport* series = nullptr;  ///< bodies at several resolutions; may be null
+  bool tex = false;                      ///< also write each table for LaTeX
 };
 
 /// Writes records.jsonl, table1.csv, table2.csv, ratios.csv, tables.json, report.md, index.html, with gnuplot

@@ -1,10 +1,13 @@
 #include "scenarios/report/document.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
 #include "render/page_palette.hpp"
+#include "scenarios/io/columns.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -53,11 +56,6 @@ std::string script_safe(std::string_view text) {
 PngBytes read_png_bytes(const std::string& path) {
   const std::string bytes = io::read_text(path);
   return {bytes.begin(), bytes.end()};
-}
-
-std::string made(std::string folder) {
-  make_folder(folder);
-  return folder;
 }
 
 std::string uri_of(const std::string& file, const std::string& bytes) {
@@ -113,8 +111,20 @@ std::string comparison_html(const Comparison& c, const std::string* uris) {
 
 }  // namespace
 
-Folder::Folder(std::string path) : path_(made(std::move(path))), lock_(path_) {
+Folder::Folder(std::string path)
+    : path_(std::move(path)), existed_(std::filesystem::exists(path_)), lock_((make_folder(path_), path_)) {
   io::reject_links(path_);
+}
+
+Folder::~Folder() {
+  std::error_code ignored;
+  if (!existed_ && std::filesystem::is_empty(path_, ignored)) std::filesystem::remove(path_, ignored);
+}
+
+std::string in_columns(const Table& table, std::size_t left) {
+  std::vector<std::vector<std::string>> rows = {table.columns};
+  rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  return io::in_columns(rows, left);
 }
 
 std::string csv(const Table& table) {
@@ -140,18 +150,21 @@ std::string csv(const Table& table) {
 namespace {
 
 std::string tex(const std::string& text) {
-  static constexpr std::pair<std::string_view, std::string_view> kForms[] = {{"\\", "\\textbackslash{}"},
-                                                                             {"&", "\\&"},
-                                                                             {"%", "\\%"},
-                                                                             {"$", "\\$"},
-                                                                             {"#", "\\#"},
-                                                                             {"_", "\\_"},
-                                                                             {"{", "\\{"},
-                                                                             {"}", "\\}"},
-                                                                             {"~", "\\textasciitilde{}"},
-                                                                             {"^", "\\textasciicircum{}"},
-                                                                             {"\u2013", "--"},
-                                                                             {"\u00b5", "\\textmu{}"}};
+  static constexpr std::pair<std::string_view, std::string_view> kForms[] = {
+      {"\\", "\\textbackslash{}"},
+      {"&", "\\&"},
+      {"%", "\\%"},
+      {"$", "\\$"},
+      {"#", "\\#"},
+      {"_", "\\_"},
+      {"{", "\\{"},
+      {"}", "\\}"},
+      {"~", "\\textasciitilde{}"},
+      {"^", "\\textasciicircum{}"},
+      {"\u2013", "--"},
+      {"\u202f", "\\,"},
+      {"\u00b2", "\\textsuperscript{2}"},
+      {"\u00b5", "\\textmu{}"}};
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const auto form = std::find_if(std::begin(kForms), std::end(kForms), [&](const auto& f) {
@@ -185,15 +198,13 @@ std::string booktabs(const Table& table) {
   };
   out += "}\n\\toprule\n";
   line(table.columns);
-  std::string group;
+  const auto continues = [&](std::size_t i) { return i > 0 && table.rows[i][0] == table.rows[i - 1][0]; };
+  bool grouped = false;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) grouped |= continues(i);
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     std::vector<std::string> row = table.rows[i];
-    if (i == 0 || row[0] != group) {
-      out += "\\midrule\n";
-      group = row[0];
-    } else {
-      row[0].clear();
-    }
+    if (i == 0 || (grouped && !continues(i))) out += "\\midrule\n";
+    if (continues(i)) row[0].clear();
     line(row);
   }
   return out + "\\bottomrule\n\\end{tabular}\n";
@@ -279,7 +290,22 @@ Document& Document::chart(const Chart& chart) {
       true);
 }
 
+Document& Document::tables_as_tex(bool on) {
+  tables_as_tex_ = on;
+  return *this;
+}
+
 Document& Document::table(const Table& t) {
+  if (tables_as_tex_ && t.columns.size() > 1) {
+    std::string name;
+    for (const char c : t.title)
+      if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+        name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      else if (!name.empty() && name.back() != '-')
+        name += '-';
+    name.erase(name.find_last_not_of('-') + 1);
+    file(name + ".tex", booktabs(t), t.title + ", for LaTeX");
+  }
   std::string head, rows;
   for (std::size_t c = 0; c < t.columns.size(); ++c) {
     const bool numeric = !t.rows.empty() && c < t.rows[0].size() && looks_numeric(t.rows[0][c]);

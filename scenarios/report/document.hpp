@@ -39,9 +39,12 @@ struct Table {
 /// Returns columns and rows of a table as CSV (RFC 4180), for other programs. Cells with a comma, a quote or
 /// a line break are quoted.
 std::string csv(const Table& table);
+/// Returns columns and rows of a table as aligned text; see io::in_columns().
+std::string in_columns(const Table& table, std::size_t left = 1);
 
 /// Returns a table as a LaTeX tabular with the rules of the package booktabs. Columns of numbers are aligned
-/// right. Rows with the same first cell form a group: it is written once, with a rule before the next group.
+/// right. Successive rows with the same first cell form a group: it is written once, with a rule between
+/// groups.
 std::string booktabs(const Table& table);
 
 /// A heading and a paragraph.
@@ -125,15 +128,19 @@ struct Link {
 };
 
 /// An output folder for writing: created if missing, locked against other processes, and without links under
-/// the names that reports write (see reject_links()).
+/// the names that reports write (see reject_links()). A created folder that stays empty is removed.
 class Folder {
  public:
   Folder(std::string path);  // NOLINT(google-explicit-constructor): a path names the folder
   Folder(const char* path) : Folder(std::string(path)) {}  // NOLINT(google-explicit-constructor)
-  operator const std::string&() const { return path_; }    // NOLINT(google-explicit-constructor)
+  ~Folder();
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  operator const std::string&() const { return path_; }  // NOLINT(google-explicit-constructor)
 
  private:
   std::string path_;
+  bool existed_;
   io::FolderLock lock_;
 };
 
@@ -159,6 +166,8 @@ class Document {
   Document& number(const Number& number);  ///< below the texts, in a row
   Document& chart(const Chart& chart);
   Document& table(const Table& table);
+  /// Writes each table that is added from now on to a file, too: its title, with dashes, and .tex.
+  Document& tables_as_tex(bool on);
   Document& grid(const Grid& grid, const std::string& folder);
   Document& comparisons(const std::vector<Comparison>& comparisons);
   Document& views(const std::vector<View>& views);  ///< with one camera and one time step
@@ -215,7 +224,7 @@ class Document {
   std::string_view (*meaning_of_)(std::string_view) = nullptr;
   std::string texts_, numbers_, body_;
   std::string styles_, libraries_, scripts_, view_data_, charts_, frames_ = "[]";
-  bool of_run_ = false, framing_ = false, in_charts_ = false;
+  bool of_run_ = false, framing_ = false, in_charts_ = false, tables_as_tex_ = false;
   std::size_t chart_count_ = 0;
   std::vector<Link> links_;
   std::vector<std::pair<std::string, std::string>> files_;

@@ -226,12 +226,19 @@ TEST_CASE("lrbscope stability --quantity: table, records, a repeated case, an un
   setenv("LRBSCOPE_METHODS", LRBSCOPE_FOLDER, 1);
   const test::Folder folder;
   const std::vector<std::string> kiss = {"stability", "--quantity", "distance", "--family", "kiss",
-                                         "--method",  "ours",       "--cases",  "1"};
+                                         "--method",  "ours",       "--cases",  "1",        "--tex"};
   test::Outcome o = test::run(folder, kiss);
   CHECK(o.code == 0);
   CHECK(o.out.find("out/stability-distance/records.jsonl\n") != std::string::npos);
   CHECK(test::slurp(folder / "out/stability-distance/index.html")
             .find("The distance between the surfaces of two bodies") != std::string::npos);
+  CHECK(test::slurp(folder / "out/stability-distance/grid.tex").find("\nkiss & 0/11 \\\\\n") !=
+        std::string::npos);
+  const std::string csv = test::slurp(folder / "out/stability-distance/grid.csv");
+  CHECK(
+      csv.starts_with("family,method,difficulty,cases,wrong,crashed,timed_out,refused\n"
+                      "kiss,ours,0,1,0,0,0,0\nkiss,ours,1,1,0,0,0,0\n"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 11);
   std::vector<std::string> again = kiss;
   again.insert(again.end(), {"--difficulty", "3", "--only", "0"});
   o = test::run(folder, again);

@@ -230,11 +230,11 @@ TEST_CASE("without gnuplot the page is written, with one line on the missing pro
   const GnuplotIs none("lrbscope-has-no-such-program");
   const std::string folder = scratch_folder("no_gnuplot");
   const report::Document page = write_stability_report(made_up_grid(), folder);
-  CHECK(page.written() == std::vector<std::string>{"index.html"});
+  CHECK(page.written() == std::vector<std::string>{"index.html", "grid.csv"});
   REQUIRE(page.notes().size() == 1);
   CHECK(page.notes()[0].find("gnuplot-nox") != std::string::npos);
   CHECK(page.notes()[0].find('\n') == std::string::npos);
-  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 2);
   CHECK_FALSE(report::has_gnuplot());
 }
 

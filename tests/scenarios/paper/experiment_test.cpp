@@ -203,7 +203,9 @@ TEST_CASE("the icicle chart has a box for each visited region") {
 TEST_CASE("paper --experiment: only the requested parts, on your own bodies; pictures in report and page") {
   const test::Folder folder;
   const auto run = [&](std::vector<std::string> args) { return test::run(folder, std::move(args)); };
-  REQUIRE(run({"paper", "--experiment", "table1", "-o", "one"}).code == 0);
+  REQUIRE(run({"paper", "--experiment", "table1", "-o", "one", "--tex"}).code == 0);
+  CHECK(test::slurp(folder / "one/table-1-object-sizes.tex").find("\\begin{tabular}{lrrl}") !=
+        std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder / "one/records.jsonl"));
   CHECK(test::slurp(folder / "one/report.md").find("| H | 34\u202f474 | 43\u202f396 | 7 faces |") !=
         std::string::npos);
