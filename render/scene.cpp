@@ -53,7 +53,7 @@ std::vector<FaceId> Context::pseudo_in_contact() const {
 Rgba Context::region_colour(RegionId r) const {
   switch (options.colour_by) {
     case ColourBy::layer:
-      return palette::viridis(layers > 1 ? static_cast<double>(body.rep->layer(r)) / (layers - 1) : 1.0);
+      return style().value(layers > 1 ? static_cast<double>(body.rep->layer(r)) / (layers - 1) : 1.0);
     case ColourBy::region:
       return palette::category(r);
     default:
@@ -66,7 +66,7 @@ Rgba Context::colour_of(FaceId f, CellId cell) const {
   if (options.colour_by == ColourBy::value) {
     if (!has_value(f)) return style().pale(colour(), palette::kNoValuePale);
     const double range = value_high - value_low;
-    return palette::viridis(range > 0 ? (body.face_values[f] - value_low) / range : 0);
+    return style().value(range > 0 ? (body.face_values[f] - value_low) / range : 0);
   }
   if (is_region(cell)) return region_colour(cell.as_region());
   return options.colour_by == ColourBy::kind ? colour() : style().pale(colour(), palette::kGroundPale);

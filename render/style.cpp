@@ -78,7 +78,8 @@ constexpr Style kScreen = {.paper = kWhite,
                            .solid_share = {palette::kSolidShare, palette::kSolidShare},
                            .lid_pale = {palette::kLidPale, palette::kLidPale},
                            .edge_share = {palette::kEdgeShare, palette::kEdgeShare},
-                           .weight = 1};
+                           .weight = 1,
+                           .falling = false};
 
 /// Black on white; kinds differ more in lightness than on a screen, for greyscale print. B is lighter than A
 /// in everything: faces, pseudo faces and lines.
@@ -97,7 +98,8 @@ constexpr Style kPrint = {.paper = kWhite,
                           .solid_share = {0.48, 0.28},
                           .lid_pale = {0.45, 0.85},
                           .edge_share = {0.80, 0.50},
-                          .weight = 0.7F};
+                          .weight = 0.7F,
+                          .falling = true};
 
 /// For slides: almost black background, light lines and texts.
 constexpr Style kDark = {.paper = {20, 22, 27},
@@ -115,7 +117,8 @@ constexpr Style kDark = {.paper = {20, 22, 27},
                          .solid_share = {0, 0},
                          .lid_pale = {0.25, 0.25},
                          .edge_share = {palette::kEdgeShare, palette::kEdgeShare},
-                         .weight = 1.15F};
+                         .weight = 1.15F,
+                         .falling = false};
 
 }  // namespace
 

@@ -151,10 +151,13 @@ class PaintSorter {
     cell_ = std::max(all.sizes().maxCoeff() / cells, 1e-9);
   }
 
-  std::vector<ScreenFace> sorted() {
+  /// Returns nullopt if the faces have too many parts.
+  std::optional<std::vector<ScreenFace>> sorted() {
+    const std::size_t most = kFewParts + kMaxParts * todo_.size();
     // Step 1: faces that intersect no other one. In order from the last, so that the list's order is kept.
     std::reverse(todo_.begin(), todo_.end());
     while (!todo_.empty()) {
+      if (faces_.size() + todo_.size() > most) return std::nullopt;
       ScreenFace face = std::move(todo_.back());
       todo_.pop_back();
       insert(std::move(face));
@@ -167,7 +170,7 @@ class PaintSorter {
     for (std::size_t i = 0; i < faces_.size(); ++i) set_ready(i);
     for (;;) {
       const std::optional<std::size_t> next = next_ready();
-      if (!next && !break_cycle()) break;
+      if (!next && !break_cycle(faces_.size() < most)) break;
       if (!next) continue;
       faces_[*next].done = true;
       for (const std::size_t after : faces_[*next].after) release(after);
@@ -180,10 +183,12 @@ class PaintSorter {
   using Colour = std::array<std::uint8_t, 5>;  ///< layer and colour as drawn
   struct Item {
     ScreenFace face;
+    AlignedBox2d box;
     Colour colour{};
     std::vector<std::size_t> after, before;  ///< faces to be painted after and before it
     std::size_t waits = 0;                   ///< number of faces in `before` that are not done
     bool done = false;                       ///< painted, or replaced by its parts
+    std::size_t visit = 0;                   ///< number of the last search that found it
   };
   enum class Relation : std::uint8_t { none, p_first, q_first, crossing };
 
@@ -226,17 +231,21 @@ class PaintSorter {
   }
 
   /// Returns the faces in the cells of a face, ascending.
-  std::vector<std::size_t> near(const ScreenFace& f) const {
+  std::vector<std::size_t> near(const ScreenFace& f) {
     std::vector<std::size_t> out;
+    const AlignedBox2d box = box_of(f);
+    ++visits_;
     for_cells(f, [&](const std::pair<int, int>& cell) {
-      if (const auto found = grid_.find(cell); found != grid_.end())
-        out.insert(out.end(), found->second.begin(), found->second.end());
+      const auto found = grid_.find(cell);
+      if (found == grid_.end()) return;
+      std::erase_if(found->second, [&](std::size_t i) { return faces_[i].done; });
+      for (const std::size_t i : found->second) {
+        if (faces_[i].visit == visits_) continue;
+        faces_[i].visit = visits_;
+        if (box.intersects(faces_[i].box)) out.push_back(i);
+      }
     });
     std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
-    const AlignedBox2d box = box_of(f);
-    std::erase_if(out,
-                  [&](std::size_t i) { return faces_[i].done || !box.intersects(box_of(faces_[i].face)); });
     return out;
   }
 
@@ -246,6 +255,7 @@ class PaintSorter {
     const DrawTriangle& t = list_.triangles[face.triangle];
     const Rgba c = looks_.of(t).colour;
     faces_.back().colour = {static_cast<std::uint8_t>(t.layer), c.r, c.g, c.b, c.a};
+    faces_.back().box = box_of(face);
     faces_.back().face = std::move(face);
     return faces_.size() - 1;
   }
@@ -333,7 +343,7 @@ class PaintSorter {
   }
 
   /// Splits a face of a cycle, or releases one if none can be split. Returns false if all faces are done.
-  bool break_cycle() {
+  bool break_cycle(bool may_split) {
     const auto waiting = std::find_if(faces_.begin(), faces_.end(), [](const Item& f) { return !f.done; });
     if (waiting == faces_.end()) return false;
     // Go from face to face that must come before, until one is met again.
@@ -348,8 +358,7 @@ class PaintSorter {
     }
     path.erase(path.begin(), std::find(path.begin(), path.end(), path.back()));
     // One of the faces crosses the plane of another one, or they would not overlap cyclically.
-    const bool few = faces_.size() < kMaxParts * list_.triangles.size();
-    for (std::size_t k = 0; few && k + 1 < path.size(); ++k)
+    for (std::size_t k = 0; may_split && k + 1 < path.size(); ++k)
       for (std::size_t l = 0; l + 1 < path.size(); ++l) {
         if (l == k) continue;
         std::vector<ScreenFace> parts = split(faces_[path[k]].face, faces_[path[l]].face);
@@ -374,7 +383,7 @@ class PaintSorter {
     for (std::size_t k = first; k < faces_.size(); ++k) set_ready(k);
   }
 
-  static constexpr std::size_t kMaxParts = 8;  ///< per triangle of the list, on average
+  static constexpr std::size_t kFewParts = 10000, kMaxParts = 8;  ///< allowed in any case; per face
 
   const DrawList& list_;
   const FaceLooks& looks_;
@@ -385,6 +394,7 @@ class PaintSorter {
   std::map<std::pair<int, int>, std::vector<std::size_t>> grid_;
   std::map<Colour, std::set<std::size_t>> ready_;  ///< faces that wait for no other one, by colour
   Colour last_{};                                  ///< of the last face
+  std::size_t visits_ = 0;                         ///< number of searches
 };
 
 /// Paints faces in runs of one colour that do not overlap, each as one path, and then their edges.
@@ -490,8 +500,9 @@ std::optional<std::vector<std::uint32_t>> visible_faces(const DrawList& list, co
   return out;
 }
 
-std::vector<ScreenFace> painting_order(const DrawList& list, const Projection& projection,
-                                       const FaceLooks& looks, const std::vector<std::uint32_t>& triangles) {
+std::optional<std::vector<ScreenFace>> painting_order(const DrawList& list, const Projection& projection,
+                                                      const FaceLooks& looks,
+                                                      const std::vector<std::uint32_t>& triangles) {
   std::vector<ScreenFace> faces;
   for (const std::uint32_t i : triangles) {
     std::optional<ScreenFace> face = on_screen(list, projection, i);

@@ -34,6 +34,7 @@ struct FigureOptions {
   std::vector<std::string> bodies;
   std::vector<std::uint32_t> faces, events, steps;
   bool layers = false, close_up = false, tex = false, try_views = false;
+  std::optional<bool> wrappers;
   std::size_t views = 0;  ///< 0: chosen by the number of bodies
   PictureOptions picture;
   figure::FigureSpec figure;
@@ -166,6 +167,17 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
   picture.dpi.reset();  // set for the whole figure
   if (!picture.style) picture.style = render::StyleName::print;
   apply(picture, frames);
+  // Wrappers would hide real faces, which the complete query tests. Only wrappers are refined.
+  const bool hides_values = source.recording.trace.header.request.recursion == Recursion::complete &&
+                            render::is_value(frames.colour_by) &&
+                            frames.colour_by != render::FrameSpec::ColourBy::refinements;
+  if (!o.wrappers.value_or(!hides_values)) {
+    if (frames.views.empty()) frames.views.emplace_back();
+    for (render::FrameSpec::View& view : frames.views) {
+      view.wrapper = false;
+      if (!o.try_views) view.title.clear();  // it may speak of wrappers
+    }
+  }
   run::check_views(frames.views, source.recording.bodies[0].rep.dim());
   if (source.own_view && picture.camera.from.empty() && !o.try_views) {
     if (frames.views.empty()) frames.views.emplace_back();
@@ -282,7 +294,9 @@ int run_figure(const FigureOptions& o, const CLI::App& app, const Globals& globa
   if (o.try_views && source.recording.trace.events.size() > 0)
     spec.choice = {figure::Choice::By::events,
                    {static_cast<std::uint32_t>(source.recording.trace.events.size() - 1)}};
-  const run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
+  run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
+  for (const trace::EventId event : figure::choose(recorded, spec.choice).events)
+    recorded.close_up_steps.push_back(recorded.trace->step_of(event));
   if (o.close_up) run::widen_close_ups(recorded, frames.views);
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
@@ -369,6 +383,12 @@ void add_paper_options(CLI::App& app, FigureOptions& o) {
       ->type_name("N");
   app.add_flag("--title,!--no-title", o.figure.titles,
                "Show or hide a title below each panel, after its letter [hidden]");
+  CLI::Option* wrappers = app.add_flag_callback(
+      "--wrappers", [&o] { o.wrappers = true; },
+      "Draw the bodies in their wrappers [unless these hide faces that --colour-by colours]");
+  app.add_flag_callback(
+         "--no-wrappers", [&o] { o.wrappers = false; }, "Draw the bodies alone")
+      ->excludes(wrappers);
   app.add_flag("--legend,!--no-legend", o.figure.legend, "Show or hide the legend and colour bar [shown]");
   app.add_flag("--caption", o.figure.caption,
                "Set the caption below the panels; it is always written to FIG.caption.txt");

@@ -130,6 +130,11 @@ constexpr auto enum_names(StyleName) {
   return std::to_array<EnumName<Word>>(
       {{Word::screen, "screen"}, {Word::print, "print"}, {Word::dark, "dark"}});
 }
+/// Returns true if a colouring shows numbers, by a colour scale.
+constexpr bool is_value(FrameSpec::ColourBy by) {
+  using Word = FrameSpec::ColourBy;
+  return by != Word::kind && by != Word::layer && by != Word::region;
+}
 /// Returns the event detail that a colouring requires.
 constexpr EventLevel needed_level(FrameSpec::ColourBy by) {
   using Word = FrameSpec::ColourBy;

@@ -139,7 +139,8 @@ void check_target(const std::string& option, const Target& target, std::span<con
   const std::uint32_t count = face ? rep.face_count() : rep.region_count();
   if (target.number < count) return;
   throw InputError(option + ": expected a number below " + std::to_string(count) +
-                   ", which is the number of " + (face ? "faces" : "regions") + " of " + rep.name());
+                   ", which is the number of " + (face ? "real and pseudo faces" : "regions") + " of " +
+                   rep.name());
 }
 
 std::string name_of(const Target& target, std::size_t bodies) {

@@ -142,11 +142,7 @@ class FigureJob {
     return out;
   }
 
-  bool shows_values() const {
-    using ColourBy = render::FrameSpec::ColourBy;
-    const ColourBy by = frames_.colour_by;
-    return by != ColourBy::kind && by != ColourBy::layer && by != ColourBy::region;
-  }
+  bool shows_values() const { return render::is_value(frames_.colour_by); }
 
   /// Returns true if a panel's content extends beyond the view, as in a close-up.
   static bool runs_over(const Block& block) {
@@ -284,15 +280,17 @@ class FigureJob {
   /// frame in the panel can be seen, and so that it is larger than in the panel.
   void add_inset(std::size_t b, std::size_t i, std::size_t panel, std::size_t k) {
     constexpr double kFaceRoom = 4, kRoom = 1.7;  // sides of the square, in sizes of the target
-    constexpr double kLeast = 1.5, kMax = 12;
+    constexpr double kLeast = 1.5, kMax = 12, kWhole = 1.1;
     const BlockLayout& block = layout_.blocks[b];
     const auto& [inset, target] = inset_boxes_[panel][k];
     Piece piece{panels_[b][i].view, panels_[b][i].moment, b, panel, {}, 0, inset};
     piece.place.box = block.panels[i].insets[k];
     const double side = piece.place.box.sizes().x(),
                  room = inset->target.kind == Target::Kind::face ? kFaceRoom : kRoom,
-                 fitted = side / (room * std::max(target.sizes().maxCoeff(), 1e-9 * kViewSide) * block.scale);
-    piece.magnification = inset->magnification > 0 ? inset->magnification : std::clamp(fitted, kLeast, kMax);
+                 exact = side / (std::max(target.sizes().maxCoeff(), 1e-9 * kViewSide) * block.scale),
+                 least = std::clamp(exact / kWhole, 1.0, kLeast);
+    piece.magnification =
+        inset->magnification > 0 ? inset->magnification : std::clamp(exact / room, least, kMax);
     piece.scale = piece.magnification * block.scale;
     const Vector2d half = 0.5 * piece.place.box.sizes() / piece.scale;
     piece.shown = {target.center() - half, target.center() + half};
@@ -575,7 +573,7 @@ class FigureJob {
       const auto callouts = add_marks(shown.list, piece);
       flat() ? paint_flat(canvas, shown.list, camera(*piece.view, piece.moment), piece.place, piece.scale)
              : paint_deep(canvas, shown.list, camera(*piece.view, piece.moment), piece.place, piece.scale,
-                          dpi_, visible_.empty() ? nullptr : &visible_[i]);
+                          dpi_, vector_faces_.empty() ? nullptr : &vector_faces_[i]);
       if (piece.inset != nullptr) {
         canvas.stroke(render::corners(piece.place.box), true,
                       {style().ink, std::max(kHairline, 1.5 * figure_.line_width), 0});
@@ -645,41 +643,47 @@ class FigureJob {
       const render::DrawList list = scene(*piece.view, piece.moment).list;
       const DeepView deep = deep_view(camera(*piece.view, piece.moment), piece.place, piece.scale, dpi_);
       const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
-      auto visible = render::visible_faces(list, projection(deep, list), depths);
-      if (visible && visible->size() <= figure_.vector_faces) {
-        visible_.push_back(std::move(*visible));
+      const render::Projection on_paper = projection(deep, list);
+      const auto visible = render::visible_faces(list, on_paper, depths);
+      const bool few = visible && visible->size() <= figure_.vector_faces;
+      auto ordered =
+          few ? render::painting_order(list, on_paper, looks(list, on_paper), *visible) : std::nullopt;
+      if (ordered) {
+        vector_faces_.push_back(std::move(*ordered));
         continue;
       }
-      visible_.clear();
+      vector_faces_.clear();
       if (visible)
         notes.push_back("faces are an image of " + render::short_number(dpi_) + " dpi: " +
                         (captions_.size() > 1 ? "panel " + render::panel_letter(piece.panel) + " has " : "") +
                         render::counted(visible->size(), "visible face", "visible faces") +
-                        ", more than --vector-faces " + std::to_string(figure_.vector_faces));
+                        (few ? ", which intersect each other too often"
+                             : ", more than --vector-faces " + std::to_string(figure_.vector_faces)));
       return;
     }
+  }
+
+  static render::FaceLooks looks(const render::DrawList& list, const render::Projection& on_paper) {
+    return {list, on_paper, 1, render::Lighting(), true};
   }
 
   static render::Projection projection(const DeepView& deep, const render::DrawList& list) {
     return {deep.camera, deep.paper.x(), deep.paper.y(), render::bounds(list)};
   }
 
-  /// Paints the faces `visible` as vector graphics, or without them all faces as pixels of resolution `dpi`,
+  /// Paints `faces` as vector graphics, or without them all faces as pixels of resolution `dpi`,
   /// with whole pixels in the panel's box. Paints lines and texts over them.
   void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
                   const PanelPlace& place, double scale, double dpi,
-                  const std::vector<std::uint32_t>* visible = nullptr) {
+                  const std::vector<render::ScreenFace>* faces = nullptr) {
     const DeepView deep = deep_view(whole, place, scale, dpi);
     const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
     const render::Projection on_paper = projection(deep, list);
     const Vector2d& origin = place.box.min();
-    if (visible == nullptr) canvas.picture(pixels(list, deep), place.box);
+    if (faces == nullptr) canvas.picture(pixels(list, deep), place.box);
     canvas.begin_clip(place.box);
-    if (visible != nullptr) {
-      const render::Lighting lighting;
-      const render::FaceLooks looks(list, on_paper, 1, lighting, true);
-      render::paint_faces(canvas, list, render::painting_order(list, on_paper, looks, *visible), looks,
-                          origin);
+    if (faces != nullptr) {
+      render::paint_faces(canvas, list, *faces, looks(list, on_paper), origin);
       render::paint_visible_lines(canvas, list, on_paper, depths, origin);
     }
     render::paint_over(canvas, list, on_paper, depths, origin);
@@ -718,8 +722,8 @@ class FigureJob {
   /// (panels) insets with the boxes of their targets in the view
   std::vector<std::vector<std::pair<const Inset*, AlignedBox2d>>> inset_boxes_;
   std::vector<Piece> pieces_;
-  std::vector<std::vector<std::uint32_t>>
-      visible_;                       ///< (pieces) faces to draw as vector graphics; empty: image
+  std::vector<std::vector<render::ScreenFace>>
+      vector_faces_;                  ///< (pieces) faces to draw as vector graphics; empty: image
   std::set<std::size_t> called_out_;  ///< callouts that were drawn
   std::set<std::string> covered_;     ///< letters of panels with texts of callouts over the bodies
 };

@@ -224,9 +224,7 @@ double place_legend(const std::vector<render::LegendItem>& legend, const LayoutO
                room = o.width - 0.2 * em;  // outlines of marks stay inside the paper's width
   std::vector<double> widths, marks;
   for (const render::LegendItem& item : legend) {
-    const bool line =
-        item.mark == render::LegendItem::Mark::line || item.mark == render::LegendItem::Mark::dashed;
-    marks.push_back(line ? 1.8 * em : 0.9 * em);
+    marks.push_back(item.is_line() ? 1.8 * em : 0.9 * em);
     widths.push_back(marks.back() + 0.4 * em + render::text_width(item.text, out.text_height));
     if (widths.back() > room)
       throw InputError("the legend's entry \"" + item.text + "\" is wider than the figure of " +
@@ -316,6 +314,24 @@ void paint_mark(render::Canvas& canvas, const AlignedBox2d& box, const render::L
     case Mark::line:
       canvas.stroke({left, right}, false, {item.colour, 1.5 * thick, 0});
       break;
+    case Mark::thin:
+      canvas.stroke({left, right}, false, {item.colour, 0.4 * thick, 0});
+      break;
+    case Mark::ends: {
+      const Vector2d inset(0.25 * box.sizes().y(), 0);
+      canvas.stroke({left, right}, false, {item.colour, 1.2 * thick, 0});
+      for (const Vector2d& end : {Vector2d(left + inset), Vector2d(right - inset)})
+        canvas.disc(end, 0.25 * box.sizes().y(), item.colour);
+      break;
+    }
+    case Mark::arrow:
+    case Mark::thin_arrow: {
+      const double width = item.mark == Mark::arrow ? 1.2 * thick : 0.4 * thick, head = 0.4 * box.sizes().y();
+      canvas.stroke({left, right}, false, {item.colour, width, 0});
+      canvas.stroke({right + Vector2d(-head, head), right, right - Vector2d(head, head)}, false,
+                    {item.colour, width, 0});
+      break;
+    }
     case Mark::dashed:
       canvas.stroke({left, right}, false, {item.colour, 1.2 * thick, box.sizes().x() / 5});
       break;
@@ -326,14 +342,15 @@ void paint_mark(render::Canvas& canvas, const AlignedBox2d& box, const render::L
 }
 
 void paint_bar(render::Canvas& canvas, const FigureLayout& layout, const render::ScaleBar& scale,
-               render::Rgba ink) {
+               const render::Style& style) {
   constexpr int kSteps = 128;
+  const render::Rgba ink = style.ink;
   const AlignedBox2d& bar = *layout.bar;
   // Each step extends to the right end, under the next ones, because paper would show between steps that only
   // touch.
   for (int i = 0; i < kSteps; ++i) {
     const Vector2d from(bar.min().x() + bar.sizes().x() * i / kSteps, bar.min().y());
-    canvas.fill({render::corners({from, bar.max()})}, palette::viridis(i / (kSteps - 1.0)));
+    canvas.fill({render::corners({from, bar.max()})}, style.value(i / (kSteps - 1.0)));
   }
   const double y = bar.center().y(), gap = 0.4 * layout.text_height, height = layout.text_height;
   canvas.text({layout.bar_text, scale.text, height, false, ink, render::Align::centre});
@@ -351,7 +368,7 @@ void paint_key(render::Canvas& canvas, const FigureLayout& layout,
     paint_mark(canvas, layout.legend[i].mark, legend[i], style);
     canvas.text({layout.legend[i].text, legend[i].text, layout.text_height, false, style.ink});
   }
-  if (scale) paint_bar(canvas, layout, *scale, style.ink);
+  if (scale) paint_bar(canvas, layout, *scale, style);
 }
 
 }  // namespace lrb::figure

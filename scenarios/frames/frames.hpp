@@ -31,6 +31,7 @@ struct RecordedRun {
   /// name; null: compute them.
   const std::array<std::vector<double>, 2>* face_values = nullptr;
   std::string value_name = {};
+  std::vector<std::size_t> close_up_steps = {};  ///< steps whose contacts a close-up shows; empty: all
 };
 
 /// Returns the caption to print below a figure: the purpose, then the texts of its panels.

@@ -34,16 +34,24 @@ std::vector<Vector3d> extremes(const std::vector<Vector3d>& points) {
   return out;
 }
 
-/// Adds the corners of all intersecting faces: for coarse answers, which have no contact regions.
-void add_contacts(const RecordedRun& p, std::vector<Vector3d>& points) {
-  for (std::size_t i = 0; i < p.trace->steps.size(); ++i)
+/// Returns the contacts that close-ups show. Coarse answers have no contact regions: the corners of all
+/// intersecting faces.
+std::vector<Vector3d> contacts_of(const RecordedRun& p) {
+  std::vector<Vector3d> out;
+  for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
+    const std::vector<std::size_t>& shown = p.close_up_steps;
+    if (!shown.empty() && std::find(shown.begin(), shown.end(), i) == shown.end()) continue;
+    if (i < results_of(p).size())
+      for (const Vector3d& x : render::contact_points(results_of(p)[i].regions)) out.push_back(x);
+    if (!p.trace->header.request.is_coarse()) continue;
     for (const trace::Event& e : p.trace->events_of(i))
       for (std::size_t body = 0; e.kind == EventKind::contact && body < 2; ++body) {
         const LrbRep& rep = *p.reps[body];
         const FaceId face = rep.face_of_simplex(e.simplex(static_cast<Side>(body)));
-        for (const Vector3d& x : corners_of(rep, face, step_pose(p.trace->steps[i], body)))
-          points.push_back(x);
+        for (const Vector3d& x : corners_of(rep, face, step_pose(p.trace->steps[i], body))) out.push_back(x);
       }
+  }
+  return out;
 }
 
 /// Returns the points that a body shows: those of all its wrappers, with regions moved if it is exploded; or
@@ -175,8 +183,7 @@ bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& cl
   constexpr double kCloser = 1.8;  // minimum magnification of a close-up
   Framing framing;
   framing.points = points_at(recorded, step);
-  for (const CollideResult& result : *recorded.results)
-    for (const Vector3d& p : render::contact_points(result.regions)) framing.contacts.push_back(p);
+  framing.contacts = contacts_of(recorded);
   render::Look::View whole = close_up;
   whole.camera = render::Look::Camera::scene;
   const Eigen::AlignedBox3d box = render::bounds(framing.points);
@@ -212,9 +219,16 @@ Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
     for (const trace::Step& step : p.trace->steps)
       for (const Vector3d& x : body) f.points.push_back(step_pose(step, i).apply(x));
   }
-  if (p.trace->header.request.is_coarse()) add_contacts(p, f.contacts);
-  for (const CollideResult& result : results_of(p))
-    for (const Vector3d& x : render::contact_points(result.regions)) f.contacts.push_back(x);
+  f.contacts = contacts_of(p);
+  // The contacts of a few steps may be a point: a close-up of those still shows a part of the bodies.
+  if (!p.close_up_steps.empty() && !f.contacts.empty() && f.dim == 3) {
+    constexpr double kLeast = 0.1;  // of the size of everything
+    const Eigen::AlignedBox3d box = render::bounds(f.contacts);
+    const double missing = kLeast * render::bounds(f.points).diagonal().norm() - box.diagonal().norm();
+    for (int i = 0; i < 3 && missing > 0; ++i)
+      for (const double sign : {-1, 1})
+        f.contacts.push_back(box.center() + sign * missing / 2 * Vector3d::Unit(i));
+  }
   return f;
 }
 

@@ -36,7 +36,8 @@ std::vector<std::uint32_t> all_of(const render::DrawList& list) {
 
 std::vector<render::ScreenFace> ordered(const render::DrawList& list, const render::Projection& projection) {
   const render::Lighting lighting;
-  return render::painting_order(list, projection, {list, projection, 1, lighting, true}, all_of(list));
+  return render::painting_order(list, projection, {list, projection, 1, lighting, true}, all_of(list))
+      .value();
 }
 
 bool well_inside(const render::ScreenFace& f, const Vector2d& x) {
@@ -206,8 +207,8 @@ TEST_CASE("vector faces look like rasterized ones") {
     REQUIRE(visible);
     const render::Image vector =
         render::paint_pixels({kSide, kSide, render::kWhite, {}, {}}, 72, [&](render::Canvas& canvas) {
-          render::paint_faces(canvas, list, render::painting_order(list, projection, looks, *visible), looks,
-                              {0, 0});
+          render::paint_faces(canvas, list, render::painting_order(list, projection, looks, *visible).value(),
+                              looks, {0, 0});
         });
     render::RasterOptions options;
     options.width = options.height = kSide;
@@ -232,6 +233,14 @@ TEST_CASE("vector faces look like rasterized ones") {
     CHECK(areas > 4000);
     CHECK(different * 500 < areas);
   }
+}
+
+TEST_CASE("faces with too many parts are not ordered, after a bounded time") {
+  const render::DrawList list = tangle(7, 2000);
+  const render::Camera camera = camera_for(list, true);
+  const render::Projection projection = projection_of(camera, list);
+  const render::Lighting lighting;
+  CHECK_FALSE(render::painting_order(list, projection, {list, projection, 1, lighting, true}, all_of(list)));
 }
 
 TEST_CASE("each edge is painted once, with the last face that has it") {
@@ -268,7 +277,8 @@ TEST_CASE("each edge is painted once, with the last face that has it") {
   const render::Lighting lighting;
   const render::FaceLooks looks(list, projection, 1, lighting, true);
   Lines lines;
-  render::paint_faces(lines, list, render::painting_order(list, projection, looks, visible), looks, {0, 0});
+  render::paint_faces(lines, list, render::painting_order(list, projection, looks, visible).value(), looks,
+                      {0, 0});
   // Three sides, each in one colour and one path. Nine edges of the box and three diagonals are visible.
   CHECK(lines.of_fill.size() == 3);
   std::size_t sum = 0;

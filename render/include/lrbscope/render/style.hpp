@@ -180,6 +180,7 @@ struct Style {
   std::array<double, 2> lid_pale;     ///< share by which pseudo faces fade towards the paper
   std::array<double, 2> edge_share;   ///< mixing share of edge_ink for lines along the body's wrapper
   float weight;  ///< factor of the widths of lines and points: paper resolves finer ones than a screen
+  bool falling;  ///< colours of values get darker with the value, so that small ones are pale on paper
 
   /// Returns the colour of lines along primitives of colour `c`: outlines, and edges of translucent faces.
   /// (Edges on solid faces are palette::edge_of() in every style, because they are not on paper.)
@@ -197,6 +198,8 @@ struct Style {
   }
   /// Returns the colour of a body.
   constexpr Rgba body(Side side) const { return bodies[static_cast<std::size_t>(side)]; }
+  /// Returns the colour of a value at place t, in [0, 1], of a scale: viridis, reversed if `falling`.
+  Rgba value(double t) const { return palette::viridis(falling ? 1 - t : t); }
   /// Returns this style's colour for one of the palette's kinds; any other colour unchanged.
   Rgba of(Rgba kind) const;
 };
