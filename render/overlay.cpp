@@ -145,10 +145,7 @@ class Layouter {
     add_text(r, r.x + mark + margin_ / 2, item.text);
   }
 
-  int mark_width(const LegendItem& item) const {
-    const bool line = item.mark == LegendItem::Mark::line || item.mark == LegendItem::Mark::dashed;
-    return line ? 2 * mark_ : mark_;
-  }
+  int mark_width(const LegendItem& item) const { return item.is_line() ? 2 * mark_ : mark_; }
 
   int place_scale(int y) { return o_.scale->log ? place_log_scale(y) : place_linear_scale(y); }
 
@@ -220,38 +217,57 @@ int hairline(float scale) {
   return std::max(1, static_cast<int>(std::lround(scale)));
 }
 
+/// Draws a disc. Radius and centre are in pixels.
+void draw_disc(Image& image, double cx, double cy, double radius, Rgba colour) {
+  const auto first = [&](double c) { return static_cast<int>(std::floor(c - radius)); };
+  const auto last = [&](double c) { return static_cast<int>(std::ceil(c + radius)); };
+  for (int y = first(cy); y <= last(cy); ++y)
+    for (int x = first(cx); x <= last(cx); ++x) {
+      const double inside = radius + 0.5 - std::hypot(x + 0.5 - cx, y + 0.5 - cy);
+      image.blend(x, y, colour, static_cast<int>(255 * std::clamp(inside, 0.0, 1.0)));
+    }
+}
+
 void draw_mark(Image& image, const PixelRect& r, const LegendItem& item, int thin, const Style& style) {
-  const int thick = std::max(2, r.height / 5);
+  using Mark = LegendItem::Mark;
+  const int thick = std::max(2, r.height / 5), centre = r.y + r.height / 2;
+  const int width = item.mark == Mark::thin || item.mark == Mark::thin_arrow ? thin : thick;
+  const PixelRect line{r.x, r.y + (r.height - width) / 2, r.width, width};
   switch (item.mark) {
-    case LegendItem::Mark::solid:
+    case Mark::solid:
       image.fill(r, item.colour);
       image.stroke(r, style.edge_of(item.colour), thin);
       break;
-    case LegendItem::Mark::translucent:
+    case Mark::translucent:
       image.fill(r, with_alpha(item.colour, 80));
       image.stroke(r, mix(item.colour, style.ink, 0.3), std::max(thin, thick / 2));
       break;
-    case LegendItem::Mark::line:
-      image.fill({r.x, r.y + (r.height - thick) / 2, r.width, thick}, item.colour);
+    case Mark::line:
+    case Mark::thin:
+      image.fill(line, item.colour);
       break;
-    case LegendItem::Mark::dashed:
+    case Mark::dashed:
       // Three dashes with gaps of the same width.
       for (int part = 0; part < 5; part += 2) {
         const int x0 = r.x + r.width * part / 5, x1 = r.x + r.width * (part + 1) / 5;
-        image.fill({x0, r.y + (r.height - thick) / 2, x1 - x0, thick}, item.colour);
+        image.fill({x0, line.y, x1 - x0, width}, item.colour);
       }
       break;
-    case LegendItem::Mark::point: {
-      const double radius = 0.42 * r.height, cx = r.x + 0.5 * r.width, cy = r.y + 0.5 * r.height;
-      for (int y = r.y; y < r.bottom(); ++y) {
-        for (int x = r.x; x < r.right(); ++x) {
-          const double inside =
-              radius + 0.5 - std::sqrt((x + 0.5 - cx) * (x + 0.5 - cx) + (y + 0.5 - cy) * (y + 0.5 - cy));
-          image.blend(x, y, item.colour, static_cast<int>(255 * std::clamp(inside, 0.0, 1.0)));
-        }
-      }
+    case Mark::ends:
+      image.fill(line, item.colour);
+      for (const double x : {r.x + 0.2 * r.height, r.right() - 0.2 * r.height})
+        draw_disc(image, x, line.y + width / 2.0, 0.25 * r.height, item.colour);
       break;
-    }
+    case Mark::arrow:
+    case Mark::thin_arrow:
+      image.fill({line.x, line.y, line.width - width, width}, item.colour);
+      for (int back = 0; back < r.height / 2; ++back)
+        for (const int y : {centre - back - 1, centre + back})
+          image.fill({r.right() - width - back - 1, y, width + 1, 1}, item.colour);
+      break;
+    case Mark::point:
+      draw_disc(image, r.x + 0.5 * r.width, r.y + 0.5 * r.height, 0.42 * r.height, item.colour);
+      break;
   }
 }
 
@@ -308,7 +324,7 @@ void draw_overlay(Image& image, const Overlay& overlay, const OverlayLayout& lay
     draw_mark(image, layout.key_marks[i], overlay.key[i], hairline(layout.scale), style);
   for (int x = 0; x < layout.bar.width; ++x) {
     const double t = layout.bar.width > 1 ? static_cast<double>(x) / (layout.bar.width - 1) : 0;
-    image.fill({layout.bar.x + x, layout.bar.y, 1, layout.bar.height}, palette::viridis(t));
+    image.fill({layout.bar.x + x, layout.bar.y, 1, layout.bar.height}, style.value(t));
   }
   const PixelRect& bar = layout.bar;
   for (const int x : layout.ticks)

@@ -212,7 +212,7 @@ Image picture_of(const NearPairsResult& result, double within, const PosedBodies
     p.detail.insert(p.detail.end(), {pair.point[0], pair.point[1]});
     p.across += pair.point[1] - pair.point[0];
   }
-  add_near_pairs(p.scene, marks, drawn.size() == result.pairs.size(), style_of(look.style));
+  add_near_pairs(p.scene, marks, style_of(look.style));
   p.overlay.event_colour = palette::kContact;
   p.overlay.event = group_digits(result.found) + (result.found == 1 ? " pair" : " pairs") +
                     " of triangles at most " + short_number(within) + " apart";

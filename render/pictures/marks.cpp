@@ -106,13 +106,13 @@ void write_beside(render::DrawList& list, const Vector3d& x, float below, const 
 }
 
 /// Draws the barbs of an arrowhead in the plane of the arrow and `across`.
-void add_barbs(render::DrawList& list, const MarkedSegment& way, const Vector3d& across,
-               render::Rgba colour) {
+void add_barbs(render::DrawList& list, const MarkedSegment& way, const Vector3d& across, render::Rgba colour,
+               float width = kSegmentWidth) {
   constexpr double kHeadLength = 0.24, kHeadWidth = 0.11;
   const Vector3d along = way.to - way.from;
   const Vector3d back = way.to - kHeadLength * along, aside = kHeadWidth * along.norm() * across;
   for (const Vector3d& end : {Vector3d(back + aside), Vector3d(back - aside)})
-    outline(list, {end, way.to}, colour, kSegmentWidth);
+    outline(list, {end, way.to}, colour, width);
 }
 
 }  // namespace
@@ -123,8 +123,9 @@ void add_arrow(render::DrawList& list, const Vector3d& from, const Vector3d& to,
   // In the plane of a 2D body, and otherwise as upright as possible.
   Vector3d across = along.cross(Vector3d::UnitZ());
   if (across.norm() < 0.1 * along.norm()) across = along.cross(Vector3d::UnitX());
-  outline(list, {from, to}, colour, kSegmentWidth);
-  add_barbs(list, {from, to, ""}, across.normalized(), colour);
+  constexpr float kWidth = kSegmentWidth / 2;
+  outline(list, {from, to}, colour, kWidth);
+  add_barbs(list, {from, to, ""}, across.normalized(), colour, kWidth);
 }
 
 std::string interval_text(double lower, double upper) {
@@ -182,7 +183,7 @@ void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style
   outline(scene.list, {gap.from, gap.to}, colour, kSegmentWidth);
   for (const Vector3d& x : {gap.from, gap.to}) add_mark(scene.list, x, colour, 4, style.paper);
   write_beside(scene.list, (gap.from + gap.to) / 2, -kTextOff, gap.text, colour);
-  scene.key.push_back({render::LegendItem::Mark::line, colour, "nearest points"});
+  scene.key.push_back({render::LegendItem::Mark::ends, colour, "nearest points"});
 }
 
 namespace {
@@ -200,8 +201,7 @@ void add_line(render::DrawList& list, const Vector3d& from, const Vector3d& to, 
 
 }  // namespace
 
-void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, bool all,
-                    const render::Style& style) {
+void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, const render::Style& style) {
   const render::Rgba colour = style.of(kGapColour);
   bool has_segments = false;
   for (const NearMark& pair : pairs) {
@@ -213,8 +213,7 @@ void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, bool 
     add_line(scene.list, pair.points[0], pair.points[1], colour);
   }
   if (has_segments)
-    scene.key.push_back({render::LegendItem::Mark::line, colour,
-                         all ? "closest points" : "closest points of the nearest pairs"});
+    scene.key.push_back({render::LegendItem::Mark::thin, colour, "closest points of near pairs"});
 }
 
 void ShownPoints::add(std::span<const Vector3d> points, std::span<const PointDistance> distances) {
@@ -269,7 +268,7 @@ void add_point_distances(render::Scene& scene, std::span<const PointMark> points
     if (any) scene.key.push_back(key);
   }
   if (has_segments)
-    scene.key.push_back({render::LegendItem::Mark::line, style.of(kGapColour), "to the closest points"});
+    scene.key.push_back({render::LegendItem::Mark::thin, style.of(kGapColour), "to the closest points"});
 }
 
 render::LegendItem key_of(SelfContact kind) {
@@ -335,7 +334,7 @@ void add_contact_points(render::Scene& scene, std::span<const ContactMark> conta
     scene.key.push_back({render::LegendItem::Mark::point, of_gap,
                          "speculative, at most " + render::short_number(margin) + " apart"});
   if (!contacts.empty())
-    scene.key.push_back({render::LegendItem::Mark::line, kSeparationColour, "normals, from A to B"});
+    scene.key.push_back({render::LegendItem::Mark::thin_arrow, kSeparationColour, "normals, from A to B"});
 }
 
 void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int dim) {
@@ -345,7 +344,7 @@ void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int d
   add_barbs(scene.list, way, across, kSeparationColour);
   if (dim == 3) add_barbs(scene.list, way, along.cross(across), kSeparationColour);
   write_beside(scene.list, way.from, kTextOff, way.text, kSeparationColour);
-  scene.key.push_back({render::LegendItem::Mark::line, kSeparationColour, "B leaves A this way"});
+  scene.key.push_back({render::LegendItem::Mark::arrow, kSeparationColour, "B leaves A this way"});
 }
 
 // Separating planes.

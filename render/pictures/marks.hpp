@@ -70,9 +70,7 @@ struct NearMark {
   bool intersects = false;
 };
 /// Adds a thin segment between the closest points of each pair, or a point where the faces intersect.
-/// `all`: no pair is missing, for the key.
-void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, bool all,
-                    const render::Style& style);
+void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, const render::Style& style);
 
 /// A point and its closest point on a body. `side`: nullopt: without a side.
 struct PointMark {

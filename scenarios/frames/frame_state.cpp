@@ -180,14 +180,27 @@ render::SceneOptions FrameState::scene_options(const SceneParts& parts) const {
   return options;
 }
 
+namespace {
+
+/// Multiplies the sizes of lines, points and labels.
+void enlarge(render::DrawList& list, float factor) {
+  for (render::EdgeStyle& e : list.edge_styles) e.width *= factor;
+  for (render::DrawLine& l : list.lines)
+    for (float* size : {&l.width, &l.dash, &l.halo_width}) *size *= factor;
+  for (render::DrawPoint& p : list.points)
+    for (float* size : {&p.radius, &p.halo_width}) *size *= factor;
+  for (render::DrawLabel& l : list.labels)
+    for (float* size : {&l.height, &l.dx, &l.dy}) *size *= factor;
+}
+
+}  // namespace
+
 void FrameState::add_marks(render::Scene& scene, bool plain) const {
   const render::Style& style = style_of(spec_.style);
   if (now_.separating && !plain) add_separating_plane(scene.list, *now_.separating, bodies(), style);
   if (now_.gap) add_gap(scene, *now_.gap, style);
-  if (now_.answer != nullptr && now_.answer->near) {
-    const trace::MeasuredNearPairs& near = *now_.answer->near;
-    add_near_pairs(scene, near_marks(near), near.nearest.size() == near.pairs, style);
-  }
+  if (now_.answer != nullptr && now_.answer->near)
+    add_near_pairs(scene, near_marks(*now_.answer->near), style);
   if (now_.answer != nullptr && now_.answer->manifold)
     add_contact_points(scene, contact_marks(*now_.answer->manifold), now_.answer->manifold->margin,
                        size_of(bodies()), style);
@@ -208,7 +221,11 @@ render::Scene FrameState::scene(bool wrapper, bool plain) const {
   render::SceneOptions options = scene_options(parts);
   options.borders = plain;
   render::Scene scene = render::build_scene(parts.bodies, scene_highlight(wrapper, plain), options);
-  add_marks(scene, plain);
+  render::Scene marks;  // in pixels of the screen
+  add_marks(marks, plain);
+  enlarge(marks.list, options.scale);
+  scene.list.append(marks.list);
+  scene.key.insert(scene.key.end(), marks.key.begin(), marks.key.end());
   return scene;
 }
 

@@ -49,7 +49,17 @@ Image montage(const std::vector<Panel>& panels, const MontageOptions& options = 
 std::string panel_letter(std::size_t index);
 
 struct LegendItem {
-  enum class Mark : std::uint8_t { solid, translucent, line, dashed, point } mark = Mark::solid;
+  enum class Mark : std::uint8_t {
+    solid,
+    translucent,
+    line,
+    thin,  ///< a thin line
+    dashed,
+    ends,  ///< a line between two points
+    arrow,
+    thin_arrow,
+    point
+  } mark = Mark::solid;
   Rgba colour;
   std::string text;
   /// The colours that translucent faces are drawn in: of the face, of its edges, and of the surface under it.
@@ -58,6 +68,8 @@ struct LegendItem {
     Rgba face, edge, under;
   };
   std::optional<Swatch> swatch = {};
+
+  bool is_line() const { return mark != Mark::solid && mark != Mark::translucent && mark != Mark::point; }
 };
 
 /// Meaning of the viridis colours in this picture.
