@@ -241,12 +241,14 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
                         const ProgressReport& progress) {
   const render::FrameSpec spec = completed(given, recorded);
   DrawnFrames out;
+  const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
+  std::optional<FrameJob> laid_out;  // before any file is written: frames may be too small
+  if (!events.empty()) laid_out.emplace(recorded, spec, events);
   make_folder(folder + "/frames");
   remove_old_frames(folder);
-  const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
   if (events.empty()) return out;
 
-  FrameJob job(recorded, spec, events);
+  FrameJob& job = *laid_out;
   FrameState& state = job.state;
   const std::vector<std::size_t> in_montage =
       spec.montage > 0 ? evenly(events.size(), spec.montage) : std::vector<std::size_t>();

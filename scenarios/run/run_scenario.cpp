@@ -59,6 +59,12 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
   const RecordedRun recorded = recorded_run_of(scenario, recording);
   check(scenario, recorded);
   const report::Folder locked(folder);
+  const std::vector<std::pair<std::string, std::string>> text = {
+      {"Software", "lrbscope " + recording.trace.header.lrbscope},
+      {"lrbscope:scenario", scenario.name},
+      {"lrbscope:scenario_hash", trace::to_hex(scenario.hash)},
+  };
+  const DrawnFrames drawn = draw_frames(recorded, scenario.frames, folder, text, progress);
   const std::string trace_file = scenario.gzip ? "trace.json.gz" : "trace.json";
   std::error_code error;
   std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),
@@ -75,12 +81,6 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
 
   for (std::size_t i = 0; i < recording.bodies.size(); ++i)
     save_lrb(recording.bodies[i].rep, folder + (i == 0 ? "/a.lrb" : "/b.lrb"));
-  const std::vector<std::pair<std::string, std::string>> text = {
-      {"Software", "lrbscope " + recording.trace.header.lrbscope},
-      {"lrbscope:scenario", scenario.name},
-      {"lrbscope:scenario_hash", trace::to_hex(scenario.hash)},
-  };
-  const DrawnFrames drawn = draw_frames(recorded, scenario.frames, folder, text, progress);
   out.frames = drawn.frames.size();
   progress("page", 0, 1);
   const report::Link summary{"summary.json", recording.trace.header.construction

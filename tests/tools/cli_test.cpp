@@ -196,6 +196,7 @@ TEST_CASE("invalid input: one line on stderr, exit code 2, no output, no files")
       {"run", "bad.json", "-o", "out"},
       {"run", "colision", "-o", "out"},
       {"run", "collision", "--size", "12", "-o", "out"},
+      {"run", "collision", "--size", "96x64", "-o", "out"},  // too small for its texts
       {"collide", "a.obj", "broken.obj", "-o", "out"},
       {"collide", "a.obj", "flat.obj", "-o", "out"},
       {"collide", "a.obj", "a.obj", "--approach", "0,0,0", "-o", "out"},
