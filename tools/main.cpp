@@ -6,7 +6,9 @@
 #include <cstring>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <new>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -17,6 +19,7 @@
 #include "tools/terminal.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -137,6 +140,37 @@ std::string call_of(const CLI::App& app) {
   return app.get_parent() == nullptr ? app.get_name() : call_of(*app.get_parent()) + " " + app.get_name();
 }
 
+/// Returns a message of CLI11 in the words of this program's own ones. `app`: the command.
+std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::ParseError& error) {
+  static const std::regex kRange("(.*): Value (.*) not in range (\\S+) to (\\S+)"),
+      kValue("Could not convert: (.*) = (.*)"),
+      kUnexpected("The following arguments? (?:was|were) not expected: .*");
+  const std::string text = error.what();
+  std::smatch m;
+  const auto number = [](const std::string& digits) { return io::number_text(std::stod(digits), 6); };
+  if (std::regex_match(text, m, kRange)) {
+    const double high = std::stod(m[4]);
+    return m[1].str() + ": expected " +
+           (high < std::numeric_limits<float>::max() ? number(m[3]) + " to " + number(m[4])
+                                                     : "at least " + number(m[3])) +
+           ", found " + m[2].str();
+  }
+  if (std::regex_match(text, m, kValue)) {
+    return m[1].str() + ": cannot read " + in_quotes(m[2].str());
+  }
+  if (!std::regex_match(text, kUnexpected)) return text;
+  const std::vector<std::string> words = root.remaining(true);
+  const auto option =
+      std::find_if(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("--"); });
+  if (option == words.end()) return text;
+  std::vector<std::string> known;
+  for (const CLI::Option* o : app.get_options())
+    for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
+  const std::string near = io::nearest_word(*option, known);
+  return in_quotes(*option) + " is not an option of " + call_of(app) +
+         (near.empty() ? "" : "; did you mean \"" + near + "\"?");
+}
+
 /// Returns the error message for a command line that CLI11 rejected. `word`: the first word that is not an
 /// option.
 std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std::string word) {
@@ -153,7 +187,7 @@ std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std:
   std::vector<std::string> known;
   for (const CLI::App* c : app->get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
     known.push_back(c->get_name());
-  if (known.empty() || word.empty()) return error.what() + help;
+  if (known.empty() || word.empty()) return plain_message(root, *app, error) + help;
   const std::string near = io::nearest_word(word, known);
   return in_quotes(word) + " is not a command of " + call_of(*app) +
          (near.empty() ? "" : "; did you mean \"" + near + "\"?") + help;
