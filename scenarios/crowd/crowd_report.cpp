@@ -169,10 +169,10 @@ void add_charts(report::Document& doc, const CrowdRun& run) {
   add_chart(doc, run, "Smallest distance of separate bodies by step", "length",
             {{"smallest distance", smallest_distance}});
   add_chart(doc, run, "Largest penetration depth by step", "length", {{"largest depth", largest_depth}});
-  add_chart(doc, run, "Work by step", "number in the step",
+  add_chart(doc, run, "Work by step", "count",
             {{"face tests", [](S s) { return sum(s).face_tests; }},
              {"refinements", [](S s) { return sum(s).refinements; }}});
-  add_chart(doc, run, "Broad phase by step", "number in the step",
+  add_chart(doc, run, "Broad phase by step", "count",
             {{"box tests", [](S s) { return s.broad_phase.box_tests; }},
              {"swaps in the order", [](S s) { return s.broad_phase.swaps; }}});
 }

@@ -420,6 +420,16 @@ void check_variant(const std::string& variant) {
   if (!plain) throw InputError("--variant: expected 1 to 64 letters, digits, - and _");
 }
 
+/// Adds what was done with a file, or with `dry` would be done. A removed file that is written again was
+/// replaced.
+void note_change(std::vector<std::string>& done, bool dry, const std::string& what, const fs::path& file) {
+  const auto line = [&](const std::string& word) {
+    return (dry ? "would be " : "") + word + " " + file.generic_string();
+  };
+  const bool replaced = std::erase(done, line("removed")) > 0;
+  done.push_back(line(replaced ? "replaced" : what));
+}
+
 /// Writes into one golden's folder, and records what it wrote. `dry`: only records it.
 class Approval {
  public:
@@ -463,7 +473,7 @@ class Approval {
 
  private:
   void say(const std::string& what, const std::string& file) {
-    done.push_back((dry_ ? "would be " : "") + what + " " + (fs::path(folder_) / file).generic_string());
+    note_change(done, dry_, what, fs::path(folder_) / file);
   }
 
   std::string folder_;
@@ -567,7 +577,7 @@ std::vector<std::string> approve_files(const std::string& goldens, const Approva
   }
   std::vector<std::string> done;
   const auto say = [&](const std::string& what, const std::string& file) {
-    done.push_back((dry ? "would be " : "") + what + " " + (fs::path(folder) / file).generic_string());
+    note_change(done, dry, what, fs::path(folder) / file);
   };
   const auto copy = [&](const std::string& file) {
     for (const io::ZipEntry& e : from.files)

@@ -22,8 +22,8 @@ std::string_view to_text(DecidedBy by, int dim) {
       return "floating point with error bounds";
     case DecidedBy::exact:
       // In 2D no test in floating point precedes it.
-      return dim == 2 ? "the exact test of the two segments"
-                      : "the exact test, because floating point could not decide";
+      return dim == 2 ? "exact predicates of the two segments"
+                      : "exact predicates, because the faster test by the tree could not decide";
   }
   return {};
 }

@@ -190,7 +190,16 @@ std::string sentence_of(const RecordedRun& p) {
       step = &*std::max_element(
           p.trace->steps.begin(), p.trace->steps.end(),
           [](const trace::Step& x, const trace::Step& y) { return tests_of(x) < tests_of(y); });
-    if (step != nullptr) out += " " + step_sentence(p, *step);
+    if (step == nullptr) return out;
+    out += " " + step_sentence(p, *step);
+    // Times are of one execution each, and may name another step.
+    std::size_t slowest = 0;
+    for (std::size_t i = 1; i < p.trace->steps.size(); ++i)
+      if (trace::seconds_of_step(*p.trace, i) > trace::seconds_of_step(*p.trace, slowest)) slowest = i;
+    if (const double seconds = trace::seconds_of_step(*p.trace, slowest);
+        seconds > 0 && &p.trace->steps[slowest] != step)
+      out += " By single measurements, step " + std::to_string(p.trace->steps[slowest].index) +
+             " takes longest: " + time_text(seconds) + ".";
     return out;
   }
   const LrbRep& rep = *p.reps[0];
@@ -250,7 +259,7 @@ void add_charts_of(report::Document& doc, const RecordedRun& p, const trace::Cha
                    report::Cursor cursor, const std::string& faces_title, const std::string& counts_title) {
   const report::Axis x{std::string(chart.x_name)};
   report::Chart faces{faces_title, x, {"faces"}, {}, {}, cursor};
-  report::Chart counts{counts_title, x, {"number in the step"}, {}, {}, cursor};
+  report::Chart counts{counts_title, x, {"count"}, {}, {}, cursor};
   const report::Line line = cursor == report::Cursor::event ? report::Line::steps : report::Line::straight;
   for (const trace::Series& s : chart.series) {
     if (s.unit == "ms" || is_of_no_wrapper(s, p)) continue;

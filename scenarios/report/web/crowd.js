@@ -743,7 +743,6 @@ class CrowdPage {
   controls() {
     const { state, view, tabs, table } = this,
       flip = (name) => state.change({ [name]: !state.look[name] }),
-      help = () => (byId("help").open ? byId("help").close() : byId("help").showModal()),
       cycle = () => {
         const select = byId("colour-by");
         select.selectedIndex = (select.selectedIndex + 1) % select.length;
@@ -752,7 +751,7 @@ class CrowdPage {
     for (const name of ["ghost", "isolate", "contacts"]) byId(name).onclick = () => flip(name);
     byId("picked-isolate").onclick = () => flip("isolate");
     byId("colour-by").oninput = () => state.change({ by: byId("colour-by").value });
-    byId("help-open").onclick = help;
+    byId("help-open").onclick = toggleHelp;
     const keys = {
       ArrowLeft: (shift) => this.go(state.step - (shift ? 10 : 1)),
       ArrowRight: (shift) => this.go(state.step + (shift ? 10 : 1)),
@@ -763,7 +762,7 @@ class CrowdPage {
       ArrowUp: () => table.by1(-1),
       ArrowDown: () => table.by1(1),
       " ": () => this.toggle(),
-      "?": help,
+      "?": toggleHelp,
       t: () => tabs.toggleHeight(),
       Escape: () => state.select([]),
       ...Object.fromEntries(tabs.names.slice(0, 9).map((name, i) => [String(i + 1), () => tabs.show(name)])),

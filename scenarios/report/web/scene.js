@@ -313,12 +313,6 @@ function followPage(events, selection) {
   };
 }
 
-function toggleHelp() {
-  const help = byId("help");
-  if (help.open) help.close();
-  else help.showModal();
-}
-
 function keysOfAttempts(panel) {
   return {
     p: () => panel.attempts.pickPlace(panel.selection.event, panel.selection),

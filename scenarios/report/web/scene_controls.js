@@ -127,6 +127,14 @@ class Timeline {
   }
 }
 
+/** Opens or closes the list of keys, from its start: its button at the end has the focus. */
+function toggleHelp() {
+  const help = byId("help");
+  if (help.open) return help.close();
+  help.showModal();
+  help.scrollTop = 0;
+}
+
 // ---- keys. They work anywhere on the page except in text fields.
 /** `actions`: by KeyboardEvent.key; letters are in lower case, shift is passed on. */
 function listenToKeys(actions) {
