@@ -736,14 +736,20 @@ def distance(
     result = DistanceResult() if result is None else result
     found: Distance = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
     shapes = [o for o in (o1, o2) if o._geom._is_shape]
-    value = found.upper
+    value, points = found.upper, [found.points[0], found.points[1]]
     if (found.meet and shapes) or _holds(o1, o2, found.relation):
         value = -1.0
         if request.enable_signed_distance and len(shapes) == 2:
-            value = -_core.clash(o1.body, o2.body, o2.pose, o1.pose, volume=False).depth[1]
+            overlap = _core.clash(o1.body, o2.body, o2.pose, o1.pose, volume=False)
+            value = -overlap.depth[1]
+            # The points at which the shapes touch once they are separated, with the second one moved back.
+            apart = o2.pose.copy()
+            apart[:3, 3] += overlap.translation
+            points = _core.distance(o1.body, o2.body, apart, o1.pose).points
+            points = [points[0], points[1] - overlap.translation]
     if value < result.min_distance:
         result.min_distance = value
-        result.nearest_points = [found.points[0], found.points[1]]
+        result.nearest_points = points
         ids = _contact(o1, o2, *found.triangles)
         result.o1, result.o2, result.b1, result.b2 = ids.o1, ids.o2, ids.b1, ids.b2
     return value

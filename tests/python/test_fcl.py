@@ -168,7 +168,11 @@ def test_signed_distances():
     box = fcl.CollisionObject(fcl.Box(1, 1, 1))
     near = fcl.CollisionObject(fcl.Box(1, 1, 1), at(0.75, 0.1, 0.2))
     signed = fcl.DistanceRequest(enable_signed_distance=True)
-    assert abs(fcl.distance(box, near, signed) + 0.25) < 1e-6 and fcl.distance(box, near) == -1
+    result = fcl.DistanceResult()
+    assert abs(fcl.distance(box, near, signed, result) + 0.25) < 1e-6 and fcl.distance(box, near) == -1
+    # The nearest points are where the boxes touch once the second one is moved away, as far apart as the depth.
+    one, other = result.nearest_points
+    assert abs(one[0] - 0.5) < 1e-6 and np.allclose(one - other, [0.25, 0, 0], atol=1e-6)
 
 
 def test_continuous_collisions():
