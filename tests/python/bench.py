@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What calls from Python cost beside those from C++.
+"""What calls from Python cost beside those from C++, and beside python-fcl if it is installed.
 
 PYTHONPATH=build/release/python tests/python/bench.py [MESH]
 
@@ -57,6 +57,31 @@ def batches(a, b, poses):
         print(f"  {threads[1]} threads are {times[1] / times[threads[1]]:.2f} times as fast as one")
 
 
+def beside_fcl(body, poses):
+    """Print the time of calls beside those of python-fcl, at poses in contact and apart."""
+    try:
+        import fcl
+    except ImportError:
+        print("python-fcl is not installed")
+        return
+    mesh = fcl.BVHModel()
+    mesh.beginModel(len(body.vertices), len(body.faces))
+    mesh.addSubModel(body.vertices, body.faces)
+    mesh.endModel()
+    one = fcl.CollisionObject(mesh)
+    others = [fcl.CollisionObject(mesh, fcl.Transform(p[:3, :3], p[:3, 3])) for p in poses]
+    first, every = fcl.CollisionRequest(), fcl.CollisionRequest(num_max_contacts=10**6)
+    rows = [
+        ("yes or no", lambda p: lrbscope.collide(body, body, p, mode="any"), lambda o: fcl.collide(one, o, first)),
+        ("all pairs", lambda p: lrbscope.collide(body, body, p), lambda o: fcl.collide(one, o, every)),
+        ("distance", lambda p: lrbscope.distance(body, body, p), lambda o: fcl.distance(one, o)),
+    ]
+    for name, ours, theirs in rows:
+        times = [best(lambda: list(map(ours, poses)), 5), best(lambda: list(map(theirs, others)), 5)]
+        texts = [f"{1e6 * t / len(poses):.1f} us" for t in times]
+        print(f"  {name}: {texts[0]} a call, python-fcl {texts[1]}: {times[1] / times[0]:.1f} times as long")
+
+
 def main():
     rng = np.random.default_rng(1)
     body = lrbscope.Body.load(sys.argv[1]) if len(sys.argv) > 1 else lrbscope.Body(*ball_arrays(4))
@@ -68,6 +93,11 @@ def main():
     print("in contact:")
     calls(body, body, shifted(0.4 * size, 0.1 * size, 0.05 * size), 2000)
     batches(body, body, random_poses(rng, 10000, 0.5 * size))
+    for what, shift in (("in contact", 0.3), ("apart", 1.1)):
+        print(f"{what}, beside python-fcl:")
+        turned = random_poses(rng, 50, 0)
+        turned[:, :3, 3] = shift * size * np.array([0.8, 0.6, 0])
+        beside_fcl(body, turned)
 
 
 if __name__ == "__main__":
