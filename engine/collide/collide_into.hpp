@@ -28,15 +28,15 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
   if (request.is_coarse()) check_request(request);
   result.recursion = request.recursion;
   result.mode = request.mode;
-  const bool is_coarse = request.is_coarse() && !is_answered_exactly(a, b, request);
   // Most queries of scattered bodies end here. With a probe, TreeQuery makes the test.
-  const bool tests_roots = !Probe::kEnabled && request.recursion == Recursion::complete && !is_coarse;
+  const bool tests_roots = !Probe::kEnabled && request.recursion == Recursion::complete;
   const bool ends_at_roots = tests_roots && roots_are_apart(a.tree(), pose_a, b.tree(), pose_b);
   if (ends_at_roots && !request.separation && a.closed() && b.closed()) {
     set_separate(result);
     count_roots_apart(result.counters);
     return;
   }
+  const bool is_coarse = request.is_coarse() && !is_answered_exactly(a, b, request);
   context.body[0].begin(a, pose_a, request.wrapper);
   context.body[1].begin(b, pose_b, request.wrapper);
   const std::uint64_t fallbacks = exact::exact_fallbacks();

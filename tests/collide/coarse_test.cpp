@@ -91,6 +91,33 @@ double median(std::vector<double> x) {
 
 }  // namespace
 
+TEST_CASE(
+    "queries to a tolerance or within limits of bodies far from each other are exact, at the same cost") {
+  const LrbRep ball = build_lrb(shapes::bumpy_sphere(3, 1));
+  const Pose far = Pose::translation({5, 1, 0});
+  const CollideResult exact = collide(ball, Pose{}, ball, far);
+  REQUIRE(exact.relation == Relation::separate);
+  CollideRequest requests[3];
+  requests[0].tolerance = 0.1;
+  requests[1].max_tests = 10;
+  requests[2].max_time = 1;
+  for (const CollideRequest& request : requests) {
+    QueryContext context;
+    CollideProbe silent;
+    ProbeAdapter watched(silent);
+    const CollideResult found = collide(ball, Pose{}, ball, far, request);
+    CHECK(found.relation == Relation::separate);
+    CHECK(found.interiors_overlap == Answer::no);
+    CHECK(found.error_bound == 0);
+    CHECK(found.finished);
+    CHECK(found.counters == exact.counters);
+    const CollideResult seen = collide(ball, Pose{}, ball, far, request, context, watched);
+    CHECK(seen.relation == found.relation);
+    CHECK(seen.error_bound == found.error_bound);
+    CHECK(seen.finished);
+  }
+}
+
 TEST_CASE("no point of a region's lids is further from the real faces than its thickness") {
   RandomEngine random(3);
   double tightest = 0;
