@@ -9,25 +9,23 @@
 
 namespace lrb::construct {
 
-namespace {
-
-std::vector<Eigen::AlignedBox3d> boxes_of(const FrontMesh& front) {
-  std::vector<Eigen::AlignedBox3d> boxes(front.slot_count());
-  for (FrontMesh::Slot s = 0; s < front.slot_count(); ++s)
-    if (front.alive(s)) boxes[s] = box_of(front, s);
-  return boxes;
+AabbTree::AabbTree(const FrontMesh& front)
+    : AabbTree(front.alive_slots(), front.slot_count(), [&](Slot s) { return construct::box_of(front, s); }) {
 }
 
-}  // namespace
+void AabbTree::rebuild(const FrontMesh& front) {
+  *this = AabbTree();
+  *this = AabbTree(front);
+}
 
-AabbTree::AabbTree(const FrontMesh& front) : AabbTree(front.alive_slots(), boxes_of(front)) {}
-
-AabbTree::AabbTree(std::vector<Slot> slots, std::span<const Box> boxes)
-    : slots_(std::move(slots)), centres_(boxes.size()), place_(boxes.size(), kNull) {
+AabbTree::AabbTree(std::vector<Slot> slots, std::size_t slot_count, const std::function<Box(Slot)>& box_of)
+    : slots_(std::move(slots)), centres_(slot_count), place_(slot_count, kNull) {
   // Step 1: the topology, from centroids alone.
   if (slots_.empty()) return;
-  for (const Slot s : slots_)
-    centres_[s] = boxes[s].min() / 2 + boxes[s].max() / 2;  // halved first: no overflow
+  for (const Slot s : slots_) {
+    const Box box = box_of(s);
+    centres_[s] = box.min() / 2 + box.max() / 2;  // halved first: no overflow
+  }
   leaf_.resize(slots_.size());
   // A leaf has at least two slots unless there is only one slot, so there are no more nodes than slots.
   nodes_.reserve(slots_.size());
@@ -36,7 +34,7 @@ AabbTree::AabbTree(std::vector<Slot> slots, std::span<const Box> boxes)
   // Step 2: the boxes in leaf order, and the position of each slot.
   for (std::uint32_t i = 0; i < slots_.size(); ++i) {
     place_[slots_[i]] = i;
-    boxes_[i] = boxes[slots_[i]];
+    boxes_[i] = box_of(slots_[i]);
   }
   // Step 3: fit the boxes bottom up. Children have larger indices than their parents, so one backward pass
   // suffices.

@@ -2,7 +2,7 @@
 /// A dynamic AABB tree over the front's triangles, updated when caps replace patches.
 
 #include <cstdint>
-#include <span>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -20,8 +20,10 @@ class AabbTree {
   using Box = Eigen::AlignedBox3d;
 
   explicit AabbTree(const FrontMesh& front);
-  /// Builds a tree over any slots. `boxes` (slot count): only those of the slots are read.
-  AabbTree(std::vector<Slot> slots, std::span<const Box> boxes);
+  /// Builds a tree over any slots below `slot_count`.
+  AabbTree(std::vector<Slot> slots, std::size_t slot_count, const std::function<Box(Slot)>& box_of);
+  /// Builds the tree again. Releases the old one first, because large bodies need much memory.
+  void rebuild(const FrontMesh& front);
 
   /// Returns true if the tree covers all of the front's slots, and most of the slots it was built over are
   /// still in use.
@@ -78,6 +80,7 @@ class AabbTree {
     std::uint32_t parent;
   };
 
+  AabbTree() = default;
   std::uint32_t build(std::uint32_t first, std::uint32_t last, std::uint32_t parent);
 
   std::vector<Slot> slots_;

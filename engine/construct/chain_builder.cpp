@@ -164,9 +164,7 @@ class ChainBuilder {
   void pass(BuildStage stage, const CapGoal& goal) {
     // Step 1: an AABB tree over the front, updated with the caps of this pass.
     const std::vector<Slot> slots = front_.alive_slots();
-    std::vector<Box> slot_boxes(front_.slot_count());
-    for (const Slot s : slots) slot_boxes[s] = box_of(front_, s);
-    AabbTree tree(slots, slot_boxes);
+    AabbTree tree(slots, front_.slot_count(), [&](Slot s) { return box_of(front_, s); });
     passes_.report_begin(stage, front_.segment_count(), goal.off);
     PassEnd end;
     // Step 2: exclude frozen segments, and below all segments that this pass has covered or made.
@@ -342,9 +340,7 @@ class ChainBuilder {
     if (!std::is_sorted(corners.begin(), corners.end()))
       return CapVerdict::flat;  // the outline crosses itself
     // An AABB tree over all components for the exact tests.
-    std::vector<Box> slot_boxes(front_.slot_count());
-    for (const Slot s : front_.alive_slots()) slot_boxes[s] = box_of(front_, s);
-    const AabbTree tree(front_.alive_slots(), slot_boxes);
+    const AabbTree tree(front_.alive_slots(), front_.slot_count(), [&](Slot s) { return box_of(front_, s); });
     for (std::size_t i = 0; i < corners.size(); ++i) {
       // The last side wraps around to the first corner.
       const std::uint32_t next =

@@ -418,7 +418,7 @@ void FrontSimplifier::evaluate(const QueuedCollapse& c) {
 // Commits.
 
 void FrontSimplifier::commit(double worth) {
-  if (!tree_.fits(front_)) tree_ = AabbTree(front_);
+  if (!tree_.fits(front_)) tree_.rebuild(front_);
   for (OpenFront::Lid& lid : open_.lids()) {
     const CapVerdict verdict = finish(lid, worth);
     if (options_.probe) notify(lid, verdict);
