@@ -261,7 +261,7 @@ TEST_CASE("charts are drawn, and their texts are not run as commands" *
   const auto found = colours(png);
   CHECK(found.contains(0xd55e00));
   CHECK(found.contains(0x14161a));
-  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 5);  // nothing is left behind
+  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 6);  // nothing is left behind
 }
 
 TEST_CASE("gnuplot's error is reported in one line" * doctest::skip(!report::has_gnuplot())) {

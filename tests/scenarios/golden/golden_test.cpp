@@ -147,7 +147,8 @@ TEST_CASE("goldens: a dry run changes nothing, and names what approving changes"
   CHECK(contents() == before);
   const Outcome done = test::run(folder, {"golden", "approve"});
   CHECK(contents() != before);
-  CHECK(dry.out == std::regex_replace(done.out, std::regex("(^|\n)(approved|removed)"), "$1would be $2"));
+  CHECK(dry.out ==
+        std::regex_replace(done.out, std::regex("(^|\n)(approved|removed|replaced)"), "$1would be $2"));
   // A golden that does not exist yet is not begun.
   CHECK(test::run(folder, {"golden", "approve", "--dry-run", "--goldens", "others", "balls.scenario.json"})
             .out.find("would be approved others/balls/golden.json\n") != std::string::npos);
