@@ -70,7 +70,7 @@ class RegionSheet {
     DrawList list;
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) {
       DrawTriangle like;
-      like.colour = palette::viridis(place_on(scale, values[f]));
+      like.colour = style_.value(place_on(scale, values[f]));
       add(list, f, like, 4);
     }
     return {list, first_camera(look_, real_corners(rep_), rep_.dim()), scale.text, false, kScaleLighting};
