@@ -220,6 +220,14 @@ TEST_CASE("invalid input: one line on stderr, exit code 2, no output, no files")
   CHECK(run(folder, {"query", "a.obj", "a.obj", "--poses", "eleven.txt"})
             .err.find("eleven.txt:2: expected 12 numbers (a row-major 3x4 pose), found 11") !=
         std::string::npos);
+  const std::pair<std::vector<std::string>, const char*> messages[] = {
+      {{"query", "a.obj", "a.obj", "--tolerance", "-1"}, "--tolerance: expected at least 0, found -1 (see"},
+      {{"figure", "figure1", "--font-size", "2"}, "--font-size: expected 4 to 24, found 2 (see"},
+      {{"figure", "figure1", "--steps", "0,x"}, "--steps: cannot read '0,x' (see"},
+      {{"query", "a.obj", "a.obj", "--pose", "x"},
+       "'--pose' is not an option of lrbscope query; did you mean \"--poses\"? (see"}};
+  for (const auto& [words, message] : messages)
+    CHECK(run(folder, words).err.find(message) != std::string::npos);
   CHECK(run(folder, {"run", "bad.json"})
             .err.find("bad.json:3:3: /porpose: unknown key; did you mean \"purpose\"?") != std::string::npos);
 }

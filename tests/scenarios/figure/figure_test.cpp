@@ -637,3 +637,22 @@ TEST_CASE("lrbscope figure: files, and errors before it writes anything") {
   };
   for (const auto& arguments : bad) test::check_rejected(folder, arguments);
 }
+
+TEST_CASE("lrbscope figure: wrappers are drawn unless they hide coloured faces") {
+  const test::Folder folder;
+  const auto drawn = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"figure", "islands", "--steps", "20", "-o", "f.svg"});
+    const test::Outcome o = test::run(folder, options);
+    CAPTURE(o.err);
+    CHECK(o.code == 0);
+    return test::slurp(folder / "f.svg");
+  };
+  const std::string plain = drawn({}), values = drawn({"--colour-by", "face_tests"});
+  CHECK(drawn({"--wrappers"}) == plain);
+  CHECK(drawn({"--no-wrappers"}) != plain);
+  CHECK(drawn({"--no-wrappers", "--colour-by", "face_tests"}) == values);
+  CHECK(drawn({"--wrappers", "--colour-by", "face_tests"}) != values);
+  CHECK(drawn({"--colour-by", "refinements"}) == drawn({"--wrappers", "--colour-by", "refinements"}));
+
+  test::check_rejected(folder, {"figure", "islands", "--wrappers", "--no-wrappers", "-o", "no.svg"});
+}
