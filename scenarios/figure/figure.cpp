@@ -97,6 +97,9 @@ class FigureJob {
         break;
       }
     }
+    if (constexpr double kPage = 240 * kPointsPerMm; layout_.height > kPage)
+      out.notes.push_back("the figure is " + length_text(layout_.height) +
+                          " high, more than a page; use fewer panels or --views, or more --columns");
     for (std::size_t i = 0; i < figure_.callouts.size(); ++i)
       if (!called_out_.contains(i))
         out.notes.push_back(figure_.callouts[i].option + ": is outside of " +

@@ -613,7 +613,13 @@ TEST_CASE("lrbscope figure: files, and errors before it writes anything") {
   CHECK(test::slurp(folder / "out/fig.pdf").starts_with("%PDF"));
   CHECK(!test::slurp(folder / "out/fig.caption.txt").empty());
   folder.write("cube.obj", test::kCube);
-  CHECK(test::run(folder, {"figure", "cube.obj", "-o", "cube.svg", "--columns", "1", "--up", "y"}).code == 0);
+  o = test::run(folder, {"figure", "cube.obj", "-o", "cube.svg", "--columns", "1", "--up", "y"});
+  CHECK(o.code == 0);
+  CHECK(o.err.find("high, more than a page") == std::string::npos);
+  o = test::run(folder, {"figure", "figure2", "-o", "high.svg", "--columns", "1", "--panels", "12", "--width",
+                         "120mm"});
+  CHECK(o.code == 0);
+  CHECK(o.err.find("high, more than a page; use fewer panels") != std::string::npos);
   const std::vector<std::vector<std::string>> bad = {
       {"figure", "figure1", "-o", "fig.eps"},
       {"figure", "figure1", "-o", "fig.svg", "--tex"},
