@@ -55,7 +55,7 @@ class Answers:
         run = subprocess.run(self.program + arguments, cwd=self.out, stdin=subprocess.DEVNULL, capture_output=True)
         os.makedirs(os.path.join(self.out, subject), exist_ok=True)
         text = run.stdout + run.stderr + b"exit code %d\n" % run.returncode
-        text = re.sub(rb"peak of the process .*|built in .*", b"", text)  # memory and time
+        text = re.sub(rb"progress: .*\n|peak of the process .*|built in .*", b"", text)  # memory and time
         with open(os.path.join(self.out, subject, name), "wb") as file:
             file.write(text.replace(b"\r\n", b"\n"))  # of Windows
         return run.returncode
