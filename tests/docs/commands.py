@@ -162,10 +162,18 @@ def scenario(tree):
 
 
 def lines_of(tree, page):
-    """Yields (number, line) of the shell blocks of a page, without comments, prompts and output."""
+    """Yields (number, line) of the shell blocks of a page, without comments, prompts and output.
+
+    A here document belongs to its line."""
     on = False
     with open(os.path.join(tree, page)) as f:
-        for number, line in enumerate(f, 1):
+        numbered = enumerate(f, 1)
+        for number, line in numbered:
+            if on and line.endswith("<<'END'\n"):
+                while not line.endswith("\nEND\n"):
+                    line += next(numbered)[1]
+                yield number, line
+                continue
             if line.startswith("```"):
                 on = line.strip() == "```sh" and not on
                 continue
@@ -228,7 +236,7 @@ def main():
             scenario(tree)
             stand_ins(page, run)
             for number, line in to_run:
-                if not line.startswith("lrbscope "):
+                if not line.startswith(("lrbscope ", "cat >")):
                     wrong = "is neither run nor has a reason in tests/docs/commands.py"
                 else:
                     finds = any(re.search(p, line) for p in FINDS)
