@@ -151,24 +151,27 @@ class PaintSorter {
     cell_ = std::max(all.sizes().maxCoeff() / cells, 1e-9);
   }
 
-  /// Returns nullopt if the faces have too many parts.
+  /// Returns nullopt if the faces have too many parts, or overlap too often.
   std::optional<std::vector<ScreenFace>> sorted() {
     const std::size_t most = kFewParts + kMaxParts * todo_.size();
     // Step 1: faces that intersect no other one. In order from the last, so that the list's order is kept.
     std::reverse(todo_.begin(), todo_.end());
     while (!todo_.empty()) {
-      if (faces_.size() + todo_.size() > most) return std::nullopt;
+      if (faces_.size() + todo_.size() > most || tests_ > kMaxTests) return std::nullopt;
       ScreenFace face = std::move(todo_.back());
       todo_.pop_back();
       insert(std::move(face));
     }
     // Step 2: which faces must be painted before which.
-    for (std::size_t i = 0; i < faces_.size(); ++i)
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      if (tests_ > kMaxTests) return std::nullopt;
       if (!faces_[i].done) order(i, [i](std::size_t j) { return j > i; });
+    }
     // Step 3: the order.
     std::vector<ScreenFace> out;
     for (std::size_t i = 0; i < faces_.size(); ++i) set_ready(i);
     for (;;) {
+      if (tests_ > kMaxTests) return std::nullopt;
       const std::optional<std::size_t> next = next_ready();
       if (!next && !break_cycle(faces_.size() < most)) break;
       if (!next) continue;
@@ -195,7 +198,8 @@ class PaintSorter {
   bool opaque(const ScreenFace& f) const { return list_.triangles[f.triangle].layer == Layer::opaque; }
 
   /// Returns the order of two faces in the area where both are visible.
-  static Relation relation(const ScreenFace& p, const ScreenFace& q) {
+  Relation relation(const ScreenFace& p, const ScreenFace& q) {
+    ++tests_;
     const std::vector<Vector2d> common = intersection(p.corners, q.corners);
     if (is_narrow(common)) return Relation::none;
     double low = 0, high = 0;  // of the distance of p behind q
@@ -384,6 +388,7 @@ class PaintSorter {
   }
 
   static constexpr std::size_t kFewParts = 10000, kMaxParts = 8;  ///< allowed in any case; per face
+  static constexpr std::size_t kMaxTests = 4'000'000;             ///< of pairs: about ten seconds
 
   const DrawList& list_;
   const FaceLooks& looks_;
@@ -395,6 +400,7 @@ class PaintSorter {
   std::map<Colour, std::set<std::size_t>> ready_;  ///< faces that wait for no other one, by colour
   Colour last_{};                                  ///< of the last face
   std::size_t visits_ = 0;                         ///< number of searches
+  std::size_t tests_ = 0;                          ///< number of pairs whose relation was computed
 };
 
 /// Paints faces in runs of one colour that do not overlap, each as one path, and then their edges.

@@ -38,7 +38,8 @@ struct ScreenFace {
 
 /// Returns the triangles or their parts in painting order, farthest first. Triangles seen edge-on are
 /// omitted. `looks` must be of the same list and projection. Returns nullopt if the triangles intersect so
-/// often that they would have more than 10,000 parts, and more than eight on average.
+/// often that they would have more than 10,000 parts, and more than eight on average, or if more than 4
+/// million pairs overlap on the screen.
 std::optional<std::vector<ScreenFace>> painting_order(const DrawList& list, const Projection& projection,
                                                       const FaceLooks& looks,
                                                       const std::vector<std::uint32_t>& triangles);
