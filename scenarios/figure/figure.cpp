@@ -638,32 +638,41 @@ class FigureJob {
     return out;
   }
 
-  /// Finds the visible faces of all panels, if none has too many.
+  /// Finds the visible faces of all panels in painting order, if none has too many.
   void find_vector_faces(std::vector<std::string>& notes, const run::ProgressReport& progress) {
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      progress("find visible faces", i, pieces_.size());
-      const Piece& piece = pieces_[i];
-      const render::DrawList list = scene(*piece.view, piece.moment).list;
-      const DeepView deep = deep_view(camera(*piece.view, piece.moment), piece.place, piece.scale, dpi_);
-      const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
-      const render::Projection on_paper = projection(deep, list);
-      const auto visible = render::visible_faces(list, on_paper, depths);
-      const bool few = visible && visible->size() <= figure_.vector_faces;
-      auto ordered =
-          few ? render::painting_order(list, on_paper, looks(list, on_paper), *visible) : std::nullopt;
-      if (ordered) {
-        vector_faces_.push_back(std::move(*ordered));
-        continue;
-      }
+    const auto draw_image = [&](const Piece& piece, std::size_t count, const std::string& why) {
       vector_faces_.clear();
-      if (visible)
-        notes.push_back("faces are an image of " + render::short_number(dpi_) + " dpi: " +
-                        (captions_.size() > 1 ? "panel " + render::panel_letter(piece.panel) + " has " : "") +
-                        render::counted(visible->size(), "visible face", "visible faces") +
-                        (few ? ", which intersect each other too often"
-                             : ", more than --vector-faces " + std::to_string(figure_.vector_faces)));
-      return;
+      notes.push_back("faces are an image of " + render::short_number(dpi_) + " dpi: " +
+                      (captions_.size() > 1 ? "panel " + render::panel_letter(piece.panel) + " has " : "") +
+                      render::counted(count, "visible face", "visible faces") + ", " + why);
+    };
+    // Step 1: the faces of all panels, because ordering them takes longer.
+    std::vector<std::vector<std::uint32_t>> visible;
+    for (const Piece& piece : pieces_) {
+      progress("find visible faces", visible.size(), pieces_.size());
+      const render::DrawList list = scene(*piece.view, piece.moment).list;
+      const DeepView deep = deep_view(piece);
+      const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
+      auto faces = render::visible_faces(list, projection(deep, list), depths);
+      if (!faces) return;
+      if (faces->size() > figure_.vector_faces)
+        return draw_image(piece, faces->size(),
+                          "more than --vector-faces " + std::to_string(figure_.vector_faces));
+      visible.push_back(std::move(*faces));
     }
+    // Step 2: their order.
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      progress("order visible faces", i, pieces_.size());
+      const render::DrawList list = scene(*pieces_[i].view, pieces_[i].moment).list;
+      const render::Projection on_paper = projection(deep_view(pieces_[i]), list);
+      auto ordered = render::painting_order(list, on_paper, looks(list, on_paper), visible[i]);
+      if (!ordered) return draw_image(pieces_[i], visible[i].size(), "which intersect each other too often");
+      vector_faces_.push_back(std::move(*ordered));
+    }
+  }
+
+  DeepView deep_view(const Piece& piece) const {
+    return deep_view(camera(*piece.view, piece.moment), piece.place, piece.scale, dpi_);
   }
 
   static render::FaceLooks looks(const render::DrawList& list, const render::Projection& on_paper) {
