@@ -192,14 +192,15 @@ std::string sentence_of(const RecordedRun& p) {
           [](const trace::Step& x, const trace::Step& y) { return tests_of(x) < tests_of(y); });
     if (step == nullptr) return out;
     out += " " + step_sentence(p, *step);
-    // Times are of one execution each, and may name another step.
-    std::size_t slowest = 0;
-    for (std::size_t i = 1; i < p.trace->steps.size(); ++i)
-      if (trace::seconds_of_step(*p.trace, i) > trace::seconds_of_step(*p.trace, slowest)) slowest = i;
-    if (const double seconds = trace::seconds_of_step(*p.trace, slowest);
-        seconds > 0 && &p.trace->steps[slowest] != step)
-      out += " By single measurements, step " + std::to_string(p.trace->steps[slowest].index) +
-             " takes longest: " + time_text(seconds) + ".";
+    // Times are of one execution each, and may name another step. Steps without events have none (NaN).
+    double longest = 0;
+    const trace::Step* slowest = step;
+    for (std::size_t i = 0; i < p.trace->steps.size(); ++i)
+      if (const double seconds = trace::seconds_of_step(*p.trace, i); seconds > longest)
+        longest = seconds, slowest = &p.trace->steps[i];
+    if (slowest != step)
+      out += " By single measurements, step " + std::to_string(slowest->index) +
+             " takes longest: " + time_text(longest) + ".";
     return out;
   }
   const LrbRep& rep = *p.reps[0];
