@@ -140,6 +140,12 @@ std::string call_of(const CLI::App& app) {
   return app.get_parent() == nullptr ? app.get_name() : call_of(*app.get_parent()) + " " + app.get_name();
 }
 
+/// Returns "; did you mean \"x\"?" if a known word is close to this one, or an empty text.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string near = io::nearest_word(word, known);
+  return near.empty() ? "" : "; did you mean \"" + near + "\"?";
+}
+
 /// Returns a message of CLI11 in the words of this program's own ones. `app`: the command.
 std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::ParseError& error) {
   static const std::regex kRange("(.*): Value (.*) not in range (\\S+) to (\\S+)"),
@@ -166,9 +172,7 @@ std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::
   std::vector<std::string> known;
   for (const CLI::Option* o : app.get_options())
     for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
-  const std::string near = io::nearest_word(*option, known);
-  return in_quotes(*option) + " is not an option of " + call_of(app) +
-         (near.empty() ? "" : "; did you mean \"" + near + "\"?");
+  return in_quotes(*option) + " is not an option of " + call_of(app) + did_you_mean(*option, known);
 }
 
 /// Returns the error message for a command line that CLI11 rejected. `word`: the first word that is not an
@@ -188,9 +192,7 @@ std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std:
   for (const CLI::App* c : app->get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
     known.push_back(c->get_name());
   if (known.empty() || word.empty()) return plain_message(root, *app, error) + help;
-  const std::string near = io::nearest_word(word, known);
-  return in_quotes(word) + " is not a command of " + call_of(*app) +
-         (near.empty() ? "" : "; did you mean \"" + near + "\"?") + help;
+  return in_quotes(word) + " is not a command of " + call_of(*app) + did_you_mean(word, known) + help;
 }
 
 /// Throws InputError for an option or argument with an empty value: usually an unset shell variable.
