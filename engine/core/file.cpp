@@ -64,38 +64,47 @@ std::string_view what_is_no_file(const std::string& path) {
   }
 }
 
-std::string read_file(const std::string& path, std::uint64_t most) {
+InputFile::InputFile(const std::string& path) : path_(path), file_(nullptr, &std::fclose) {
   const std::string_view kind = what_is_no_file(path);
   if (!kind.empty())
     cannot_read(
         path, "found " + std::string(kind) + ", expected a file" +
                   (kind == "a directory" ? "; name a file in it" : "; copy its contents to a regular file"));
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) {
+  file_.reset(std::fopen(path.c_str(), "rb"));
+  if (!file_) {
     const int reason = errno;
     if (reason == ENOENT) cannot_read(path, "no such file; check the path");
     cannot_read(path,
                 std::string("cannot open the file (") + std::strerror(reason) + "); check its permissions");
   }
-  std::error_code ignored;
-  std::string bytes;
+  std::error_code no_size;  // of a pipe
+  const std::uint64_t size = std::filesystem::file_size(path, no_size);
+  if (!no_size) size_ = size;
+}
+
+std::size_t InputFile::read(char* to, std::size_t most) {
+  const std::size_t got = std::fread(to, 1, most, file_.get());
+  // A short read is the end of the file or an error.
+  if (got < most && std::ferror(file_.get()))
+    cannot_read(path_, "cannot read the file; check the disk or copy the file again");
+  return got;
+}
+
+std::string read_file(const std::string& path, std::uint64_t most) {
+  InputFile file(path);
   // Reject large files before reading. Pipes have no size, so the limit is checked again after each chunk.
-  const auto size = std::filesystem::file_size(path, ignored);
-  if (!ignored && size > most) too_large(path, most);
+  if (file.size() > most) too_large(path, most);
   static constexpr std::size_t kChunk = std::size_t{1} << 18;
-  // Room for one chunk beyond the size, so that the buffer of a file does not grow. Pipes have no size.
-  if (!ignored) bytes.reserve(size + kChunk);
+  std::string bytes;
+  // Room for one chunk beyond the size, so that the buffer of a file does not grow.
+  if (file.size()) bytes.reserve(*file.size() + kChunk);
   for (;;) {
     const std::size_t before = bytes.size();
     bytes.resize(before + kChunk);
-    const std::size_t got = std::fread(bytes.data() + before, 1, kChunk, file.get());
+    const std::size_t got = file.read(bytes.data() + before, kChunk);
     bytes.resize(before + got);
     if (bytes.size() > most) too_large(path, most);
-    // A short read is the end of the file or an error.
-    if (got == kChunk) continue;
-    if (std::ferror(file.get()))
-      cannot_read(path, "cannot read the file; check the disk or copy the file again");
-    return bytes;
+    if (got < kChunk) return bytes;
   }
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <vector>
@@ -38,22 +39,48 @@ class Writer {
   std::string bytes_;
 };
 
+/// A value in a file, which is not aligned.
+template <class T>
+struct Packed {
+  char bytes[sizeof(T)];
+  operator T() const {
+    T x;
+    std::memcpy(static_cast<void*>(&x), bytes, sizeof x);
+    return x;
+  }
+};
+
+/// Reads the fields of a file, from memory or chunk by chunk from the file itself, so that its arrays are in
+/// memory only once. Verifies the checksum before it reports any other fault.
 class Reader {
  public:
-  Reader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  Reader(std::string_view bytes, const std::string& name)
+      : name_(name), size_(bytes.size()), chunk_(bytes), unread_(bytes), chunk_end_(bytes.size()) {}
+  Reader(InputFile& file, const std::string& name)
+      : name_(name), size_(*file.size()), file_(&file), buffer_(kChunk, '\0') {
+    if (size_ > 0) next_chunk();
+  }
 
-  [[noreturn]] void reject(const std::string& what) const {
-    throw InputError(printable_name(name_) + ": byte " + std::to_string(at_) + ": " + what +
-                     "; rebuild it from its mesh");
+  /// Reads the magic and the version, and returns the version.
+  std::uint32_t begin() {
+    if (!looks_like_lrb(unread_))
+      throw InputError(printable_name(name_) +
+                       ": byte 0: expected a .lrb file; build one with `lrbscope build MESH -o FILE.lrb`");
+    unread_.remove_prefix(kMagic.size());
+    if (size_ < at() + sizeof version_) fail("the file ends in the middle of a number");
+    take(&version_, sizeof version_);
+    if (version_ > kLrbFileVersion)
+      throw InputError(printable_name(name_) + ": byte 8: found file version " + std::to_string(version_) +
+                       ", expected at most " + std::to_string(kLrbFileVersion) + "; use a newer lrbscope");
+    if (size_ < at() + kChecksum) fail("the file is truncated");
+    return version_;
   }
 
   template <class T>
   T value() {
-    // Values in a file are not aligned, so they are copied.
-    need(sizeof(T));
+    if (size_ - at() < sizeof(T)) reject("the file ends in the middle of a number");
     T x;
-    std::memcpy(&x, bytes_.data() + at_, sizeof x);
-    at_ += sizeof x;
+    take(&x, sizeof x);
     return x;
   }
 
@@ -62,24 +89,95 @@ class Reader {
     const auto count = value<std::uint64_t>();
     // Division avoids the overflow of count * sizeof(T). Checked before allocation, so that a damaged length
     // cannot exhaust the memory.
-    if (count > (bytes_.size() - at_) / sizeof(T))
+    if (count > (size_ - at()) / sizeof(T))
       reject("an array of " + std::to_string(count) + " elements exceeds the rest of the file");
-    std::vector<T> x(count);
-    if (count != 0) std::memcpy(static_cast<void*>(x.data()), bytes_.data() + at_, count * sizeof(T));
-    at_ += count * sizeof(T);
-    return x;
+    std::vector<T> x;
+    x.reserve(count);
+    for (;;) {
+      // The elements that end in this chunk, then the one that continues in the next.
+      const std::size_t whole = std::min<std::size_t>(count - x.size(), unread_.size() / sizeof(T));
+      const auto* const first = reinterpret_cast<const Packed<T>*>(unread_.data());
+      x.insert(x.end(), first, first + whole);
+      unread_.remove_prefix(whole * sizeof(T));
+      if (x.size() == count) return x;
+      Packed<T> divided;
+      take(divided.bytes, sizeof divided.bytes);
+      x.push_back(divided);
+    }
   }
 
-  std::size_t at() const { return at_; }
+  /// All fields have been read.
+  void end() {
+    if (at() + kChecksum != size_) reject("there are bytes after the end of the .lrb data");
+    verify();
+  }
+
+  /// Throws InputError: the checksum does not match or, if it does, this fault at the next byte.
+  [[noreturn]] void reject(const std::string& what) {
+    const std::string found = at_byte(what);
+    verify();
+    throw InputError(found);
+  }
 
  private:
-  void need(std::size_t size) const {
-    if (bytes_.size() - at_ < size) reject("the file ends in the middle of a number");
+  static constexpr std::size_t kChecksum = sizeof(std::uint64_t), kChunk = std::size_t{1} << 18;
+
+  std::size_t at() const { return chunk_end_ - unread_.size(); }
+  std::string at_byte(const std::string& what) const {
+    return printable_name(name_) + ": byte " + std::to_string(at()) + ": " + what +
+           "; rebuild it from its mesh";
+  }
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(at_byte(what)); }
+
+  void take(void* to, std::size_t size) {
+    for (auto* out = static_cast<char*>(to); size > 0;) {
+      if (unread_.empty()) next_chunk();
+      const std::size_t part = std::min(size, unread_.size());
+      std::memcpy(out, unread_.data(), part);
+      unread_.remove_prefix(part);
+      out += part, size -= part;
+    }
   }
 
-  std::string_view bytes_;
+  void next_chunk() {
+    sum_chunk();
+    const std::size_t got = file_ != nullptr ? file_->read(buffer_.data(), kChunk) : 0;
+    if (got == 0) fail("the file became shorter while it was read");
+    chunk_ = unread_ = std::string_view(buffer_).substr(0, got);
+    chunk_end_ += got;
+  }
+
+  /// Adds a chunk to the checksum of all bytes but the last ones, which are the stored one.
+  void sum_chunk() {
+    const std::size_t before = chunk_end_ - chunk_.size(), last = size_ - kChecksum;
+    const std::size_t summed = std::min(chunk_.size(), last - std::min(last, before));
+    if (version_ >= kFirstWithTree) {
+      words_.add_bytes(chunk_.data(), summed);
+    } else {
+      bytes_.add_bytes(chunk_.data(), summed);
+    }
+    stored_.append(chunk_.substr(summed));
+  }
+
+  void verify() {
+    while (chunk_end_ < size_) next_chunk();
+    sum_chunk();
+    unread_ = {};
+    const std::uint64_t sum = version_ >= kFirstWithTree ? words_.value() : bytes_.value();
+    if (stored_ != std::string_view(reinterpret_cast<const char*>(&sum), sizeof sum))
+      fail("the checksum does not match: the file is damaged or truncated");
+  }
+
   const std::string& name_;
-  std::size_t at_ = kMagic.size();
+  std::size_t size_;
+  InputFile* file_ = nullptr;
+  std::string buffer_;
+  std::string_view chunk_, unread_;  ///< the chunk in memory, and its part that is not read yet
+  std::size_t chunk_end_ = 0;        ///< position in the file
+  std::uint32_t version_ = 0;
+  WordSums words_;
+  Fnv64 bytes_;
+  std::string stored_;
 };
 
 /// Writes a flag for the presence of levels of detail, then the parts that take long to compute.
@@ -119,6 +217,10 @@ std::optional<StoredLevels> read_levels(Reader& r) {
 
 }  // namespace
 
+bool looks_like_lrb(std::string_view bytes) {
+  return bytes.substr(0, kMagic.size()) == kMagic;
+}
+
 std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version) {
   // Since version 2 by words, at memory bandwidth; in version 1 byte by byte (FNV-1a).
   if (version >= kFirstWithTree) return fnv64_of_words(bytes.data(), bytes.size());
@@ -153,26 +255,10 @@ void save_lrb(const LrbRep& rep, const std::string& path) {
   write_file(path, w.bytes());
 }
 
-bool looks_like_lrb(std::string_view bytes) {
-  return bytes.substr(0, kMagic.size()) == kMagic;
-}
+namespace {
 
-LrbRep load_lrb(std::string_view bytes, const std::string& name) {
-  if (!looks_like_lrb(bytes))
-    throw InputError(printable_name(name) +
-                     ": byte 0: expected a .lrb file; build one with `lrbscope build MESH -o FILE.lrb`");
-  Reader r(bytes, name);
-  // The version comes first: it determines the checksum and the fields that follow.
-  const auto version = r.value<std::uint32_t>();
-  if (version > kLrbFileVersion)
-    throw InputError(printable_name(name) + ": byte 8: found file version " + std::to_string(version) +
-                     ", expected at most " + std::to_string(kLrbFileVersion) + "; use a newer lrbscope");
-  // The checksum is verified before any other field is interpreted.
-  if (bytes.size() < r.at() + sizeof(std::uint64_t)) r.reject("the file is truncated");
-  std::uint64_t stored;
-  std::memcpy(&stored, bytes.data() + bytes.size() - sizeof stored, sizeof stored);
-  if (stored != lrb_checksum(bytes.substr(0, bytes.size() - sizeof stored), version))
-    r.reject("the checksum does not match: the file is damaged or truncated");
+LrbRep load(Reader r, const std::string& name) {
+  const std::uint32_t version = r.begin();
   // The complex, field by field in the order of save_lrb().
   LrbData d;
   d.dim = static_cast<int>(r.value<std::uint32_t>());
@@ -194,9 +280,9 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   auto nodes = with_tree ? r.array<TreeNode>() : std::vector<TreeNode>();
   auto blocks = with_tree ? r.array<LeafBlock>() : std::vector<LeafBlock>();
   auto levels = version >= kFirstWithLevels ? read_levels(r) : std::nullopt;
-  if (r.at() + sizeof stored != bytes.size()) r.reject("there are bytes after the end of the .lrb data");
   // LrbData::face_count() subtracts 1 from the number of offsets.
   if (d.face_offsets.empty()) r.reject("the offsets of the faces are missing");
+  r.end();
   try {
     // The constructors check the structure: indices, cells, the shape of the trees, the order of the levels.
     LrbRep rep =
@@ -208,8 +294,16 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
   }
 }
 
+}  // namespace
+
+LrbRep load_lrb(std::string_view bytes, const std::string& name) {
+  return load(Reader(bytes, name), name);
+}
+
 LrbRep load_lrb(const std::string& path) {
-  return load_lrb(std::string_view(read_file(path)), path);
+  InputFile file(path);
+  // A pipe has no size, which lengths in the file are compared with.
+  return file.size() ? load(Reader(file, path), path) : load_lrb(std::string_view(read_file(path)), path);
 }
 
 }  // namespace lrb

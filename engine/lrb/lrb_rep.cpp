@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <map>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -29,21 +28,21 @@ namespace {
 
 void check_face(const LrbData& d, FaceId f) {
   const auto corners = d.face(f);
-  const std::string face = "face " + std::to_string(f);
+  const auto reject_face = [&](const std::string& what) { reject(d, "face " + std::to_string(f) + what); };
   // Corners: the right number for the dimension, and every index within the vertex array.
   if (d.dim == 2 ? corners.size() != 2 : corners.size() < 3)
-    reject(d, face + " has " + std::to_string(corners.size()) + " corners");
+    reject_face(" has " + std::to_string(corners.size()) + " corners");
   for (const VertexId v : corners)
     if (v >= d.vertices.size())
-      reject(d, face + " refers to vertex " + std::to_string(v) + ", which does not exist");
+      reject_face(" refers to vertex " + std::to_string(v) + ", which does not exist");
   // Cells: only a real face has the solid behind it, and a face separates two different cells.
   const CellId inner = d.inner_cell[f], outer = d.outer_cell[f];
   const auto is_known = [&](CellId c) { return !is_region(c) || c < d.region_layer.size(); };
-  if (!is_known(inner) || !is_known(outer)) reject(d, face + " refers to a region that does not exist");
+  if (!is_known(inner) || !is_known(outer)) reject_face(" refers to a region that does not exist");
   if ((inner == kSolid) != (f < d.real_face_count))
-    reject(d, face + " must have the solid behind it exactly if it is real");
+    reject_face(" must have the solid behind it exactly if it is real");
   if (inner == kOutside || outer == kSolid || inner == outer || outer == kNull || inner == kNull)
-    reject(d, face + " has its inner and outer cell swapped");
+    reject_face(" has its inner and outer cell swapped");
 }
 
 void check(const LrbData& d) {
@@ -267,17 +266,27 @@ void LrbRep::link_faces_to_regions() {
 void LrbRep::find_parents() {
   const std::uint32_t regions = region_count();
   parent_.assign(regions, kOutside);
+  struct Neighbour {
+    CellId cell;
+    double area = 0;  // of the lids shared with it
+  };
+  std::vector<Neighbour> neighbours;
   for (RegionId r = 0; r < regions; ++r) {
     layer_count_ = std::max(layer_count_, d_.region_layer[r] + 1u);
-    // Accumulate the lid area shared with each outer neighbour, then take the largest.
-    std::map<CellId, double> shared;  // ordered, so that ties go to the smaller id on every machine
-    for (const FaceId lid : lids(r)) shared[outer_cell(lid)] += face_size(d_, lid);
-    double most = -1;
-    for (const auto& [cell, size] : shared)
-      if (size > most) {
-        most = size;
-        parent_[r] = cell;
-      }
+    // A region has few outer neighbours.
+    neighbours.clear();
+    for (const FaceId lid : lids(r)) {
+      const auto is_it = [&](const Neighbour& n) { return n.cell == outer_cell(lid); };
+      auto at = std::find_if(neighbours.begin(), neighbours.end(), is_it);
+      if (at == neighbours.end()) at = neighbours.insert(at, {outer_cell(lid)});
+      at->area += face_size(d_, lid);
+    }
+    // The largest shared area; ties go to the smaller id.
+    const auto is_less = [](const Neighbour& a, const Neighbour& b) {
+      return a.area < b.area || (a.area == b.area && a.cell > b.cell);
+    };
+    const auto most = std::max_element(neighbours.begin(), neighbours.end(), is_less);
+    if (most != neighbours.end()) parent_[r] = most->cell;
   }
   // Depth: follow parents to the outside or to a region of known depth, then number the path on the way back.
   // Each region is numbered once, so this takes O(|R|) steps.

@@ -12,6 +12,7 @@
 #include "tests/support/lrb_shapes.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/validate.hpp>
@@ -113,6 +114,47 @@ TEST_CASE("every changed byte is detected") {
       damaged[at] = static_cast<char>(damaged[at] ^ change);
       REQUIRE_FALSE(complaint(damaged).empty());
     }
+}
+
+TEST_CASE("a file is read in chunks as it is from memory") {
+  const test::Folder folder;
+  const std::string path = folder / "body.lrb";
+  // Arrays and their elements continue from chunk to chunk (256 KiB). The names shift them.
+  for (const std::size_t length : {1, 7, 500, 300'000}) {
+    LrbData d = build_lrb(shapes::bumpy_sphere(5, 3)).data();
+    d.name = std::string(length, 'n');
+    const LrbRep rep(std::move(d));
+    if (length == 7) rep.levels();
+    save_lrb(rep, path);
+    const std::string whole = test::load_bytes(path);
+    REQUIRE(whole.size() > 1'000'000);
+    REQUIRE(bytes_of(load_lrb(path)) == whole);
+    const auto complaint_of = [&](const std::string& bytes) {
+      write_file(path, bytes);
+      try {
+        load_lrb(path);
+        return std::string();
+      } catch (const InputError& e) {
+        return std::string(e.what());
+      }
+    };
+    RandomEngine random(length);
+    for (int i = 0; i < 20; ++i) {
+      std::string damaged = whole;
+      damaged[16 + random() % (whole.size() - 16)] ^= 1;
+      REQUIRE(complaint_of(damaged).find("the checksum does not match") != std::string::npos);
+      const std::size_t size = random() % whole.size();
+      REQUIRE(complaint_of(whole.substr(0, size)) != "");
+    }
+    // A fault behind a right checksum has the same message from a file and from memory.
+    for (const std::string& bad : {with_right_checksum(whole.substr(0, whole.size() - 100)),
+                                   with_right_checksum(whole + std::string(300'000, '\0')),
+                                   with(whole, kNameAt + 8 + length, ~std::uint64_t{0})}) {
+      const std::string expected = complaint(bad);
+      REQUIRE(expected.find("body.lrb") == 0);
+      CHECK(complaint_of(bad) == path + expected.substr(8));
+    }
+  }
 }
 
 TEST_CASE("a newer version is rejected before any other check") {

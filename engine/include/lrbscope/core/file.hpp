@@ -2,7 +2,10 @@
 /// Atomic file output, and file input.
 
 #include <cstdint>
+#include <cstdio>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -53,8 +56,25 @@ void make_folder(const std::string& path);
 /// call it: they reject files in folders that do not exist.)
 void make_folder_of(const std::string& file);
 
-/// Returns the content of a file. Throws InputError if the file is missing or unreadable, is not a regular
-/// file or pipe (what_is_no_file()), or has more than `most` bytes.
+/// A file that is read from its start to its end. Errors throw InputError and name the path.
+class InputFile {
+ public:
+  /// Throws if the file is missing or unreadable, or is not a regular file or pipe (what_is_no_file()).
+  explicit InputFile(const std::string& path);
+
+  /// Returns the number of bytes; nullopt for a pipe.
+  std::optional<std::uint64_t> size() const { return size_; }
+  /// Reads the next bytes, at most `most`. Returns their number; fewer: the end of the file.
+  std::size_t read(char* to, std::size_t most);
+
+ private:
+  std::string path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  std::optional<std::uint64_t> size_;
+};
+
+/// Returns the content of a file. Throws InputError as InputFile does, or if there are more than `most`
+/// bytes.
 std::string read_file(const std::string& path,
                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
