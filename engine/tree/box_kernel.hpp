@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <lrbscope/ids.hpp>
+
 namespace lrb {
 
 /// A simplex in float, for estimates of boxes.
@@ -47,9 +49,11 @@ struct BoxKernel {
   float axes[3][4];
   float straight[4], turned[4];
 
-  /// Otherwise the ends of the box of `corners`, nine numbers a simplex, in a frame in which
-  /// x is the sum of (x[k] - origin[k]) columns[k].
-  const double* corners;
+  /// Otherwise the ends of the box of the `vertices` with the numbers `corners`, three a simplex, scaled by
+  /// `once` and `again`, in a frame in which x is the sum of (x[k] - origin[k]) columns[k].
+  const double* vertices;
+  const VertexId* corners;
+  double once, again;
   double columns[3][4], origin[3];
   double low[4], high[4];
 };

@@ -100,14 +100,16 @@ void add_to_bins(const BoxKernel& k) {
 void measure(BoxKernel& k) {
   const Double4 column[3] = {loaded<Double4>(k.columns[0]), loaded<Double4>(k.columns[1]),
                              loaded<Double4>(k.columns[2])};
-  const auto in_frame = [&](const double* x) {
+  const auto in_frame = [&](std::size_t corner) {
+    const double* const v = k.vertices + std::size_t{3} * k.corners[corner];
+    const double x[3] = {v[0] * k.once * k.again, v[1] * k.once * k.again, v[2] * k.once * k.again};
     return (x[0] - k.origin[0]) * column[0] + (x[1] - k.origin[1]) * column[1] +
            (x[2] - k.origin[2]) * column[2];
   };
-  Double4 low = in_frame(k.corners + std::size_t{9} * k.which[0]), high = low;
+  Double4 low = in_frame(std::size_t{3} * k.which[0]), high = low;
   for (std::size_t i = 0; i < k.count; ++i)
     for (int corner = 0; corner < 3; ++corner) {
-      const Double4 x = in_frame(k.corners + std::size_t{9} * k.which[i] + 3 * corner);
+      const Double4 x = in_frame(std::size_t{3} * k.which[i] + static_cast<std::size_t>(corner));
       low = min_of(low, x);
       high = max_of(high, x);
     }

@@ -290,7 +290,7 @@ void FittedCuts::localise() {
   for (const std::uint32_t i : along(0)) {
     GrowingBox<float> box;
     for (int k = 0; k < 4; ++k) {
-      const auto x = four<float>(scale_ * (soup_.corners[simplices_[i]][std::min(k, 2)] - origin_));
+      const auto x = four<float>(scale_ * (soup_.corner(simplices_[i], std::min(k, 2)) - origin_));
       std::ranges::copy(x, local_[i].corner[k]);
       box.extend(x);
     }
@@ -303,7 +303,7 @@ void FittedCuts::localise() {
 /// cancellation.
 void FittedCuts::measure() {
   if (first_spread_.empty()) first_spread_ = spread_;
-  for (const std::uint32_t i : along(0)) spread_[i] = Spread(soup_.corners[simplices_[i]], origin_, scale_);
+  for (const std::uint32_t i : along(0)) spread_[i] = Spread(soup_.triangle(simplices_[i]), origin_, scale_);
 }
 
 /// Orders the range along a direction by the centres of boxes, rounded to float.
@@ -403,12 +403,12 @@ bool is_orthonormal(const Matrix3d& axes) {
 }  // namespace
 
 Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, double unit, Workers& workers)
-    : simplices(simplices_.begin(), simplices_.end()) {
+    : simplices(simplices_.begin(), simplices_.end()), vertices(body.vertices) {
   // The unit is a power of two: 2^(exponent - 1). Two factors, as its inverse may be out of range.
   int exponent = 0;
   std::frexp(unit, &exponent);
-  const double once = std::ldexp(1.0, (1 - exponent) / 2),
-               again = std::ldexp(1.0, 1 - exponent - (1 - exponent) / 2);
+  once = std::ldexp(1.0, (1 - exponent) / 2);
+  again = std::ldexp(1.0, 1 - exponent - (1 - exponent) / 2);
   corners.resize(simplices.size());
   box.resize(simplices.size());
   order.resize(simplices.size());
@@ -416,14 +416,10 @@ Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, doubl
   std::vector<Box> bounds_of(shares_of(simplices.size()));
   for_each_share(simplices.size(), workers, [&](std::uint32_t begin, std::uint32_t end, std::size_t share) {
     for (std::uint32_t s = begin; s < end; ++s) {
-      VertexId v[3];
-      body.simplex(simplices[s], v);
+      body.simplex(simplices[s], corners[s].data());
       // A segment is a triangle whose last two corners coincide.
-      if (body.dim == 2) v[2] = v[1];
-      for (int k = 0; k < 3; ++k) {
-        corners[s][k] = body.vertices[v[k]] * once * again;
-        box[s].extend(corners[s][k]);
-      }
+      if (body.dim == 2) corners[s][2] = corners[s][1];
+      box[s] = box_of(s);
       bounds_of[share].extend(box[s]);
     }
   });
@@ -435,6 +431,7 @@ Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, doubl
 }
 
 void Soup::follow_order(Workers& workers) {
+  box = std::vector<Box>();  // `= {}` would keep the memory
   const auto follow = [&](auto& items) {
     std::remove_reference_t<decltype(items)> moved(items.size());
     for_each_share(items.size(), workers, [&](std::uint32_t begin, std::uint32_t end, std::size_t) {
@@ -444,7 +441,6 @@ void Soup::follow_order(Workers& workers) {
   };
   follow(simplices);
   follow(corners);
-  follow(box);
   std::iota(order.begin(), order.end(), 0u);
 }
 
@@ -482,7 +478,9 @@ Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const F
   k.count = which.size();
   k.bins = nullptr;
   k.local = nullptr;
-  k.corners = soup.corners.data()->data()->data();
+  k.vertices = soup.vertices.data()->data();
+  k.corners = soup.corners.data()->data();
+  k.once = soup.once, k.again = soup.again;
   for (int i = 0; i < 3; ++i) std::ranges::copy(four<double>(frame.axes.col(i)), k.columns[i]);
   std::ranges::copy(frame.origin, k.origin);
   run_box_kernel(k);
@@ -499,7 +497,7 @@ Frame principal_frame(const Soup& soup, std::span<const std::uint32_t> which, co
   // Small compared with the body: measure again, with a closer origin and scale.
   if (spread.variance() < kMeasureAgain) {
     measured = {};
-    for (const std::uint32_t s : which) measured += Spread(soup.corners[s], straight.origin, scale);
+    for (const std::uint32_t s : which) measured += Spread(soup.triangle(s), straight.origin, scale);
   }
   const Matrix3d axes = eigenvectors_of_symmetric(measured.covariance()).transpose();
   // Round the axes to float before measuring. If rounding spoils orthonormality, fall back to the coordinate

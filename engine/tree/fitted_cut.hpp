@@ -49,24 +49,40 @@ struct Spread {
   double variance() const { return ((sums[4] + sums[5]) + sums[6]) / sums[0] - squared_norm3(mean()); }
 };
 
-/// The corners of a simplex. The constructor leaves them as they are: arrays are filled by several threads.
-struct SimplexCorners : std::array<Eigen::Vector3d, 3> {
-  SimplexCorners() {}
-};
-
-/// Simplices in the tree's units, in the given order.
+/// Simplices in the tree's units, in the given order. Positions stay in the body, so that large bodies take
+/// little memory.
 struct Soup {
+  /// The vertices of a simplex. The constructor leaves them as they are: arrays are filled by several
+  /// threads.
+  struct Corners : std::array<VertexId, 3> {
+    Corners() : std::array<VertexId, 3>{kNull, kNull, kNull} {}
+  };
+
   std::vector<SimplexId> simplices;
-  std::vector<SimplexCorners> corners;
-  std::vector<Eigen::AlignedBox3d> box;
-  std::vector<std::uint32_t> order;  ///< the simplices in the order of the tree's leaves
+  std::vector<Corners> corners;
+  std::vector<Eigen::AlignedBox3d> box;       ///< until follow_order()
+  std::vector<std::uint32_t> order;           ///< the simplices in the order of the tree's leaves
+  std::span<const Eigen::Vector3d> vertices;  ///< mesh units
+  double once, again;                         ///< factors from mesh units to the tree's, one after the other
 
   Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit, Workers& workers);
+
+  /// Returns the position of a corner.
+  Eigen::Vector3d corner(std::uint32_t s, int k) const { return vertices[corners[s][k]] * once * again; }
+  std::array<Eigen::Vector3d, 3> triangle(std::uint32_t s) const {
+    return {corner(s, 0), corner(s, 1), corner(s, 2)};
+  }
+  /// Computes the box of a simplex.
+  Eigen::AlignedBox3d box_of(std::uint32_t s) const {
+    Eigen::AlignedBox3d b;
+    for (int k = 0; k < 3; ++k) b.extend(corner(s, k));
+    return b;
+  }
 
   /// Returns the centre of a simplex's box.
   Eigen::Vector3d centre(std::uint32_t s) const { return 0.5 * (box[s].min() + box[s].max()); }
   /// Returns the moments of a simplex relative to the centre of all simplices, scaled by their diagonal.
-  Spread spread(std::uint32_t s) const { return {corners[s], origin_, scale_}; }
+  Spread spread(std::uint32_t s) const { return {triangle(s), origin_, scale_}; }
 
   /// Returns the comparison of two simplices on an axis: by centre, then by number.
   auto order_on(int axis) const {
@@ -81,8 +97,8 @@ struct Soup {
     return std::span(order).subspan(begin, end - begin);
   }
 
-  /// Moves the simplices, their corners and their boxes to the order of the leaves, in which they are read
-  /// from here on.
+  /// Moves the simplices and their corners to the order of the leaves, in which they are read from here on,
+  /// and discards the boxes.
   void follow_order(Workers& workers);
 
  private:

@@ -99,7 +99,7 @@ class ObbTreeBuilder {
       frame.axes.setIdentity();
       for (std::uint32_t k = 0; k < count; ++k) {
         const Box& box =
-            b.is_leaf() ? soup_.box[soup_.order[b.begin + k]] : binary_[places_[first + k].binary].box;
+            b.is_leaf() ? soup_.box_of(soup_.order[b.begin + k]) : binary_[places_[first + k].binary].box;
         boxes[k] = Box(box.min() - frame.origin, box.max() - frame.origin);
       }
     }
@@ -124,7 +124,7 @@ class ObbTreeBuilder {
       // Absent simplices repeat the last one, so that all eight lanes contain valid coordinates.
       const std::uint32_t s = soup_.order[std::min(b.begin + k, b.end - 1)];
       for (int corner = 0; corner < 3; ++corner) {
-        const Vector3d x = product3(frame.axes, soup_.corners[s][corner] - frame.origin);
+        const Vector3d x = product3(frame.axes, soup_.corner(s, corner) - frame.origin);
         for (int axis = 0; axis < 3; ++axis) block.corner[corner][axis][k] = static_cast<float>(x[axis]);
       }
       if (b.begin + k < b.end) block.simplex[k] = soup_.simplices[s];
