@@ -44,7 +44,7 @@ AabbTree::AabbTree(std::vector<Slot> slots, std::size_t slot_count, const std::f
       for (std::uint32_t i = node.first; i < node.last; ++i) node.box.extend(boxes_[i]);
     if (node.parent != kNull) nodes_[node.parent].box.extend(node.box);
   }
-  centres_ = {};
+  centres_ = decltype(centres_)();  // `= {}` would keep the memory
 }
 
 std::uint32_t AabbTree::build(std::uint32_t first, std::uint32_t last, std::uint32_t parent) {

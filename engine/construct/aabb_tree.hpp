@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -69,16 +70,19 @@ class AabbTree {
     }
   }
 
- private:
-  static constexpr std::uint32_t kLeafSize = 4;
-  // A tree that is halved at each level has a depth of 2 + log2 of the number of leaves.
+  /// A tree that is halved at each level has a depth of 2 + log2 of the number of leaves.
   static constexpr int kMaxDepth = 64;
   struct Node {
     Box box;
-    std::uint32_t first, last;  ///< into slots_
+    std::uint32_t first, last;  ///< into slots()
     std::uint32_t right;        ///< the right child; the left one follows its parent. 0: leaf
     std::uint32_t parent;
   };
+  std::span<const Node> nodes() const { return nodes_; }  ///< the root first
+  std::span<const Slot> slots() const { return slots_; }  ///< leaf by leaf
+
+ private:
+  static constexpr std::uint32_t kLeafSize = 4;
 
   AabbTree() = default;
   std::uint32_t build(std::uint32_t first, std::uint32_t last, std::uint32_t parent);

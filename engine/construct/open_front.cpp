@@ -203,7 +203,7 @@ Index OpenFront::merge(const Star& star, const Union& united) {
       components_[c].careful |= components_[o].careful;
       components_[c].floor.insert(components_[c].floor.end(), components_[o].floor.begin(),
                                   components_[o].floor.end());
-      components_[o].floor = {};
+      components_[o].floor = std::vector<Index>();  // `= {}` would keep the memory
     }
   }
   components_[c].size = united.floor;

@@ -6,7 +6,7 @@
 namespace lrb::construct {
 
 SurfaceWalk::SurfaceWalk(const FrontMesh& front, const AabbTree& tree, double unit)
-    : tree_(tree), unit_(unit), scale_(1 / unit) {
+    : slots_(tree.slots().begin(), tree.slots().end()), unit_(unit), scale_(1 / unit) {
   Eigen::AlignedBox3d box;
   for (FrontMesh::Corner v = 0; v < front.point_count(); ++v) box.extend(front.x(v));
   centre_ = box.min() / 2 + box.max() / 2;
@@ -16,6 +16,12 @@ SurfaceWalk::SurfaceWalk(const FrontMesh& front, const AabbTree& tree, double un
     const Point a = local(front.x(t.v[0]));
     triangles_[s] = {a, local(front.x(t.v[1])) - a, local(front.x(t.v[2])) - a, t.v, t.across};
   }
+  // Grown by more than the rounding of coordinates, which are at most 2.
+  const Point rounding = Point::Constant(0x1p-20f);
+  nodes_.reserve(tree.nodes().size());
+  for (const AabbTree::Node& n : tree.nodes())
+    nodes_.push_back(
+        {local(n.box.min()) - rounding, local(n.box.max()) + rounding, n.first, n.last, n.right});
 }
 
 float SurfaceWalk::walk(const Point& p, Slot& hint, float enough) const {
@@ -51,17 +57,27 @@ float SurfaceWalk::walk(const Point& p, Slot& hint, float enough) const {
 }
 
 bool SurfaceWalk::find_within(const Point& p, Slot& hint, float enough) const {
-  const Eigen::Vector3d centre = centre_ + unit_ * p.cast<double>();
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(unit_ * std::sqrt(static_cast<double>(enough)));
-  bool found = false;
-  tree_.for_each_near(
-      Eigen::AlignedBox3d(centre - reach, centre + reach), [&](const Eigen::AlignedBox3d&) { return !found; },
-      [&](Slot s) {
-        if (found || nearest(triangles_[s], p).distance_sq > enough) return;
-        found = true;
-        hint = s;
-      });
-  return found;
+  // Depth-first search that ends at the first triangle within the distance.
+  std::uint32_t stack[AabbTree::kMaxDepth];
+  int top = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const std::uint32_t n = stack[--top];
+    const Node& node = nodes_[n];
+    const Point off = (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0f);
+    if (!((off[0] * off[0] + off[1] * off[1]) + off[2] * off[2] <= enough)) continue;
+    if (node.right != 0) {
+      stack[top++] = node.right;
+      stack[top++] = n + 1;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.last; ++i)
+      if (nearest(triangles_[slots_[i]], p).distance_sq <= enough) {
+        hint = slots_[i];
+        return true;
+      }
+  }
+  return false;
 }
 
 }  // namespace lrb::construct

@@ -41,8 +41,15 @@ class SurfaceWalk {
     return closest_part<float>(t.ab, t.ac, p - t.a);
   }
 
+  /// A node of the tree, which is copied without the boxes of triangles: a third of its memory.
+  struct Node {
+    Point low, high;
+    std::uint32_t first, last, right;  ///< as AabbTree::Node
+  };
+
   std::vector<Triangle> triangles_;
-  AabbTree tree_;
+  std::vector<Node> nodes_;
+  std::vector<Slot> slots_;  ///< leaf by leaf
   Eigen::Vector3d centre_;
   double unit_, scale_;  ///< scale_ = 1 / unit_
 };
