@@ -146,7 +146,7 @@ int run_query(const QueryOptions& o, const Globals& globals) {
       if (const std::string why = note_no_levels(body->rep); !why.empty()) note(globals, {why});
       body->rep.levels(0);
     }
-  Workspace workspace;
+  Workspace workspace(0);
   Progress progress("query", poses.size(), globals.quiet);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     CollideResult result = list.at(i, [&] { return answer(a.rep, b.rep, poses[i], o, workspace); });

@@ -78,7 +78,8 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
     result.opened[side] = context.body[side].wrapper->excluded();
     result.counters.regions_opened += result.opened[side].size();
   }
-  result.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
+  // Other threads have added theirs.
+  result.counters.exact_fallbacks += exact::exact_fallbacks() - fallbacks;
 }
 
 /// Collides two bodies and returns a new result.

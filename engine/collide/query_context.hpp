@@ -12,6 +12,7 @@
 #include "engine/tree/tree_kernel.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/parallel.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -60,6 +61,27 @@ class WorldVertices {
   Pose pose_;
   std::uint32_t epoch_ = 0;
   std::vector<Slot> slots_;
+};
+
+/// World coordinates of one simplex's corners at a time, for threads, which cannot share WorldVertices.
+class CornersAtPose {
+ public:
+  explicit CornersAtPose(const WorldVertices& world) : rep_(world.rep()), pose_(world.pose()) {}
+
+  /// As WorldVertices::corners(); the pointers are valid until the next call.
+  void corners(SimplexId s, const double* out[3]) {
+    VertexId v[3];
+    rep_.simplex(s, v);
+    for (int k = 0; k < rep_.simplex_size(); ++k) {
+      x_[k] = pose_.apply(rep_.vertices()[v[k]]);
+      out[k] = x_[k].data();
+    }
+  }
+
+ private:
+  const LrbRep& rep_;
+  const Pose& pose_;
+  Eigen::Vector3d x_[3];
 };
 
 /// One body during a query.
@@ -119,7 +141,9 @@ struct QueryBody {
 class QueryContext {
  public:
   QueryBody body[2];
-  std::vector<NodePair> stack;  ///< of the current kernel: pairs to visit, followed by those already tested
+  Workers* workers = nullptr;     ///< the threads of a query; null: the calling one
+  std::vector<NodePair> stack;    ///< of the current kernel: pairs to visit, followed by those already tested
+  std::vector<NodePair> waiting;  ///< pairs to visit apart: see WaitingParts
   std::vector<Candidate> candidates;
   // Used only in observed queries; see NodeWatch.
   std::unordered_map<std::uint64_t, std::uint32_t> parents;
@@ -131,6 +155,7 @@ class QueryContext {
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
 
   QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
+  bool has_threads() const { return workers != nullptr && workers->count() > 1; }
 };
 
 /// Tests exactly how two simplices intersect in the world frame.

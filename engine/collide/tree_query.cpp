@@ -1,5 +1,8 @@
 #include "engine/collide/tree_query.hpp"
 
+#include <atomic>
+#include <memory>
+
 namespace lrb {
 
 namespace {
@@ -27,6 +30,84 @@ TreeKernel start_rigid_kernel(QueryContext& ctx, const Pose& pose_a, const Pose&
   TreeKernel k = set_up_kernel(ctx[Side::a].tree(), pose_a, ctx[Side::b].tree(), pose_b);
   give_buffers(ctx, capacity, k);
   return k;
+}
+
+namespace {
+
+/// Traverses the parts of a query that a thread is given.
+class PartTester {
+ public:
+  PartTester(const QueryContext& ctx, const TreeKernel& k, std::size_t room, bool only_floating)
+      : kernel_(k),
+        stack_(room),
+        found_(1024),
+        a_(ctx.body[0].world),
+        b_(ctx.body[1].world),
+        dim_(ctx.body[0].rep().dim()),
+        only_floating_(only_floating) {}
+
+  /// Adds the number of intersecting pairs to `intersecting`.
+  TestedPart test(const NodePair& from, std::atomic<std::uint64_t>& intersecting, std::uint64_t pair_limit) {
+    const exact::FloatingPredicates floating(only_floating_);
+    const std::uint64_t fallbacks = exact::exact_fallbacks();
+    // Two stacks, as start_at_roots() allocates them.
+    kernel_.stack = stack_.data();
+    kernel_.tested = kernel_.stack + stack_.size() / 2;
+    kernel_.out = found_.data();
+    kernel_.out_capacity = static_cast<std::uint32_t>(found_.size());
+    kernel_.node_pairs = kernel_.box_tests = kernel_.prefilter_tests = 0;
+    start_at(kernel_, from);
+    TestedPart part;
+    WaitingParts waiting(waiting_);
+    waiting.begin(kernel_);
+    while (waiting.next(kernel_)) {
+      kernel_.out_size = 0;
+      run_tree_kernel(kernel_);
+      std::uint64_t met = 0;
+      for (const Candidate& c : std::span(found_).first(kernel_.out_size)) {
+        const exact::Meet meet =
+            meet_of(c, dim_, dim_ == 3 && !only_floating_, [&](const double** a, const double** b) {
+              a_.corners(c.a, a);
+              b_.corners(c.b, b);
+            });
+        met += meet != exact::Meet::disjoint;
+        part.pairs.push_back({c.a, c.b, meet});
+      }
+      if (met > 0 && intersecting.fetch_add(met) + met > pair_limit) reject_pairs(pair_limit);
+      waiting.split(kernel_);
+    }
+    part.node_pairs = kernel_.node_pairs;
+    part.box_tests = kernel_.box_tests;
+    part.prefilter_tests = kernel_.prefilter_tests;
+    part.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
+    return part;
+  }
+
+ private:
+  TreeKernel kernel_;
+  std::vector<NodePair> stack_, waiting_;
+  std::vector<Candidate> found_;
+  CornersAtPose a_, b_;
+  int dim_;
+  bool only_floating_;
+};
+
+}  // namespace
+
+std::vector<TestedPart> test_parts(const QueryContext& ctx, const TreeKernel& k,
+                                   std::span<const NodePair> parts, std::uint64_t found,
+                                   std::uint64_t pair_limit) {
+  std::vector<TestedPart> tested(parts.size());
+  // Each thread makes its memory when it gets its first part.
+  std::vector<std::unique_ptr<PartTester>> testers(ctx.workers->count());
+  const bool only_floating = exact::only_floating();
+  std::atomic<std::uint64_t> intersecting = found;
+  ctx.workers->for_each(parts.size(), [&](std::size_t i, unsigned worker) {
+    auto& tester = testers[worker];
+    if (!tester) tester = std::make_unique<PartTester>(ctx, k, ctx.stack.size(), only_floating);
+    tested[i] = tester->test(parts[i], intersecting, pair_limit);
+  });
+  return tested;
 }
 
 }  // namespace lrb

@@ -166,6 +166,99 @@ inline void count_roots_apart(Counters& counters) {
   ++counters.box_tests;
 }
 
+/// Returns 1 if two points are equal bit by bit, else 0. Points that differ only in the sign of a zero are
+/// left to the exact test.
+inline unsigned has_bits_of(const double* x, const double* y) {
+  std::uint64_t difference = 0;
+  for (int i = 0; i < 3; ++i)
+    difference |= std::bit_cast<std::uint64_t>(x[i]) ^ std::bit_cast<std::uint64_t>(y[i]);
+  return difference == 0;
+}
+
+/// Returns true if the candidate's marked corners are also corners of the other simplex. Compares each with
+/// all three without branches, because the match cannot be predicted. a, b: the corners in the world.
+inline bool shares_corners(const Candidate& c, const double* const a[3], const double* const b[3]) {
+  const double* const* own = c.side == Side::a ? a : b;
+  const double* const* others = c.side == Side::a ? b : a;
+  unsigned shared = 1;
+  for (unsigned left = c.corners; left != 0; left &= left - 1) {
+    const double* const corner = own[std::countr_zero(left)];
+    shared &=
+        has_bits_of(corner, others[0]) | has_bits_of(corner, others[1]) | has_bits_of(corner, others[2]);
+  }
+  return shared != 0;
+}
+
+/// Returns the Meet of a candidate. The kernel has decided most: then no corner is transformed to the world.
+/// corners_of(a, b) writes those of both simplices. `exactly`: 3D, and floats may not decide alone.
+template <class Corners>
+exact::Meet meet_of(const Candidate& c, int dim, bool exactly, const Corners& corners_of) {
+  if (c.certainty == Certainty::cross) return exact::Meet::cross;
+  if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
+  const double *a[3], *b[3];
+  corners_of(a, b);
+  if (c.certainty == Certainty::touch_if_shared && exactly && shares_corners(c, a, b))
+    return exact::Meet::touch;
+  return dim == 3 ? exact::meet_triangles(a, b) : exact::meet_segments(a, b);
+}
+
+// A query in deep contact is split after kNodePairsOfPart pairs of nodes: each pair that waits then is
+// traversed on its own, with everything below it, the last one first, and split again. The order of the
+// candidates, in which regions are opened, is therefore the same on any number of threads.
+
+/// About two pairs of nodes are visited for each pair of simplices that intersects.
+inline constexpr std::uint64_t kNodePairsOfPart = 2048;
+
+/// The pairs of nodes that wait for their traversal; the last one is next.
+class WaitingParts {
+ public:
+  /// `memory`: for the pairs.
+  explicit WaitingParts(std::vector<NodePair>& memory) : pairs_(memory) { pairs_.clear(); }
+  /// Lets the kernel stop where it is to be split.
+  void begin(TreeKernel& k) { end_part(k); }
+  /// Called when the kernel stopped: moves its pairs to the waiting ones if it has visited enough.
+  void split(TreeKernel& k) {
+    if (k.node_pairs < k.max_node_pairs) return;
+    pairs_.insert(pairs_.end(), k.stack, k.stack + k.stack_size);
+    pairs_.insert(pairs_.end(), k.tested, k.tested + k.tested_size);
+    k.stack_size = k.tested_size = 0;
+  }
+  /// If the kernel is done, starts it at the next waiting pair. Returns false if there is none.
+  bool next(TreeKernel& k) {
+    if (!is_done(k)) return true;
+    if (pairs_.empty()) return false;
+    start_at(k, pairs_.back());
+    pairs_.pop_back();
+    end_part(k);
+    return true;
+  }
+  std::span<const NodePair> all() const { return pairs_; }
+  void clear() { pairs_.clear(); }
+
+ private:
+  static void end_part(TreeKernel& k) { k.max_node_pairs = k.node_pairs + kNodePairsOfPart; }
+
+  std::vector<NodePair>& pairs_;
+};
+
+/// A candidate with its Meet.
+struct TestedPair {
+  SimplexId a, b;
+  exact::Meet meet;
+};
+
+/// The candidates below one pair of nodes, and the work that was done to find and test them.
+struct TestedPart {
+  std::vector<TestedPair> pairs;
+  std::uint64_t node_pairs = 0, box_tests = 0, prefilter_tests = 0, exact_fallbacks = 0;
+};
+
+/// Finds and tests the candidates below some pairs of nodes on the context's threads. `k`: a kernel of this
+/// query. Throws InputError if more than `pair_limit` pairs intersect, with the `found` ones.
+std::vector<TestedPart> test_parts(const QueryContext& ctx, const TreeKernel& k,
+                                   std::span<const NodePair> parts, std::uint64_t found,
+                                   std::uint64_t pair_limit);
+
 template <class Probe, class Rules = ExactRules>
 class TreeQuery {
  public:
@@ -213,7 +306,9 @@ class TreeQuery {
     k.nearest_first = one_may_do;
     if constexpr (Rules::kWrappers) allow_for_wrappers(k);
     bool done = false;
-    while (!is_done(k) && !done) {
+    WaitingParts waiting(ctx_.waiting);
+    if (kSplits && !one_may_do) waiting.begin(k);
+    while (waiting.next(k) && !done) {
       k.out_size = 0;
       if constexpr (Rules::kLimited) k.max_node_pairs = rules_.max_node_pairs(k.node_pairs);
       reports_details(probe_) ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
@@ -224,6 +319,12 @@ class TreeQuery {
       if constexpr (Rules::kTrial)
         if (rules_.gives_up(too_many)) break;
       if (too_many) reject_pairs(pair_limit_);
+      if (!kSplits || one_may_do) continue;
+      waiting.split(k);
+      if (!Probe::kEnabled && ctx_.has_threads() && waiting.all().size() > 1) {
+        test_together(k, waiting.all());
+        waiting.clear();
+      }
     }
     // If the roots' own boxes had overlapped, their children's boxes would have been tested.
     ends_at_roots_ = k.box_tests == 1 && !(k.nodes_a[0].is_leaf && k.nodes_b[0].is_leaf);
@@ -231,6 +332,30 @@ class TreeQuery {
     result_.counters.box_tests += k.box_tests;
     result_.counters.prefilter_tests += k.prefilter_tests;
     return k.node_pairs;
+  }
+
+  /// Tests what is below some pairs of nodes on several threads, as walk() would test it afterwards.
+  void test_together(TreeKernel& k, std::span<const NodePair> parts) {
+    const std::uint64_t fallbacks = exact::exact_fallbacks();
+    std::vector<TestedPart> tested = test_parts(ctx_, k, parts, result_.pairs.size(), pair_limit_);
+    // Those of this thread are counted by the query and by the parts.
+    result_.counters.exact_fallbacks -= exact::exact_fallbacks() - fallbacks;
+    // The last pair that waits is next.
+    for (auto part = tested.rbegin(); part != tested.rend(); ++part) {
+      for (const TestedPair& p : part->pairs) {
+        const FaceId fa = ctx_[Side::a].rep().face_of_simplex(p.a),
+                     fb = ctx_[Side::b].rep().face_of_simplex(p.b);
+        const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
+        const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
+        count_face_test(true, std::max(depth_a, depth_b), result_.counters);
+        if (p.meet != exact::Meet::disjoint) record_pair(result_, probe_, p.a, p.b, p.meet);
+      }
+      part->pairs = std::vector<TestedPair>();  // frees the memory
+      k.node_pairs += part->node_pairs;
+      k.box_tests += part->box_tests;
+      k.prefilter_tests += part->prefilter_tests;
+      result_.counters.exact_fallbacks += part->exact_fallbacks;
+    }
   }
 
   /// Tests a candidate. Returns true if the answer is complete. One pair is enough in any_pair mode, and in
@@ -269,46 +394,28 @@ class TreeQuery {
     return mode_ == Mode::any_pair || (mode_ == Mode::first_pair && meet == exact::Meet::cross);
   }
 
-  /// Returns the Meet of a candidate. The kernel has decided most: then no corner is transformed to the
-  /// world.
   exact::Meet meet_of(const Candidate& c) {
-    if (c.certainty == Certainty::cross) return exact::Meet::cross;
-    if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
-    if (c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c)) return exact::Meet::touch;
-    return test_simplices(ctx_, c.a, c.b);
+    return lrb::meet_of(c, ctx_[Side::a].rep().dim(), exactly_,
+                        [&](const double** a, const double** b) { corners_of(c, a, b); });
+  }
+
+  void corners_of(const Candidate& c, const double** a, const double** b) {
+    ctx_[Side::a].world.corners(c.a, a);
+    ctx_[Side::b].world.corners(c.b, b);
   }
 
   /// Returns the method that decided a candidate. fallbacks: exact::exact_fallbacks() before the test.
   TestedBy tested_by(const Candidate& c, std::uint64_t fallbacks) {
     if (c.certainty == Certainty::cross || c.certainty == Certainty::disjoint) return TestedBy::floats;
     if (exact::exact_fallbacks() != fallbacks) return TestedBy::expansions;
-    const bool shares = c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c);
+    const double *a[3], *b[3];
+    corners_of(c, a, b);
+    const bool shares = c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c, a, b);
     return shares ? TestedBy::shared_corners : TestedBy::filter;
   }
 
-  /// Returns true if the candidate's marked corners are also corners of the other simplex. Compares each with
-  /// all three without branches, because the match cannot be predicted.
-  bool shares_corners(const Candidate& c) {
-    const double *own[3], *others[3];
-    ctx_[Side::a].world.corners(c.a, c.side == Side::a ? own : others);
-    ctx_[Side::b].world.corners(c.b, c.side == Side::a ? others : own);
-    unsigned shared = 1;
-    for (unsigned left = c.corners; left != 0; left &= left - 1) {
-      const double* const corner = own[std::countr_zero(left)];
-      shared &=
-          has_bits_of(corner, others[0]) | has_bits_of(corner, others[1]) | has_bits_of(corner, others[2]);
-    }
-    return shared != 0;
-  }
-
-  /// Returns 1 if two points are equal bit by bit, else 0. Points that differ only in the sign of a zero are
-  /// left to the exact test.
-  static unsigned has_bits_of(const double* x, const double* y) {
-    std::uint64_t difference = 0;
-    for (int i = 0; i < 3; ++i)
-      difference |= std::bit_cast<std::uint64_t>(x[i]) ^ std::bit_cast<std::uint64_t>(y[i]);
-    return difference == 0;
-  }
+  /// Queries without limits for all pairs are split.
+  static constexpr bool kSplits = !Rules::kLimited && !Rules::kWrappers && !Rules::kTrial;
 
   QueryContext& ctx_;
   Mode mode_;

@@ -16,10 +16,12 @@
 namespace lrb {
 
 struct Workspace::Memory {
+  explicit Memory(unsigned threads) : workers(threads) { of_collision().workers = &workers; }
+
   FirstContactContext context;
   NearPairsContext near;
   ManifoldContext manifold;
-  Workers alone;  ///< the calling thread
+  Workers workers;
   // The last answers.
   CollideResult collision;
   DistanceResult distance;
@@ -33,7 +35,7 @@ struct Workspace::Memory {
   QueryContext& of_collision() { return context.distance.query; }
 };
 
-Workspace::Workspace() : memory_(std::make_unique<Memory>()) {}
+Workspace::Workspace(unsigned threads) : memory_(std::make_unique<Memory>(threads)) {}
 Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
@@ -77,7 +79,7 @@ Expected<NearPairsResult&> near_pairs(const LrbRep& a, const Pose& pose_a, const
                                       const Pose& pose_b, const NearPairsRequest& request,
                                       Workspace& workspace) try {
   Workspace::Memory& memory = workspace.memory();
-  near_pairs_into(a, pose_a, b, pose_b, request, memory.alone, memory.near, memory.pairs);
+  near_pairs_into(a, pose_a, b, pose_b, request, memory.workers, memory.near, memory.pairs);
   return memory.pairs;
 } catch (const InputError& e) {
   return Error{e.what()};
@@ -88,7 +90,7 @@ Expected<ManifoldResult&> contact_manifolds(const LrbRep& a, const Pose& pose_a,
                                             Workspace& workspace, const ManifoldResult* previous) try {
   Workspace::Memory& memory = workspace.memory();
   // The previous answer may be the one in the workspace: keep it until the next one is complete.
-  contact_manifolds_into(a, pose_a, b, pose_b, request, previous, memory.alone, memory.of_collision(),
+  contact_manifolds_into(a, pose_a, b, pose_b, request, previous, memory.workers, memory.of_collision(),
                          memory.near, memory.manifold, memory.earlier_manifolds);
   std::swap(memory.manifolds, memory.earlier_manifolds);
   return memory.manifolds;

@@ -62,7 +62,7 @@ void run_batch(std::size_t n, unsigned threads,
                const std::function<void(std::size_t i, unsigned worker)>& work);
 
 /// Returns the workspace that single queries of the calling thread reuse.
-Workspace& own_workspace();
+Workspace& own_workspace(unsigned threads = 1);
 
 /// Throws exceptions raised by signal handlers, such as KeyboardInterrupt. Acquires the GIL.
 void check_signals();

@@ -1,3 +1,4 @@
+#include <map>
 #include <mutex>
 
 #include "python/src/answers.hpp"
@@ -100,9 +101,9 @@ void bind_coherent(py::module_& m) {
 
 namespace lrb::python {
 
-Workspace& own_workspace() {
-  thread_local Workspace workspace;
-  return workspace;
+Workspace& own_workspace(unsigned threads) {
+  thread_local std::map<unsigned, Workspace> workspaces;
+  return workspaces.try_emplace(threads, threads).first->second;
 }
 
 namespace {
@@ -114,11 +115,11 @@ CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
 }
 
 py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
-                       const CollideRequest& request) {
+                       const CollideRequest& request, unsigned threads) {
   auto result = std::make_shared<CollideResult>();
   {
     const py::gil_scoped_release unlocked;
-    *result = ask(a.rep(), pose_a, b.rep(), pose_b, request, own_workspace());
+    *result = ask(a.rep(), pose_a, b.rep(), pose_b, request, own_workspace(threads));
   }
   return py::cast(Answer{std::move(result), a.shared(), b.shared()});
 }
@@ -142,8 +143,9 @@ py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle po
   const Pose at_a = pose(pose_a, "pose_a");
   const CollideRequest request = request_of(
       {mode, contacts, interiors_overlap, tolerance, max_tests, max_time, separation, max_pairs, recursion});
-  if (at.one) return collide_one(body_a, at_a, body_b, at.first, request);
-  return collide_many(body_a, at_a, body_b, at.many, request, threads_of(count(threads, "threads")));
+  const unsigned n = threads_of(count(threads, "threads"));
+  return at.one ? collide_one(body_a, at_a, body_b, at.first, request, n)
+                : collide_many(body_a, at_a, body_b, at.many, request, n);
 }
 
 /// A sequence of bodies with their poses.
@@ -222,7 +224,7 @@ mode: 'all' pairs; 'first': one crossing pair, if any; 'any': the first pair fou
 contacts: fill Result.regions: curves, area, normal and depth of each contact region.
 tolerance (the meshes' unit), max_tests, max_time (s), separation: limits and options of approximate queries.
 max_pairs: raise an error for answers of more pairs; 0: more than 33,554,432, with contacts 2,097,152.
-threads: of a batch; 0: all cores. Answers do not depend on it.
+threads: of a batch, or of one query in deep contact; 0: all cores. Answers do not depend on it.
 
 Returns a Result, or for (k, 4, 4) a Results.
 

@@ -4,7 +4,9 @@
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/closed_body.hpp"
+#include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/workspace.hpp>
 
 using namespace lrb;
 using shapes::RandomEngine;
@@ -234,4 +236,51 @@ TEST_CASE("swapping the bodies transposes the pairs") {
 TEST_CASE("fingerprints are FNV-1a 64 of the pairs") {
   CHECK(fingerprint({}) == 0xcbf29ce484222325u);
   CHECK(fingerprint({{1, 2}, {3, 4}}) == 0x84c39a079fc08121u);
+}
+
+TEST_CASE("a query in deep contact has the same result on any number of threads, and with a probe") {
+  std::vector<AnyBodies> list;
+  const auto add_twice = [&](const char* name, const LrbRep& rep) { list.push_back({name, rep, rep}); };
+  add_twice("regions", build_lrb(shapes::bumpy_sphere(4, 7, 0.3)));
+  add_twice("quads", build_lrb(shapes::quad_torus(90, 60)));
+  add_twice(
+      "void",
+      closed(shapes::several({shapes::icosphere(4), shapes::turned_inside_out(shapes::icosphere(4, 0.5))})));
+  add_twice("crosses itself",
+            build_lrb(shapes::several(
+                {shapes::torus(80, 40), shapes::translated(shapes::torus(80, 40), {1, 0, 0})})));
+  add_twice("open", LrbRep::without_regions(shapes::open_cylinder(12000), false, false));
+  add_twice("2D", closed(shapes::ring_2d(20000)));
+  Pose turned, skewed;
+  turned.r = Eigen::AngleAxisd(1e-3, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  skewed.r << 1, 1e-3, 0, 0, 1.001, 0, 0, 0, 1;
+  Workspace two(2), five(5);
+  for (const AnyBodies& pair : list) {
+    std::uint64_t most = 0;
+    for (const Pose& pose : {Pose{}, turned, skewed})
+      for (const Predicates predicates : {Predicates::exact, Predicates::floating}) {
+        CAPTURE(pair.name);
+        CollideRequest request;
+        request.predicates = predicates;
+        const CollideResult alone = collide(pair.a, Pose{}, pair.b, pose, request);
+        most = std::max(most, alone.counters.node_pairs);
+        CollideProbe probe;
+        for (const CollideResult& other : {collide(pair.a, Pose{}, pair.b, pose, request, two).value(),
+                                           collide(pair.a, Pose{}, pair.b, pose, request, five).value(),
+                                           collide(pair.a, Pose{}, pair.b, pose, request, probe)}) {
+          REQUIRE(other.pairs == alone.pairs);
+          REQUIRE(other.meets == alone.meets);
+          REQUIRE(other.relation == alone.relation);
+          REQUIRE(other.opened == alone.opened);
+          REQUIRE(other.counters == alone.counters);
+        }
+        request.max_pairs = alone.pairs.size();
+        CHECK(collide(pair.a, Pose{}, pair.b, pose, request, two).has_value());
+        --request.max_pairs;
+        const auto refused = collide(pair.a, Pose{}, pair.b, pose, request, two);
+        REQUIRE_FALSE(refused.has_value());
+        CHECK(refused.error().reason.find("more than " + std::to_string(request.max_pairs) + " pairs") == 0);
+      }
+    CHECK(most > 2 * kNodePairsOfPart);  // several parts
+  }
 }

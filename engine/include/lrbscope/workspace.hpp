@@ -94,7 +94,10 @@ DistanceAnswers distance(std::span<const PosedPair> pairs, const DistanceRequest
 /// two bodies. A moved-from workspace may only be assigned to or destroyed.
 class Workspace {
  public:
-  Workspace();
+  /// `threads`: number of threads for one query, including the caller; 0: number of hardware threads. Used
+  /// for all pairs of bodies in deep contact (over about 1,000 pairs), and by near_pairs() and
+  /// contact_manifolds(). Answers are the same for any number.
+  explicit Workspace(unsigned threads = 1);
   ~Workspace();
   Workspace(Workspace&&) noexcept;
   Workspace& operator=(Workspace&&) noexcept;
@@ -120,7 +123,8 @@ class Workspace {
 /// there are more pairs than CollideRequest::max_pairs.
 ///
 /// Allocates no memory if the request is plain (complete; no contacts, interiors_overlap, separation or
-/// limits), there is no probe, and a query of these bodies with at least as many pairs was answered before.
+/// limits), there is no probe, the workspace has one thread, and a query of these bodies with at least as
+/// many pairs was answered before.
 Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                  const CollideRequest& request, Workspace& workspace,
                                  CollideProbe* probe = nullptr);
