@@ -120,7 +120,7 @@ endforeach()
 
 # The simplification that `levels` compares wrappers with, if CGAL is installed.
 if(CGAL_FOUND)
-  find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+  find_package(Eigen3 REQUIRED NO_MODULE)
   add_executable(lrbscope-simplify programs/simplify.cpp)
   target_link_libraries(lrbscope-simplify PRIVATE CGAL::CGAL Eigen3::Eigen)
   target_compile_definitions(lrbscope-simplify PRIVATE NDEBUG)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--wheel FILE] [--no-cache] [--keep]: tests the README's two
-# commands on a minimal Debian: bookworm (12, the default of S) or trixie (13). Makes a root file system with debootstrap, from the
+# commands on a minimal Debian: bookworm (12, the default of S), trixie (13) or forky (testing). Makes a root file system with debootstrap, from the
 # package sources of this machine, clones commit C (HEAD) into it, and runs ./run and ./check there in a clean environment, as root;
 # then again as a user without root; then the rest of ./check --full, the last parts with other engines installed. Debian packages
 # are made there, and installed in another minimal root, which runs the program and builds an external project. Prints the time of
@@ -51,7 +51,7 @@ apt_transport() {
 
 # Makes the minimal root $1, from the cache or with debootstrap.
 make_root() {
-  local root=$1 sources key tar mirror keep=()
+  local root=$1 sources key tar mirror script="" keep=()
   sources=$(debian_sources)
   mirror=$(awk -v s="$suite" '$2 == s { print $1; exit }' <<<"$sources")
   key=$({ echo "$sources"; declare -f make_root; date +%Y-%m; } | sha256sum | cut -c1-16)
@@ -62,7 +62,9 @@ make_root() {
   else
     mkdir -p "$cache/debs"
     [ "$cached" = 0 ] || keep+=(--cache-dir="$cache/debs")
-    debootstrap --variant=minbase --include=ca-certificates,git "${keep[@]}" "$suite" "$root" "$mirror" >"$work/debootstrap.log" 2>&1 ||
+    # A release newer than debootstrap is made as the unstable one.
+    [ -e "/usr/share/debootstrap/scripts/$suite" ] || script=/usr/share/debootstrap/scripts/sid
+    debootstrap --variant=minbase --include=ca-certificates,git "${keep[@]}" "$suite" "$root" "$mirror" $script >"$work/debootstrap.log" 2>&1 ||
       { tail -20 "$work/debootstrap.log"; return 1; }
     # As in Debian's images: no package lists, no downloaded packages.
     rm -rf "$root"/var/lib/apt/lists/* "$root"/var/cache/apt/archives/*.deb "$root/etc/apt/sources.list"
@@ -76,6 +78,8 @@ make_root() {
   # Settings of this machine, which the cached root must not have.
   cp -L /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
   apt_transport >"$root/etc/apt/apt.conf.d/90machine"
+  # The lists of testing are valid for a week; a mirror may have older ones.
+  [ "$suite" != forky ] || echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/92testing"
   if [ "$cached" = 1 ]; then
     echo 'Binary::apt::APT::Keep-Downloaded-Packages "true"; APT::Keep-Downloaded-Packages "true";' >"$root/etc/apt/apt.conf.d/91keep"
   fi
@@ -294,7 +298,7 @@ suite=bookworm commit=HEAD until=tidy minutes=0 cached=1 keep=0 wheel=
 if [ "${1:-}" != --inside ]; then
   while [ $# -gt 0 ]; do
     case "$1" in
-      --suite) suite=${2:?bookworm or trixie} && shift ;;
+      --suite) suite=${2:?bookworm, trixie or forky} && shift ;;
       --commit) commit=${2:?a commit} && shift ;;
       --until) until=${2:?a step} && shift ;;
       --minutes) minutes=${2:?a number of minutes} && shift ;;
@@ -305,7 +309,7 @@ if [ "${1:-}" != --inside ]; then
     esac
     shift
   done
-  case $suite in bookworm | trixie) ;; *) usage ;; esac
+  case $suite in bookworm | trixie | forky) ;; *) usage ;; esac
   [ -z "$wheel" ] || all=(root clone wheel drawn)
   case " ${all[*]} " in *" $until "*) ;; *) usage ;; esac
   [[ $minutes =~ ^[0-9]+$ ]] || usage
