@@ -291,7 +291,7 @@ class ManifoldMaker {
     if (n.isZero() || !leaves(a, b, n, -kOverlayRounding)) return {};
     const PatchSimplex &face = side == 0 ? a : b, &other = side == 0 ? b : a;
     const Vector3d outward = side == 0 ? n : Vector3d(-n);
-    int part[3], count = 0;
+    int part[3] = {}, count = 0;
     if (!is_farthest_extreme(1 - side, other, -outward, part, count)) return {};
     PairAxis out{n, -outward.dot(other.x[part[0]] - face.x[0]), 1};
     for (int k = 0; k < count; ++k)

@@ -138,7 +138,7 @@ std::vector<PngChunk> chunks_of(std::string_view png) {
 std::vector<std::string> frames_in(const std::string& folder) {
   std::vector<std::string> out;
   for (;;) {
-    char name[32];
+    char name[48];
     std::snprintf(name, sizeof name, "/frames/frame_%04zu.png", out.size());
     if (!std::filesystem::exists(folder + name)) return out;
     out.push_back(read_file(folder + name));
