@@ -60,7 +60,7 @@ bool SurfaceWalk::find_within(const Point& p, Slot& hint, float enough) const {
   // Depth-first search that ends at the first triangle within the distance.
   std::uint32_t stack[AabbTree::kMaxDepth];
   int top = 0;
-  stack[top++] = 0;
+  if (!nodes_.empty()) stack[top++] = 0;
   while (top > 0) {
     const std::uint32_t n = stack[--top];
     const Node& node = nodes_[n];

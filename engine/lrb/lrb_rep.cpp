@@ -3,6 +3,7 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -266,27 +267,21 @@ void LrbRep::link_faces_to_regions() {
 void LrbRep::find_parents() {
   const std::uint32_t regions = region_count();
   parent_.assign(regions, kOutside);
-  struct Neighbour {
-    CellId cell;
-    double area = 0;  // of the lids shared with it
-  };
-  std::vector<Neighbour> neighbours;
+  std::vector<std::pair<CellId, FaceId>> lids_by_cell;
   for (RegionId r = 0; r < regions; ++r) {
     layer_count_ = std::max(layer_count_, d_.region_layer[r] + 1u);
-    // A region has few outer neighbours.
-    neighbours.clear();
-    for (const FaceId lid : lids(r)) {
-      const auto is_it = [&](const Neighbour& n) { return n.cell == outer_cell(lid); };
-      auto at = std::find_if(neighbours.begin(), neighbours.end(), is_it);
-      if (at == neighbours.end()) at = neighbours.insert(at, {outer_cell(lid)});
-      at->area += face_size(d_, lid);
+    // Sort the lids by outer neighbour, sum up the area shared with each, and take the largest; ties go to
+    // the smaller id.
+    lids_by_cell.clear();
+    for (const FaceId lid : lids(r)) lids_by_cell.emplace_back(outer_cell(lid), lid);
+    std::sort(lids_by_cell.begin(), lids_by_cell.end());
+    double most = -1;
+    for (auto lid = lids_by_cell.begin(); lid != lids_by_cell.end();) {
+      const CellId cell = lid->first;
+      double shared = 0;
+      for (; lid != lids_by_cell.end() && lid->first == cell; ++lid) shared += face_size(d_, lid->second);
+      if (shared > most) most = shared, parent_[r] = cell;
     }
-    // The largest shared area; ties go to the smaller id.
-    const auto is_less = [](const Neighbour& a, const Neighbour& b) {
-      return a.area < b.area || (a.area == b.area && a.cell > b.cell);
-    };
-    const auto most = std::max_element(neighbours.begin(), neighbours.end(), is_less);
-    if (most != neighbours.end()) parent_[r] = most->cell;
   }
   // Depth: follow parents to the outside or to a region of known depth, then number the path on the way back.
   // Each region is numbered once, so this takes O(|R|) steps.
