@@ -117,7 +117,10 @@ int print_help(CLI::App& app, const CLI::ParseError& request) {
   std::stringstream text;
   app.exit(request, text, text);
   std::string out;
-  for (std::string line; std::getline(text, line);) out += wrapped(line);
+  for (std::string line; std::getline(text, line);) {
+    line.erase(line.find_last_not_of(' ') + 1);  // CLI11 2.6 ends lines with a blank
+    out += wrapped(line);
+  }
   print(out);
   return kOk;
 }
@@ -148,7 +151,8 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 
 /// Returns a message of CLI11 in the words of this program's own ones. `app`: the command.
 std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::ParseError& error) {
-  static const std::regex kRange("(.*): Value (.*) not in range (\\S+) to (\\S+)"),
+  // CLI11 2.3: "0 to 1"; 2.6: "[0 - 1]".
+  static const std::regex kRange("(.*): Value (.*) not in range \\[?(\\S+) (?:to|-) ([^\\s\\]]+)\\]?"),
       kValue("Could not convert: (.*) = (.*)"),
       kUnexpected("The following arguments? (?:was|were) not expected: .*");
   const std::string text = error.what();
