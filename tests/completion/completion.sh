@@ -12,13 +12,13 @@ absent() { echo "skipped: $1 is not installed"; }
 
 # ---- manual pages
 "$lrbscope" --quiet manual -o pages >/dev/null
-commands=$("$lrbscope" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\{1,\}\) .*/\1/p')
+commands=$("$lrbscope" --help | sed -n '/^Subcommands:/I,/^$/s/^  \([a-z]\{1,\}\) .*/\1/p')
 [ "$(wc -w <<<"$commands")" -gt 15 ] || fail "found only these commands: $commands"
 options=0
 has_options() { # PAGE HELP...: every long option of the help is in the page
   local option page=$1
   shift
-  for option in $("$lrbscope" "$@" --help | grep -oE '^  (-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
+  for option in $("$lrbscope" "$@" --help | grep -oE '^  +(-[a-z], *)?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
     options=$((options + 1))
     grep -qF -- "\\fB${option//-/\\-}\\fR" "$page" || fail "$page: missing option $option of lrbscope $*"
   done
@@ -27,7 +27,7 @@ for command in $commands; do
   page=pages/lrbscope-$command.1
   [ -s "$page" ] || fail "no page for $command"
   has_options "$page" "$command"
-  for sub in $("$lrbscope" "$command" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\{1,\}\) .*/\1/p'); do
+  for sub in $("$lrbscope" "$command" --help | sed -n '/^Subcommands:/I,/^$/s/^  \([a-z]\{1,\}\) .*/\1/p'); do
     has_options "$page" "$command" "$sub"
   done
   grep -qxF ".B $command" pages/lrbscope.1 || fail "lrbscope.1 does not list $command"
