@@ -143,7 +143,7 @@ class QueryContext {
   QueryBody body[2];
   Workers* workers = nullptr;     ///< the threads of a query; null: the calling one
   std::vector<NodePair> stack;    ///< of the current kernel: pairs to visit, followed by those already tested
-  std::vector<NodePair> waiting;  ///< pairs to visit apart: see WaitingParts
+  std::vector<NodePair> waiting;  ///< pairs to visit apart: see split()
   std::vector<Candidate> candidates;
   // Used only in observed queries; see NodeWatch.
   std::unordered_map<std::uint64_t, std::uint32_t> parents;
@@ -158,12 +158,16 @@ class QueryContext {
   bool has_threads() const { return workers != nullptr && workers->count() > 1; }
 };
 
-/// Tests exactly how two simplices intersect in the world frame.
-inline exact::Meet test_simplices(QueryContext& ctx, SimplexId a, SimplexId b) {
+/// Tests exactly how two simplices intersect in the world frame. World: WorldVertices or CornersAtPose.
+template <class World>
+exact::Meet test_simplices(World& world_a, World& world_b, int dim, SimplexId a, SimplexId b) {
   const double *ca[3], *cb[3];
-  ctx.body[0].world.corners(a, ca);
-  ctx.body[1].world.corners(b, cb);
-  return ctx.body[0].rep().dim() == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
+  world_a.corners(a, ca);
+  world_b.corners(b, cb);
+  return dim == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
+}
+inline exact::Meet test_simplices(QueryContext& ctx, SimplexId a, SimplexId b) {
+  return test_simplices(ctx.body[0].world, ctx.body[1].world, ctx.body[0].rep().dim(), a, b);
 }
 
 inline void count_face_test(bool real, std::uint32_t level, Counters& c) {

@@ -55,26 +55,20 @@ class PartTester {
     kernel_.tested = kernel_.stack + stack_.size() / 2;
     kernel_.out = found_.data();
     kernel_.out_capacity = static_cast<std::uint32_t>(found_.size());
+    kernel_.max_node_pairs = kNoLimit;
     kernel_.node_pairs = kernel_.box_tests = kernel_.prefilter_tests = 0;
     start_at(kernel_, from);
     TestedPart part;
-    WaitingParts waiting(waiting_);
-    waiting.begin(kernel_);
-    while (waiting.next(kernel_)) {
+    while (!is_done(kernel_)) {
       kernel_.out_size = 0;
       run_tree_kernel(kernel_);
       std::uint64_t met = 0;
       for (const Candidate& c : std::span(found_).first(kernel_.out_size)) {
-        const exact::Meet meet =
-            meet_of(c, dim_, dim_ == 3 && !only_floating_, [&](const double** a, const double** b) {
-              a_.corners(c.a, a);
-              b_.corners(c.b, b);
-            });
+        const exact::Meet meet = meet_of(c, a_, b_, dim_, dim_ == 3 && !only_floating_);
         met += meet != exact::Meet::disjoint;
         part.pairs.push_back({c.a, c.b, meet});
       }
       if (met > 0 && intersecting.fetch_add(met) + met > pair_limit) reject_pairs(pair_limit);
-      waiting.split(kernel_);
     }
     part.node_pairs = kernel_.node_pairs;
     part.box_tests = kernel_.box_tests;
@@ -85,7 +79,7 @@ class PartTester {
 
  private:
   TreeKernel kernel_;
-  std::vector<NodePair> stack_, waiting_;
+  std::vector<NodePair> stack_;
   std::vector<Candidate> found_;
   CornersAtPose a_, b_;
   int dim_;

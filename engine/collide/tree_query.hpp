@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "engine/collide/query_context.hpp"
@@ -175,11 +176,15 @@ inline unsigned has_bits_of(const double* x, const double* y) {
   return difference == 0;
 }
 
+// World: WorldVertices or CornersAtPose.
+
 /// Returns true if the candidate's marked corners are also corners of the other simplex. Compares each with
-/// all three without branches, because the match cannot be predicted. a, b: the corners in the world.
-inline bool shares_corners(const Candidate& c, const double* const a[3], const double* const b[3]) {
-  const double* const* own = c.side == Side::a ? a : b;
-  const double* const* others = c.side == Side::a ? b : a;
+/// all three without branches, because the match cannot be predicted.
+template <class World>
+bool shares_corners(const Candidate& c, World& a, World& b) {
+  const double *own[3], *others[3];
+  a.corners(c.a, c.side == Side::a ? own : others);
+  b.corners(c.b, c.side == Side::a ? others : own);
   unsigned shared = 1;
   for (unsigned left = c.corners; left != 0; left &= left - 1) {
     const double* const corner = own[std::countr_zero(left)];
@@ -190,56 +195,39 @@ inline bool shares_corners(const Candidate& c, const double* const a[3], const d
 }
 
 /// Returns the Meet of a candidate. The kernel has decided most: then no corner is transformed to the world.
-/// corners_of(a, b) writes those of both simplices. `exactly`: 3D, and floats may not decide alone.
-template <class Corners>
-exact::Meet meet_of(const Candidate& c, int dim, bool exactly, const Corners& corners_of) {
+/// `exactly`: 3D, and floats may not decide alone.
+template <class World>
+[[gnu::always_inline]] inline exact::Meet meet_of(const Candidate& c, World& a, World& b, int dim,
+                                                  bool exactly) {
   if (c.certainty == Certainty::cross) return exact::Meet::cross;
   if (c.certainty == Certainty::disjoint) return exact::Meet::disjoint;
-  const double *a[3], *b[3];
-  corners_of(a, b);
   if (c.certainty == Certainty::touch_if_shared && exactly && shares_corners(c, a, b))
     return exact::Meet::touch;
-  return dim == 3 ? exact::meet_triangles(a, b) : exact::meet_segments(a, b);
+  return test_simplices(a, b, dim, c.a, c.b);
 }
 
-// A query in deep contact is split after kNodePairsOfPart pairs of nodes: each pair that waits then is
-// traversed on its own, with everything below it, the last one first, and split again. The order of the
-// candidates, in which regions are opened, is therefore the same on any number of threads.
+// A query in deep contact is split once: after kNodePairsBeforeSplit pairs of nodes, each pair that waits is
+// traversed on its own, with everything below it, the last one first. The order of the candidates, in which
+// regions are opened, is therefore the same on any number of threads.
 
 /// About two pairs of nodes are visited for each pair of simplices that intersects.
-inline constexpr std::uint64_t kNodePairsOfPart = 2048;
+inline constexpr std::uint64_t kNodePairsBeforeSplit = 2048;
 
-/// The pairs of nodes that wait for their traversal; the last one is next.
-class WaitingParts {
- public:
-  /// `memory`: for the pairs.
-  explicit WaitingParts(std::vector<NodePair>& memory) : pairs_(memory) { pairs_.clear(); }
-  /// Lets the kernel stop where it is to be split.
-  void begin(TreeKernel& k) { end_part(k); }
-  /// Called when the kernel stopped: moves its pairs to the waiting ones if it has visited enough.
-  void split(TreeKernel& k) {
-    if (k.node_pairs < k.max_node_pairs) return;
-    pairs_.insert(pairs_.end(), k.stack, k.stack + k.stack_size);
-    pairs_.insert(pairs_.end(), k.tested, k.tested + k.tested_size);
-    k.stack_size = k.tested_size = 0;
-  }
-  /// If the kernel is done, starts it at the next waiting pair. Returns false if there is none.
-  bool next(TreeKernel& k) {
-    if (!is_done(k)) return true;
-    if (pairs_.empty()) return false;
-    start_at(k, pairs_.back());
-    pairs_.pop_back();
-    end_part(k);
-    return true;
-  }
-  std::span<const NodePair> all() const { return pairs_; }
-  void clear() { pairs_.clear(); }
+/// Moves the kernel's pairs of nodes to `waiting`.
+inline void split(TreeKernel& k, std::vector<NodePair>& waiting) {
+  waiting.insert(waiting.end(), k.stack, k.stack + k.stack_size);
+  waiting.insert(waiting.end(), k.tested, k.tested + k.tested_size);
+  k.stack_size = k.tested_size = 0;
+}
 
- private:
-  static void end_part(TreeKernel& k) { k.max_node_pairs = k.node_pairs + kNodePairsOfPart; }
-
-  std::vector<NodePair>& pairs_;
-};
+/// If the kernel is done, starts it at the next waiting pair. Returns false if there is none.
+inline bool go_on(TreeKernel& k, std::vector<NodePair>& waiting) {
+  if (!is_done(k)) return true;
+  if (waiting.empty()) return false;
+  start_at(k, waiting.back());
+  waiting.pop_back();
+  return true;
+}
 
 /// A candidate with its Meet.
 struct TestedPair {
@@ -306,9 +294,10 @@ class TreeQuery {
     k.nearest_first = one_may_do;
     if constexpr (Rules::kWrappers) allow_for_wrappers(k);
     bool done = false;
-    WaitingParts waiting(ctx_.waiting);
-    if (kSplits && !one_may_do) waiting.begin(k);
-    while (waiting.next(k) && !done) {
+    bool splits = kSplits && !one_may_do;
+    if (splits) k.max_node_pairs = kNodePairsBeforeSplit;
+    ctx_.waiting.clear();
+    while (!done && go_on(k, ctx_.waiting)) {
       k.out_size = 0;
       if constexpr (Rules::kLimited) k.max_node_pairs = rules_.max_node_pairs(k.node_pairs);
       reports_details(probe_) ? NodeWatch<Probe>(ctx_, probe_).run(k) : run_tree_kernel(k);
@@ -319,11 +308,13 @@ class TreeQuery {
       if constexpr (Rules::kTrial)
         if (rules_.gives_up(too_many)) break;
       if (too_many) reject_pairs(pair_limit_);
-      if (!kSplits || one_may_do) continue;
-      waiting.split(k);
-      if (!Probe::kEnabled && ctx_.has_threads() && waiting.all().size() > 1) {
-        test_together(k, waiting.all());
-        waiting.clear();
+      if (!splits || k.node_pairs < k.max_node_pairs) continue;
+      splits = false;
+      k.max_node_pairs = kNoLimit;
+      split(k, ctx_.waiting);
+      if (!Probe::kEnabled && ctx_.has_threads() && ctx_.waiting.size() > 1) {
+        test_together(k, ctx_.waiting);
+        ctx_.waiting.clear();
       }
     }
     // If the roots' own boxes had overlapped, their children's boxes would have been tested.
@@ -343,11 +334,7 @@ class TreeQuery {
     // The last pair that waits is next.
     for (auto part = tested.rbegin(); part != tested.rend(); ++part) {
       for (const TestedPair& p : part->pairs) {
-        const FaceId fa = ctx_[Side::a].rep().face_of_simplex(p.a),
-                     fb = ctx_[Side::b].rep().face_of_simplex(p.b);
-        const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
-        const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
-        count_face_test(true, std::max(depth_a, depth_b), result_.counters);
+        show_and_count(p.a, p.b);
         if (p.meet != exact::Meet::disjoint) record_pair(result_, probe_, p.a, p.b, p.meet);
       }
       part->pairs = std::vector<TestedPair>();  // frees the memory
@@ -358,6 +345,17 @@ class TreeQuery {
     }
   }
 
+  /// Refines the wrappers until both faces of a test are on their boundaries, and counts the test. Returns
+  /// the faces' depths, as show_face().
+  std::pair<std::uint32_t, std::uint32_t> show_and_count(SimplexId a, SimplexId b) {
+    const LrbRep &rep_a = ctx_[Side::a].rep(), &rep_b = ctx_[Side::b].rep();
+    const FaceId fa = rep_a.face_of_simplex(a), fb = rep_b.face_of_simplex(b);
+    const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
+    const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
+    count_face_test(rep_a.is_real(fa) && rep_b.is_real(fb), std::max(depth_a, depth_b), result_.counters);
+    return {depth_a, depth_b};
+  }
+
   /// Tests a candidate. Returns true if the answer is complete. One pair is enough in any_pair mode, and in
   /// first_pair mode if it crosses. In first_pair mode a touching pair is kept while the search for a
   /// crossing one continues, so that the relation is exact in that mode as well.
@@ -366,16 +364,12 @@ class TreeQuery {
       if (rules_.no_test_left(result_.counters.face_tests, c.certainty != Certainty::none,
                               result_.pairs.size()))
         return true;
-    const FaceId fa = ctx_[Side::a].rep().face_of_simplex(c.a), fb = ctx_[Side::b].rep().face_of_simplex(c.b);
-    const std::uint32_t depth_a = show_face(ctx_, Side::a, fa, result_, probe_);
-    const std::uint32_t depth_b = show_face(ctx_, Side::b, fb, result_, probe_);
+    const auto [depth_a, depth_b] = show_and_count(c.a, c.b);
     const std::uint64_t fallbacks = reports_details(probe_) ? exact::exact_fallbacks() : 0;
     exact::Meet meet = meet_of(c);
     if constexpr (Rules::kWrappers)
       if (meet == exact::Meet::disjoint && c.certainty != Certainty::disjoint)
         meet = rules_.meet_of_near(ctx_, c.a, c.b);
-    const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
-    count_face_test(real, std::max(depth_a, depth_b), result_.counters);
     if constexpr (Probe::kEnabled) {
       probe_.face_test(c.a, c.b, meet, depth_a, depth_b);
       if (reports_details(probe_)) probe_.tested_by(tested_by(c, fallbacks));
@@ -395,22 +389,15 @@ class TreeQuery {
   }
 
   exact::Meet meet_of(const Candidate& c) {
-    return lrb::meet_of(c, ctx_[Side::a].rep().dim(), exactly_,
-                        [&](const double** a, const double** b) { corners_of(c, a, b); });
-  }
-
-  void corners_of(const Candidate& c, const double** a, const double** b) {
-    ctx_[Side::a].world.corners(c.a, a);
-    ctx_[Side::b].world.corners(c.b, b);
+    return lrb::meet_of(c, ctx_[Side::a].world, ctx_[Side::b].world, ctx_[Side::a].rep().dim(), exactly_);
   }
 
   /// Returns the method that decided a candidate. fallbacks: exact::exact_fallbacks() before the test.
   TestedBy tested_by(const Candidate& c, std::uint64_t fallbacks) {
     if (c.certainty == Certainty::cross || c.certainty == Certainty::disjoint) return TestedBy::floats;
     if (exact::exact_fallbacks() != fallbacks) return TestedBy::expansions;
-    const double *a[3], *b[3];
-    corners_of(c, a, b);
-    const bool shares = c.certainty == Certainty::touch_if_shared && exactly_ && shares_corners(c, a, b);
+    const bool shares = c.certainty == Certainty::touch_if_shared && exactly_ &&
+                        shares_corners(c, ctx_[Side::a].world, ctx_[Side::b].world);
     return shares ? TestedBy::shared_corners : TestedBy::filter;
   }
 

@@ -39,6 +39,22 @@ class Writer {
   std::string bytes_;
 };
 
+/// The checksum of a version: since version 2 by words, at memory bandwidth; in version 1 byte by byte
+/// (FNV-1a).
+class Checksum {
+ public:
+  explicit Checksum(std::uint32_t version) : by_words_(version >= kFirstWithTree) {}
+  void add(std::string_view bytes) {
+    by_words_ ? words_.add_bytes(bytes.data(), bytes.size()) : bytes_.add_bytes(bytes.data(), bytes.size());
+  }
+  std::uint64_t value() const { return by_words_ ? words_.value() : bytes_.value(); }
+
+ private:
+  bool by_words_;
+  WordSums words_;
+  Fnv64 bytes_;
+};
+
 /// A value in a file, which is not aligned.
 template <class T>
 struct Packed {
@@ -67,13 +83,15 @@ class Reader {
       throw InputError(printable_name(name_) +
                        ": byte 0: expected a .lrb file; build one with `lrbscope build MESH -o FILE.lrb`");
     unread_.remove_prefix(kMagic.size());
-    if (size_ < at() + sizeof version_) fail("the file ends in the middle of a number");
-    take(&version_, sizeof version_);
-    if (version_ > kLrbFileVersion)
-      throw InputError(printable_name(name_) + ": byte 8: found file version " + std::to_string(version_) +
+    std::uint32_t version;
+    if (size_ < at() + sizeof version) fail("the file ends in the middle of a number");
+    take(&version, sizeof version);
+    if (version > kLrbFileVersion)
+      throw InputError(printable_name(name_) + ": byte 8: found file version " + std::to_string(version) +
                        ", expected at most " + std::to_string(kLrbFileVersion) + "; use a newer lrbscope");
     if (size_ < at() + kChecksum) fail("the file is truncated");
-    return version_;
+    sum_ = Checksum(version);
+    return version;
   }
 
   template <class T>
@@ -151,11 +169,7 @@ class Reader {
   void sum_chunk() {
     const std::size_t before = chunk_end_ - chunk_.size(), last = size_ - kChecksum;
     const std::size_t summed = std::min(chunk_.size(), last - std::min(last, before));
-    if (version_ >= kFirstWithTree) {
-      words_.add_bytes(chunk_.data(), summed);
-    } else {
-      bytes_.add_bytes(chunk_.data(), summed);
-    }
+    sum_.add(chunk_.substr(0, summed));
     stored_.append(chunk_.substr(summed));
   }
 
@@ -163,7 +177,7 @@ class Reader {
     while (chunk_end_ < size_) next_chunk();
     sum_chunk();
     unread_ = {};
-    const std::uint64_t sum = version_ >= kFirstWithTree ? words_.value() : bytes_.value();
+    const std::uint64_t sum = sum_.value();
     if (stored_ != std::string_view(reinterpret_cast<const char*>(&sum), sizeof sum))
       fail("the checksum does not match: the file is damaged or truncated");
   }
@@ -174,9 +188,7 @@ class Reader {
   std::string buffer_;
   std::string_view chunk_, unread_;  ///< the chunk in memory, and its part that is not read yet
   std::size_t chunk_end_ = 0;        ///< position in the file
-  std::uint32_t version_ = 0;
-  WordSums words_;
-  Fnv64 bytes_;
+  Checksum sum_{kLrbFileVersion};
   std::string stored_;
 };
 
@@ -222,11 +234,9 @@ bool looks_like_lrb(std::string_view bytes) {
 }
 
 std::uint64_t lrb_checksum(std::string_view bytes, std::uint32_t version) {
-  // Since version 2 by words, at memory bandwidth; in version 1 byte by byte (FNV-1a).
-  if (version >= kFirstWithTree) return fnv64_of_words(bytes.data(), bytes.size());
-  Fnv64 h;
-  h.add_bytes(bytes.data(), bytes.size());
-  return h.value();
+  Checksum sum(version);
+  sum.add(bytes);
+  return sum.value();
 }
 
 void save_lrb(const LrbRep& rep, const std::string& path) {

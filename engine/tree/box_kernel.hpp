@@ -49,11 +49,11 @@ struct BoxKernel {
   float axes[3][4];
   float straight[4], turned[4];
 
-  /// Otherwise the ends of the box of the `vertices` with the numbers `corners`, three a simplex, scaled by
-  /// `once` and `again`, in a frame in which x is the sum of (x[k] - origin[k]) columns[k].
+  /// Otherwise the ends of the box of the `vertices` with the numbers `corners`, three a simplex, scaled,
+  /// in a frame in which x is the sum of (x[k] - origin[k]) columns[k].
   const double* vertices;
   const VertexId* corners;
-  double once, again;
+  double scale;
   double columns[3][4], origin[3];
   double low[4], high[4];
 };

@@ -102,9 +102,8 @@ void measure(BoxKernel& k) {
                              loaded<Double4>(k.columns[2])};
   const auto in_frame = [&](std::size_t corner) {
     const double* const v = k.vertices + std::size_t{3} * k.corners[corner];
-    const double x[3] = {v[0] * k.once * k.again, v[1] * k.once * k.again, v[2] * k.once * k.again};
-    return (x[0] - k.origin[0]) * column[0] + (x[1] - k.origin[1]) * column[1] +
-           (x[2] - k.origin[2]) * column[2];
+    return (v[0] * k.scale - k.origin[0]) * column[0] + (v[1] * k.scale - k.origin[1]) * column[1] +
+           (v[2] * k.scale - k.origin[2]) * column[2];
   };
   Double4 low = in_frame(std::size_t{3} * k.which[0]), high = low;
   for (std::size_t i = 0; i < k.count; ++i)

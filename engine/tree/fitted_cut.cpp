@@ -404,11 +404,8 @@ bool is_orthonormal(const Matrix3d& axes) {
 
 Soup::Soup(const SimplexView& body, std::span<const SimplexId> simplices_, double unit, Workers& workers)
     : simplices(simplices_.begin(), simplices_.end()), vertices(body.vertices) {
-  // The unit is a power of two: 2^(exponent - 1). Two factors, as its inverse may be out of range.
-  int exponent = 0;
-  std::frexp(unit, &exponent);
-  once = std::ldexp(1.0, (1 - exponent) / 2);
-  again = std::ldexp(1.0, 1 - exponent - (1 - exponent) / 2);
+  // The unit is a power of two, at least 2^-1022. The inverse of 2^1023 is subnormal, but exact.
+  to_tree = 1 / unit;
   corners.resize(simplices.size());
   box.resize(simplices.size());
   order.resize(simplices.size());
@@ -480,7 +477,7 @@ Box box_in_frame(const Soup& soup, std::span<const std::uint32_t> which, const F
   k.local = nullptr;
   k.vertices = soup.vertices.data()->data();
   k.corners = soup.corners.data()->data();
-  k.once = soup.once, k.again = soup.again;
+  k.scale = soup.to_tree;
   for (int i = 0; i < 3; ++i) std::ranges::copy(four<double>(frame.axes.col(i)), k.columns[i]);
   std::ranges::copy(frame.origin, k.origin);
   run_box_kernel(k);

@@ -52,23 +52,17 @@ struct Spread {
 /// Simplices in the tree's units, in the given order. Positions stay in the body, so that large bodies take
 /// little memory.
 struct Soup {
-  /// The vertices of a simplex. The constructor leaves them as they are: arrays are filled by several
-  /// threads.
-  struct Corners : std::array<VertexId, 3> {
-    Corners() : std::array<VertexId, 3>{kNull, kNull, kNull} {}
-  };
-
   std::vector<SimplexId> simplices;
-  std::vector<Corners> corners;
+  std::vector<std::array<VertexId, 3>> corners;
   std::vector<Eigen::AlignedBox3d> box;       ///< until follow_order()
   std::vector<std::uint32_t> order;           ///< the simplices in the order of the tree's leaves
   std::span<const Eigen::Vector3d> vertices;  ///< mesh units
-  double once, again;                         ///< factors from mesh units to the tree's, one after the other
+  double to_tree;                             ///< factor from mesh units to the tree's
 
   Soup(const SimplexView& body, std::span<const SimplexId> simplices, double unit, Workers& workers);
 
   /// Returns the position of a corner.
-  Eigen::Vector3d corner(std::uint32_t s, int k) const { return vertices[corners[s][k]] * once * again; }
+  Eigen::Vector3d corner(std::uint32_t s, int k) const { return vertices[corners[s][k]] * to_tree; }
   std::array<Eigen::Vector3d, 3> triangle(std::uint32_t s) const {
     return {corner(s, 0), corner(s, 1), corner(s, 2)};
   }

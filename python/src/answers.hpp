@@ -61,7 +61,7 @@ unsigned threads_of(std::size_t requested);
 void run_batch(std::size_t n, unsigned threads,
                const std::function<void(std::size_t i, unsigned worker)>& work);
 
-/// Returns the workspace that single queries of the calling thread reuse.
+/// Returns the workspace that single queries of the calling thread reuse. `threads`: of one query.
 Workspace& own_workspace(unsigned threads = 1);
 
 /// Throws exceptions raised by signal handlers, such as KeyboardInterrupt. Acquires the GIL.

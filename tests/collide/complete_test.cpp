@@ -281,6 +281,6 @@ TEST_CASE("a query in deep contact has the same result on any number of threads,
         REQUIRE_FALSE(refused.has_value());
         CHECK(refused.error().reason.find("more than " + std::to_string(request.max_pairs) + " pairs") == 0);
       }
-    CHECK(most > 2 * kNodePairsOfPart);  // several parts
+    CHECK(most > 2 * kNodePairsBeforeSplit);  // several parts
   }
 }

@@ -48,6 +48,17 @@ def test_random_triangles_are_those_of_brute_force(rng):
         assert np.array_equal(r.pairs, brute_pairs(va, fa, vb, fb)) and len(r.pairs) > 0
 
 
+def test_one_query_on_several_threads():
+    big = Body(*ball_arrays(5))
+    alone, *others = (collide(big, big, threads=n) for n in (1, 2, 5, 0))
+    assert len(alone.pairs) > 10_000
+    for other in others:
+        assert np.array_equal(other.pairs, alone.pairs) and np.array_equal(other.crosses, alone.crosses)
+        assert (other.relation, other.counters) == (alone.relation, alone.counters)
+    with pytest.raises(InputError, match="threads"):
+        collide(big, big, threads=-1)
+
+
 def test_one_pose_and_many_agree(ball, rng):
     poses = random_poses(rng, 40, 1.5)
     for threads in (1, 2, 5):
