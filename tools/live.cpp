@@ -1,5 +1,6 @@
 #include "scenarios/profile/live.hpp"
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -316,7 +317,7 @@ class Live {
     return report::filled(io::embedded_file("live.html"),
                           {{"style", render::page_root_css() + std::string(io::embedded_file("page.css")) +
                                          std::string(io::embedded_file("live.css"))},
-                           {"script", io::embedded_file("live.js")}});
+                           {"script", report::script_of(std::array<std::string, 1>{"live"})}});
   }
 
   int report(const Program& program) {

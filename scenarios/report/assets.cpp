@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <regex>
+#include <set>
+#include <sstream>
 #include <vector>
 
+#include "scenarios/io/files.hpp"
 #include <lrbscope/ids.hpp>
 #include <lrbscope/render/image.hpp>
 
@@ -14,7 +18,38 @@ void put(std::vector<std::uint8_t>& bytes, std::uint32_t number, int size) {
   for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
 }
 
+/// Modules in one script; see script_of().
+struct Bundle {
+  std::string script = "\"use strict\";\n";
+  std::set<std::string> modules;
+
+  void add(const std::string& module) {
+    if (!modules.insert(module).second) return;
+    static const std::regex import(R"(import (\{[^}]*\}) from "\./(\w+)\.js";)");
+    static const std::regex exported(R"(export ((?:async )?(?:class|function|const) (\w+).*))");
+    std::istringstream text{std::string(io::embedded_file(module + ".js"))};
+    std::string code, exports;
+    std::smatch parts;
+    for (std::string line; std::getline(text, line); code += line + '\n') {
+      if (std::regex_match(line, parts, import)) {
+        add(parts[2]);
+        line = "const " + parts[1].str() + " = " + parts[2].str() + "_js;";
+      } else if (std::regex_match(line, parts, exported)) {
+        exports += parts[2].str() + ", ";
+        line = parts[1].str();
+      }
+    }
+    script += "const " + module + "_js = (() => {\n" + code + "return { " + exports + "};\n})();\n";
+  }
+};
+
 }  // namespace
+
+std::string script_of(std::span<const std::string> modules) {
+  Bundle bundle;
+  for (const std::string& module : modules) bundle.add(module);
+  return bundle.script;
+}
 
 std::string fill(std::string_view pattern, std::initializer_list<std::string_view> texts) {
   std::string out;

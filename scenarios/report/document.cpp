@@ -329,7 +329,7 @@ Document& Document::table(const Table& t) {
 }
 
 Document& Document::grid(const Grid& grid, const std::string& folder) {
-  use(render::grid_root_css() + embedded("grid.css"), "grid.js");
+  use(render::grid_root_css() + embedded("grid.css"), "grid");
   std::vector<PngBytes> pngs;
   for (const GridDetail& d : grid.details)
     if (!d.file.empty()) pngs.push_back(read_png_bytes(folder + "/" + d.file));
@@ -337,7 +337,7 @@ Document& Document::grid(const Grid& grid, const std::string& folder) {
 }
 
 Document& Document::comparisons(const std::vector<Comparison>& comparisons) {
-  use(embedded("comparison.css"), "comparison.js");
+  use(embedded("comparison.css"), "comparison");
   std::vector<PngBytes> pngs;
   for (const Comparison& c : comparisons)
     for (const PngBytes& png : c.pngs)
@@ -353,7 +353,7 @@ Document& Document::comparisons(const std::vector<Comparison>& comparisons) {
 
 Document& Document::views(const std::vector<View>& views) {
   if (views.empty()) return *this;
-  use(embedded("views.css"), "views.js");
+  use(embedded("views.css"), "views");
   framing_ = true;
   std::string frames;
   for (const View& v : views)
@@ -367,38 +367,29 @@ Document& Document::views(const std::vector<View>& views) {
       "</section>\n");
 }
 
-Document& Document::view(const std::string& json, std::string_view html,
-                         std::initializer_list<const char*> scripts) {
+Document& Document::view(const std::string& json, const std::string& name) {
   view_data_ = "<script type=\"application/json\" id=\"scene-data\">" + script_safe(json) + "</script>\n";
-  for (const char* name : {"three.min.js", "OrbitControls.js"}) libraries_ += "\n" + embedded(name);
-  for (const char* name : scripts) scripts_ += embedded(name);
-  styles_ += render::scene_root_css() + embedded("scene.css");
-  return add(html);
-}
-
-Document& Document::run_view(const std::string& json, std::string_view html, const char* script) {
-  of_run_ = true;
-  return view(json, io::embedded_file(html),
-              {"scene_run.js", "scene_attempts.js", "scene_panels.js", "scene_bodies.js", "scene_marks.js",
-               "scene_view.js", "scene_controls.js", "scene_page.js", script});
+  for (const char* library : {"three.min.js", "OrbitControls.js"}) libraries_ += "\n" + embedded(library);
+  use(render::scene_root_css() + embedded("scene.css"), name);
+  return add(io::embedded_file(name + ".html"));
 }
 
 Document& Document::scene(const std::string& json) {
-  return run_view(json, "scene.html", "scene.js");
+  of_run_ = true;
+  return view(json, "scene");
 }
 
 Document& Document::crowd_view(const std::string& json) {
-  return run_view(json, "crowd.html", "crowd.js");
+  of_run_ = true;
+  return view(json, "crowd");
 }
 
 Document& Document::tree_view(const std::string& json) {
-  return view(json, io::embedded_file("tree.html"),
-              {"scene_run.js", "scene_bodies.js", "scene_marks.js", "scene_view.js", "tree.js"});
+  return view(json, "tree");
 }
 
 Document& Document::answers_view(const std::string& json) {
-  return view(json, io::embedded_file("answers.html"),
-              {"scene_run.js", "scene_bodies.js", "scene_marks.js", "scene_view.js", "answers.js"});
+  return view(json, "answers");
 }
 
 Document& Document::frames(const std::vector<Frame>& frames, const std::string& folder, std::size_t budget) {
@@ -478,9 +469,9 @@ void Document::close_charts() {
   in_charts_ = false;
 }
 
-void Document::use(const std::string& style, std::string_view script) {
+void Document::use(const std::string& style, const std::string& module) {
   styles_ += style;
-  scripts_ += io::embedded_file(script);
+  modules_.push_back(module);
 }
 
 std::string Document::html() const {
@@ -516,7 +507,7 @@ std::string Document::html() const {
                  {"data", script_safe("{\"frames\":" + frames_ + ",\"charts\":[" + charts_ + "]}")},
                  {"scene_data", view_data_},
                  {"library", libraries_},
-                 {"script", embedded("page.js") + scripts_}});
+                 {"script", script_of(modules_)}});
 }
 
 std::vector<std::string> Document::written() const {

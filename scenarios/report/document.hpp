@@ -213,17 +213,16 @@ class Document {
   void close_charts();
   /// Returns the attribute that explains a name, or an empty text.
   std::string tooltip(std::string_view name) const;
-  /// Adds a style sheet and a script, each once.
-  void use(const std::string& style, std::string_view script);
-  /// Adds a 3D view: its data and the scripts that draw it, each after those that it depends on.
-  Document& view(const std::string& json, std::string_view html, std::initializer_list<const char*> scripts);
-  /// Adds the 3D view of a run, of two bodies or of a crowd.
-  Document& run_view(const std::string& json, std::string_view html, const char* script);
+  /// Adds a style sheet and a module of scripts.
+  void use(const std::string& style, const std::string& module);
+  /// Adds a 3D view: its data, NAME.html, and the module NAME.
+  Document& view(const std::string& json, const std::string& name);
 
   std::string title_, purpose_, summary_, verdict_, footer_, command_, tab_;
   std::string_view (*meaning_of_)(std::string_view) = nullptr;
   std::string texts_, numbers_, body_;
-  std::string styles_, libraries_, scripts_, view_data_, charts_, frames_ = "[]";
+  std::string styles_, libraries_, view_data_, charts_, frames_ = "[]";
+  std::vector<std::string> modules_{"page"};
   bool of_run_ = false, framing_ = false, in_charts_ = false, tables_as_tex_ = false;
   std::size_t chart_count_ = 0;
   std::vector<Link> links_;

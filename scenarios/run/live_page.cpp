@@ -1,6 +1,7 @@
 #include "scenarios/run/live_page.hpp"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -56,12 +57,9 @@ std::string live_page(const RecordedRun& recorded, const std::string& folder, co
   // Equal bodies are stored once.
   const std::string a = io::read_text(folder + "/a.lrb"), b = io::read_text(folder + "/b.lrb");
   data["files"] = {compressed(a), a == b ? std::string() : compressed(b)};
-  std::string library, script = "\"use strict\";\n",
-                       json = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string library, json = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (const char* name : {"three.min.js", "OrbitControls.js"})
     library += "\n" + std::string(io::embedded_file(name));
-  for (const char* name : {"scene_run.js", "scene_bodies.js", "scene_marks.js", "scene_view.js", "drag.js"})
-    script += io::embedded_file(name);
   for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
   return report::filled(
       io::embedded_file("drag.html"),
@@ -74,7 +72,7 @@ std::string live_page(const RecordedRun& recorded, const std::string& folder, co
        {"data", json},
        {"library", library},
        {"engine", io::embedded_file(kEngine)},
-       {"script", script}});
+       {"script", report::script_of(std::array<std::string, 1>{"drag"})}});
 }
 
 }  // namespace lrb::run

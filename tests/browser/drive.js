@@ -1,5 +1,10 @@
 // Operates a run's page with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, then "done".
 (async function () {
+  const { run } = scene_js,
+    { byId, digits } = dom_js,
+    { data, moment, seek, show } = page_js,
+    { NONE, lastAtMost } = scene_run_js,
+    { sumsOfGroups } = scene_bodies_js;
   const lines = [],
     wait = (ms) => new Promise((then) => setTimeout(then, ms));
   // Time is virtual here and does not wait for pictures: the script requests them.
@@ -26,7 +31,7 @@
     const { events, selection } = run;
     equal(events.kind[selection.event], events.CONTACT, "opens at a contact");
     equal(events.kind.indexOf(events.CONTACT), selection.event, "which is the first");
-    equal(data.frames[current].step, events.stepNumber(selection.event), "frames stand at the same step");
+    equal(data.frames[parseInt(byId("count").textContent) - 1].step, events.stepNumber(selection.event), "frames stand at the same step");
     check(
       byId("view-caption").textContent.includes("contact"),
       "the caption says so",

@@ -1,7 +1,9 @@
 // Operates a page of answers about one body, and prints "ok ..." or "FAIL ..." for each check, then "done".
 (function () {
   const { check, equal, press } = driven,
+    { answersPage } = answers_js,
     { answers, view, rows } = answersPage,
+    { byId } = dom_js,
     current = () => document.querySelector("tr[aria-current]"),
     facts = () => [...document.querySelectorAll("#item-facts dd")].map((d) => d.textContent).join();
 

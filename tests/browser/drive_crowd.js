@@ -1,7 +1,10 @@
 // Operates the page of a crowd with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, then "done".
 (function () {
   const { check, equal, press } = driven,
+    { crowdPage } = crowd_js,
     { crowd, state, view, tabs, table } = crowdPage,
+    { byId } = dom_js,
+    { seek } = page_js,
     words = (id) => byId(id).textContent,
     summary = JSON.parse(byId("summary-data").textContent),
     poses = JSON.parse(byId("trace-data").textContent).metadata.poses,

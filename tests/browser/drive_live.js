@@ -1,7 +1,9 @@
 // Operates a live page with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, the answers that live.sh compares with
 // native ones, then "done".
 (async function () {
-  const lines = [],
+  const { byId } = dom_js,
+    { live } = drag_js,
+    lines = [],
     wait = (ms) => new Promise((then) => setTimeout(then, ms)),
     check = (is, what, found = "") => lines.push(`${is ? "ok" : "FAIL"} ${what}${is ? "" : `: ${found}`}`),
     text = (id) => byId(id).textContent,

@@ -1,7 +1,9 @@
 // Operates the page of a tree with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, then "done".
 (function () {
   const { check, equal, press } = driven,
+    { treePage } = tree_js,
     { nodes, body, view } = treePage,
+    { byId } = dom_js,
     words = (id) => byId(id).textContent;
 
   /** Returns the number of faces with a point clearly in the volume of a node, which are not marked as below it

@@ -1,6 +1,8 @@
 // Measures a page in its window: boxes of text that are cut off, stick out, lie on each other or under something, text
 // that hardly differs from its background, invisible drawings. Posts "ok ...", "FAIL ..." and "done" to the top.
 (async function () {
+  const { byId } = dom_js,
+    run = typeof scene_js === "undefined" ? null : scene_js.run;
   const found = new Map(); // fault: [example, number]
   const fail = (what, where) => {
     const known = found.get(what);
@@ -283,7 +285,7 @@
     document.documentElement.style.scrollBehavior = "auto";
     for (const details of document.querySelectorAll("details")) details.open = true;
     await wait(120);
-    const isRun = typeof run !== "undefined" && run && run.events.bodies.every((b) => b.complete);
+    const isRun = run && run.events.bodies.every((b) => b.complete);
     for (const [name, enter] of Object.entries(isRun ? states : { "as it opens": () => {} })) {
       enter();
       await wait(60);

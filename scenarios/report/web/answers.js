@@ -1,5 +1,9 @@
 // ---- the page of answers about one body: distances of points, or pairs of faces that intersect. An answer, or all
 // answers of a group (a curve), is selected in the view or in a table
+import { byId, digits, linkRow } from "./dom.js";
+import { discard, rgb, roundPoints, thickLines, thickMaterial, WHITE } from "./scene_bodies.js";
+import { Body, NONE, unpack } from "./scene_run.js";
+import { ballOf, BodiesCanvas, onClick, webglWorks } from "./scene_view.js";
 
 /** The answers. An index into these arrays; `numbers` are those that commands and tables use. */
 class Answers {
@@ -302,4 +306,4 @@ class AnswersPage {
   }
 }
 
-const answersPage = new AnswersPage(JSON.parse(byId("scene-data").textContent));
+export const answersPage = new AnswersPage(JSON.parse(byId("scene-data").textContent));

@@ -1,5 +1,14 @@
 // ---- the page of a crowd: one time step, and a body or a pair of bodies, selected in the view, the tables, the
 // matrix and the charts
+import { byId, digits, linkRow, plural, style } from "./dom.js";
+import { data, listeners, moment, seek, seekBy, showEvent } from "./page.js";
+import { boxEdges, Colours, FaceMesh, FlatFill, mixed, rgb, WHITE } from "./scene_bodies.js";
+import { listenToKeys, toggleHelp } from "./scene_controls.js";
+import { Legend, PLANE } from "./scene_marks.js";
+import { CostStrip, explainCells, printView, showMore, Tabs } from "./scene_page.js";
+import { copyText, fillList, textButton } from "./scene_panels.js";
+import { Body, lastAtMost, unpack } from "./scene_run.js";
+import { ballOf, BodiesCanvas, onClick, webglWorks } from "./scene_view.js";
 
 /** The run: bodies, and by step the poses and the queries. Steps are indices into those on the page. */
 class Crowd {
@@ -816,7 +825,7 @@ class CrowdPage {
   followPage() {
     const { crowd, state } = this,
       near = (number) => Math.max(0, lastAtMost(crowd.numbers, Math.round(number)));
-    seek = (key, value) => this.go(near(value));
+    seekBy((key, value) => this.go(near(value)));
     listeners.push(() => {
       if (moment.step < 0 || near(moment.step) === state.step) return;
       state.step = near(moment.step); // set by a frame
@@ -856,4 +865,4 @@ class CrowdPage {
   }
 }
 
-const crowdPage = new CrowdPage(JSON.parse(byId("scene-data").textContent));
+export const crowdPage = new CrowdPage(JSON.parse(byId("scene-data").textContent));

@@ -1,5 +1,7 @@
 // ---- the live page of a run: B is dragged, and the engine in this page (wasm/engine.cpp) answers every pose
-const byId = (id) => document.getElementById(id);
+import { byId, digits, oncePerFrame, plural } from "./dom.js";
+import { Body, NONE } from "./scene_run.js";
+import { BodiesCanvas, FIELD, webglWorks } from "./scene_view.js";
 
 /** Two bodies in the engine's memory. */
 class Engine {
@@ -504,7 +506,7 @@ async function startLive() {
   return new LivePage(json, await Engine.open([a, b]));
 }
 
-const live = startLive().catch((e) => {
+export const live = startLive().catch((e) => {
   byId("relation").textContent = "not started";
   fail(`The engine did not start: ${e.message || e}. It needs a browser with WebAssembly SIMD (since 2021; Safari since 2023).`);
 });

@@ -1,6 +1,7 @@
 // Follows a program: draws the queries that the server sends (tools/live.cpp).
+import { byId } from "./dom.js";
+
 const kLast = 200, kRemarkable = 200;
-const byId = (id) => document.getElementById(id);
 const queries = new Map(); // by number
 let state = {}, held = false, drawn = false;
 let current = Number(location.hash.slice(1)) || null; // the selected query, which is in the address

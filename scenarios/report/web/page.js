@@ -1,22 +1,21 @@
-"use strict";
-const data = JSON.parse(document.getElementById("data").textContent);
-const byId = (id) => document.getElementById(id);
-const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+import { byId, style } from "./dom.js";
+
+export const data = JSON.parse(document.getElementById("data").textContent);
 
 // ---- the current frame or event: a frame, or an event of the run with the frame that shows it best; and its
 // listeners
 let current = 0; // index of the frame
-const moment = { event: -1, step: -1, about: { event: [], step: [] } }; // negative: unknown; about: of the selection
-const listeners = [];
-function tell() { for (const listener of listeners) listener(data.frames[current], current); }
-function show(index) {
+export const moment = { event: -1, step: -1, about: { event: [], step: [] } }; // negative: unknown; about: of the selection
+export const listeners = [];
+export function tell() { for (const listener of listeners) listener(data.frames[current], current); }
+export function show(index) {
   current = Math.max(0, Math.min(data.frames.length - 1, index));
   moment.event = data.frames[current].event;
   moment.step = data.frames[current].step;
   tell();
 }
 /** Shows an event of a time step, by its number in the trace. */
-function showEvent(event, step) {
+export function showEvent(event, step) {
   moment.event = event;
   moment.step = step;
   current = Math.max(0, frameOf(event, step));
@@ -29,22 +28,12 @@ function frameOf(event, step) {
   return data.frames.reduce((best, f, i) => (best < 0 || far(f) < far(data.frames[best]) ? i : best), -1);
 }
 /** Moves to a value on a chart's x axis. */
-let seek = (key, value) => {
+export const seek = (key, value) => go(key, value);
+let go = (key, value) => {
   const frame = nearestFrame(key, value);
   if (frame >= 0) show(frame);
 };
-
-/** Makes a row of a table lead somewhere: by a click, or by Enter. */
-function linkRow(row, follow) {
-  row.className = "leads";
-  row.tabIndex = 0;
-  row.addEventListener("click", follow);
-  row.addEventListener("keydown", (e) => {
-    if (e.key !== "Enter") return;
-    e.preventDefault();
-    follow();
-  });
-}
+export function seekBy(action) { go = action; }
 
 function startPlayer() {
   const image = byId("frame"), link = byId("frame-link"), scrub = byId("scrub"), play = byId("play");

@@ -1,3 +1,12 @@
+import { byId, digits } from "./dom.js";
+import { data, listeners, moment, seek, seekBy, tell } from "./page.js";
+import { AttemptPanel, Attempts } from "./scene_attempts.js";
+import { listenToKeys, Timeline, toggleHelp, ViewControls } from "./scene_controls.js";
+import { explainCells, PageAddress, printView, showMore, stripOfRun, Tabs } from "./scene_page.js";
+import { concernsPicked, EventFilter, EventTable, FilterForm, Panel, RowLinks, Selection, WhyPanel, WorkIcicle } from "./scene_panels.js";
+import { Body, Events, eventSentence, Explanations, lastAtMost, NONE, SIDES, Wrappers } from "./scene_run.js";
+import { SceneView, webglWorks } from "./scene_view.js";
+
 // ---- all events of a run whose page has only some: loaded from its trace, which the user chooses or drops
 // here. Pages from disk cannot fetch it.
 class TraceLoader {
@@ -181,12 +190,60 @@ class TraceReader {
   }
 }
 
+// ---- the same view beside another run's, in a page that compares them (index.html?alone in a frame): common
+// camera and step
+class Together {
+  constructor(view, selection, events) {
+    this.view = view;
+    this.selection = selection;
+    this.events = events;
+    this.listening = false; // while applying the other view's state: not to be sent back
+    document.documentElement.classList.add("alone");
+    view.camera.controls.addEventListener("change", () => this.tell({ camera: view.camera.json() }));
+    selection.listeners.push((what) => what === "event" && this.tell({ step: this.step }));
+    window.addEventListener("message", (e) => e.source === parent && e.data.lrbscope && this.hear(e.data.lrbscope));
+    this.tell({ camera: view.camera.json(), step: this.step }); // the view that is created last sets both
+  }
+
+  get step() {
+    return this.events.stepNumber(this.selection.event);
+  }
+
+  tell(what) {
+    if (!this.listening) parent.postMessage({ lrbscope: what }, "*");
+  }
+
+  hear({ camera, step, region }) {
+    if (region !== undefined) return this.showRegion(region);
+    this.listening = true;
+    if (camera) this.view.camera.set(camera);
+    if (step !== undefined && step !== this.step) seek("step", step);
+    this.listening = false;
+  }
+
+  /** Selects a region, and fills the view with it, just after it was made or before it is refined; null: none is
+      selected. */
+  showRegion(region) {
+    const { events, selection, view } = this;
+    if (region === null) return selection.pick(null);
+    if (!view.bodies[0].complete || region >= view.bodies[0].regionCount) return;
+    for (let i = 0; i < events.count; i++)
+      if (events.kind[i] === (events.passes ? events.REGION : events.REFINE) && events.a[i] === region) {
+        selection.goTo(events.passes ? i : Math.max(0, i - 1));
+        break;
+      }
+    selection.pickRegion(0, region);
+    view.frameSelection();
+  }
+}
+
 // ---- the run's page: connects table, panel, sliders and the 3D view
 function startScene() {
   const scene = JSON.parse(byId("scene-data").textContent),
     bodies = scene.bodies.map((b, side) => new Body(b, side, scene.dim));
   const events = new Events(scene, bodies),
     complete = bodies.every((b) => b.complete);
+  if (scene.attempts) events.attempts = new Attempts(events, scene.attempts);
   let shownId = 0; // of the current event
   if (!events.count) {
     byId("scene").hidden = true;
@@ -306,11 +363,11 @@ function followPage(events, selection) {
     if (moment.event >= 0 && events.at(moment.event) !== selection.event)
       selection.standAt(events.at(moment.event)); // set by a frame
   });
-  seek = (key, value) => {
+  seekBy((key, value) => {
     if (key === "event") return selection.goTo(events.at(Math.max(0, Math.round(value))));
     const step = Math.max(0, lastAtMost(events.stepNumbers, Math.round(value)));
     selection.goTo(events.endOfStep(step) - 1);
-  };
+  });
 }
 
 function keysOfAttempts(panel) {
@@ -348,4 +405,4 @@ function keysOf(timeline, table, selection, controls) {
   return controls ? { ...keys, ...controls.keys() } : keys;
 }
 
-const run = startScene();
+export const run = startScene();

@@ -1,7 +1,11 @@
 // ---- the attempts of a builder to cover parts of the front with caps, and the places where they were made, as in
 // scenarios/record/attempts.hpp
+import { byId, digits, linkRow } from "./dom.js";
+import { short } from "./scene_panels.js";
+import { grouped, lastAtMost, NONE, outcomeText, unpack } from "./scene_run.js";
+
 const ACCEPTED = "accepted"; // the verdict
-class Attempts {
+export class Attempts {
   /** `json`: {counts, vertices, verdicts}: the interior vertices of each patch on the page, and what verdicts mean. */
   constructor(events, json) {
     this.events = events;
@@ -148,7 +152,7 @@ class Attempts {
 }
 
 // ---- beside the view: the attempts at the selected place
-class AttemptPanel {
+export class AttemptPanel {
   constructor(attempts, selection) {
     Object.assign(this, { attempts, selection, events: attempts.events });
     byId("attempt-before").onclick = () => this.show(this.current, false);

@@ -1,9 +1,11 @@
+import { NONE } from "./scene_run.js";
+
 // ---- counters as colours: one number for each face, on a scale common to both bodies
-const COUNTERS = ["tests", "hits", "misses"];
+export const COUNTERS = ["tests", "hits", "misses"];
 
 /** Returns tests, hits and misses of each body's faces in a step, up to an event, from the events on the
     page. */
-function countsSoFar(events, event) {
+export function countsSoFar(events, event) {
   const out = events.bodies.map((b) =>
     Object.fromEntries(COUNTERS.map((name) => [name, new Uint32Array(b.faceCount)])),
   );
@@ -20,7 +22,7 @@ function countsSoFar(events, event) {
 /** Assigns each face the sum over the faces of its group, "region" or "level". A real face belongs to the
     region that covers it, a pseudo face to the one that it hides; a face without a region keeps its own
     number. */
-function sumsOfGroups(body, per, counts) {
+export function sumsOfGroups(body, per, counts) {
   const groupOf = per === "region" ? (f) => body.regionOf(f) : (f) => body.depth(body.outer[f]),
     sums = new Map();
   const groups = Uint32Array.from(counts, (_, f) => groupOf(f));
@@ -30,11 +32,11 @@ function sumsOfGroups(body, per, counts) {
 
 // ---- colours of faces, as in the frames (render/include/lrbscope/render/style.hpp, repeated in the page's
 // data)
-const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
-const mixed = (from, to, t) => from.map((c, i) => c + (to[i] - c) * t);
-const WHITE = [1, 1, 1];
+export const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
+export const mixed = (from, to, t) => from.map((c, i) => c + (to[i] - c) * t);
+export const WHITE = [1, 1, 1];
 
-class Colours {
+export class Colours {
   constructor(json) {
     this.bodies = json.bodies.map(rgb);
     this.scale = json.scale.map(rgb);
@@ -103,7 +105,7 @@ class Colours {
 // ---- triangles and lines of faces, for three.js
 /** Faces of a body as a mesh with a colour per face, any subset of which can be shown. `shifts`, if given,
     translates each face. */
-class FaceMesh {
+export class FaceMesh {
   constructor(body, faces, material, shifts) {
     this.body = body;
     this.flat = body.dim === 2 ? { faces, shifts, width: 0 } : null;
@@ -209,7 +211,7 @@ class FaceMesh {
 }
 
 /** Returns the edges of faces, each once, as pairs of corners; `rim`: only those with a single face. */
-function edgesOf(body, faces, rim = false) {
+export function edgesOf(body, faces, rim = false) {
   const vertices = body.vertices.length / 3,
     keys = [];
   for (const face of faces) {
@@ -230,7 +232,7 @@ function edgesOf(body, faces, rim = false) {
 }
 
 /** Removes an object from its group, and frees its resources on the graphics card. */
-function discard(group, object) {
+export function discard(group, object) {
   group.remove(object);
   object.geometry.dispose();
   object.material.dispose();
@@ -246,7 +248,7 @@ function thinLines(body, edges, material) {
 
 /** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers
     for each line. */
-function thickLines(ends, material) {
+export function thickLines(ends, material) {
   const count = ends.length / 6,
     at = new Float32Array(12 * count),
     other = new Float32Array(12 * count),
@@ -280,7 +282,7 @@ function thickLines(ends, material) {
   return mesh;
 }
 
-function thickMaterial(colour, width, size, opacity = 1) {
+export function thickMaterial(colour, width, size, opacity = 1) {
   return new THREE.ShaderMaterial({
     uniforms: {
       colour: { value: new THREE.Color(...colour) },
@@ -311,7 +313,7 @@ function thickMaterial(colour, width, size, opacity = 1) {
 }
 
 /** Returns round points of a size in pixels with a rim, white or of another colour, seen through everything. */
-function roundPoints(positions, colour, size, rim = WHITE) {
+export function roundPoints(positions, colour, size, rim = WHITE) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(positions), 3));
   const points = new THREE.Points(
@@ -345,7 +347,7 @@ function roundPoints(positions, colour, size, rim = WHITE) {
 }
 
 /** Returns the twelve edges of boxes, six numbers each. `places`: centre and three half axes of each box. */
-function boxEdges(places, boxes) {
+export function boxEdges(places, boxes) {
   const out = [],
     corner = (at, signs, i) =>
       places[at + i] + signs.reduce((x, s, axis) => x + s * places[at + 3 + 3 * axis + i], 0);
@@ -364,7 +366,7 @@ function boxEdges(places, boxes) {
 }
 
 // ---- the filled inside of a 2D body: points with an odd crossing number
-class FlatFill {
+export class FlatFill {
   /** `place`: drawing order, higher on top; `depth`: how far below the segments. */
   constructor(body, colour, opacity, place, depth) {
     this.body = body;
@@ -449,7 +451,7 @@ class FlatFill {
 // Exploded view: additional offset for each layer, as a share of the body's radius; as in the frames.
 const LAYER_STEP = 0.12;
 
-class BodyView {
+export class BodyView {
   constructor(body, colours) {
     this.body = body;
     this.group = new THREE.Group();

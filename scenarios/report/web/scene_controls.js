@@ -1,5 +1,10 @@
+import { byId, digits } from "./dom.js";
+import { COUNTERS } from "./scene_bodies.js";
+import { copyText } from "./scene_panels.js";
+import { NONE } from "./scene_run.js";
+
 // ---- the time line: sliders over steps and over the events of a step, buttons, and playback
-class Timeline {
+export class Timeline {
   constructor(events, selection) {
     Object.assign(this, { events, selection });
     this.stepSlider = byId("step");
@@ -128,7 +133,7 @@ class Timeline {
 }
 
 /** Opens or closes the list of keys, from its start: its button at the end has the focus. */
-function toggleHelp() {
+export function toggleHelp() {
   const help = byId("help");
   if (help.open) return help.close();
   help.showModal();
@@ -137,7 +142,7 @@ function toggleHelp() {
 
 // ---- keys. They work anywhere on the page except in text fields.
 /** `actions`: by KeyboardEvent.key; letters are in lower case, shift is passed on. */
-function listenToKeys(actions) {
+export function listenToKeys(actions) {
   document.addEventListener("keydown", (e) => {
     const key = e.key.length === 1 ? e.key.toLowerCase() : e.key,
       target = e.target;
@@ -162,7 +167,7 @@ function listenToKeys(actions) {
 // ---- buttons and keys of the 3D view
 const EXPLODE_BY = 0.1; // by which the key changes the slider, which goes from 0 to 1
 
-class ViewControls {
+export class ViewControls {
   constructor(view, selection) {
     Object.assign(this, { view, selection });
     this.listDepths();

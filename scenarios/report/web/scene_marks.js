@@ -1,6 +1,10 @@
+import { byId, digits } from "./dom.js";
+import { boxEdges, COUNTERS, discard, edgesOf, FaceMesh, mixed, roundPoints, thickLines, thickMaterial, WHITE } from "./scene_bodies.js";
+import { SIDES, unpack } from "./scene_run.js";
+
 // ---- the elements of the event and of the selection: painted over the bodies, with outlines visible through
 // everything
-class Marks {
+export class Marks {
   constructor(views, colours, size) {
     this.views = views;
     this.colours = colours;
@@ -97,8 +101,8 @@ class Marks {
 }
 
 // ---- in the view: where two faces intersect, or what separates them; and what separates the bodies
-const PLANE = [0.5, 0.53, 0.57]; // seen on light and dark pages; no face has it
-class WhyMarks {
+export const PLANE = [0.5, 0.53, 0.57]; // seen on light and dark pages; no face has it
+export class WhyMarks {
   /** `why`: the panel with the same explanation in words. */
   constructor(view, why) {
     Object.assign(this, { view, why, group: new THREE.Group(), key: null });
@@ -227,7 +231,7 @@ const MEASURED = [
   { colour: "contact", key: "the same, of points inside A", width: 1.5, isArrow: false },
 ];
 
-class MeasuredMarks {
+export class MeasuredMarks {
   /** `measured`: as the page has it; null: not requested. */
   constructor(view, measured) {
     Object.assign(this, { view, group: new THREE.Group(), shown: null });
@@ -311,7 +315,7 @@ function arrowOf(from, to, dim) {
 }
 
 // ---- the meaning of the view's colours
-class Legend {
+export class Legend {
   constructor(view) {
     this.view = view;
     this.items = [];

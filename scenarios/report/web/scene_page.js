@@ -1,9 +1,14 @@
 // ---- the parts of the page of a run around its view: tabs, signs of scrolling, the picture of the cost, the address
+import { byId, digits, oncePerFrame } from "./dom.js";
+import { seek } from "./page.js";
+import { SVG, textButton, WORK_SORTS, workSort } from "./scene_panels.js";
+import { eventText, lastAtMost, NONE, SIDES } from "./scene_run.js";
+
 const TAB_ORDER = ["Not as expected", "This step", "Answer", "Events", "Work", "Steps", "Queries", "Charts"], // then all others
   LAST_TABS = ["Frames", "Words", "Run"];
 
 /** Fades the edges of a box beyond which it can be scrolled. */
-function showMore(box) {
+export function showMore(box) {
   box.classList.add("scrolls");
   const mark = () => {
     const slack = 1;
@@ -18,7 +23,7 @@ function showMore(box) {
 }
 
 /** The parts of the page below the view, one at a time. Without scripts, and in print, they follow each other. */
-class Tabs {
+export class Tabs {
   constructor() {
     const groups = new Map();
     for (const part of document.querySelectorAll(".tab")) {
@@ -118,7 +123,7 @@ class Tabs {
 }
 
 /** The tooltip of a number in a table: its row and column, and the meaning of the column. */
-function explainCells() {
+export function explainCells() {
   document.addEventListener("pointerover", (e) => {
     const cell = e.target.closest && e.target.closest("td");
     if (!cell || cell.title || cell.closest(".why")) return;
@@ -132,7 +137,7 @@ function explainCells() {
 }
 
 /** Puts the view into print as it is on the screen. */
-function printView(view) {
+export function printView(view) {
   const picture = new Image();
   picture.className = "printed";
   picture.alt = "";
@@ -143,19 +148,8 @@ function printView(view) {
   });
 }
 
-// ---- the sorts of work, as the picture at the top and the icicle colour them
-const WORK_SORTS = [
-  { name: "boxes", of: /^boxes( of nodes)?$/, colour: "var(--work-boxes)" },
-  { name: "boxes and planes of faces", of: /planes|leaves/, colour: "var(--work-planes)" },
-  { name: "face tests", of: /^face tests/, colour: "var(--work-tests)" },
-  { name: "refinements", of: /^wrappers refined/, colour: "var(--work-refined)" },
-  { name: "others", of: /./, colour: "var(--work-others)" },
-];
-/** Returns the sort of a part of the work. */
-const workSort = ({ phase, outcome }) => WORK_SORTS.find((s) => s.of.test(outcome || phase));
-
 // ---- at the top: what each step cost, and when the bodies meet; of a single body, how many faces it shows
-class CostStrip {
+export class CostStrip {
   /** `bars`: [{values, words, go}] with a value for each of `sorts`, [{name, colour}]; `contactStep`: index of
       the bar of the first contact; -1: none. */
   constructor({ title, sorts, bars, contactStep = -1 }) {
@@ -234,7 +228,7 @@ class CostStrip {
 }
 
 /** Returns the picture of the cost of a run of two bodies, or of one. */
-function stripOfRun(scene, events, selection, ofStep) {
+export function stripOfRun(scene, events, selection, ofStep) {
   const parts = scene.work && !events.passes ? barsOfSteps(ofStep) : barsOfFaces(events, selection),
     { bars } = parts,
     at = () =>
@@ -283,7 +277,7 @@ function barsOfFaces(events, selection) {
 
 // ---- the state of the page in its address, so that a view can be linked:
 // #e59&tab=Charts&pick=A.face.12&camera=perspective,EYE,TARGET&show=ghost,boxes:3
-class PageAddress {
+export class PageAddress {
   constructor({ events, selection, view, controls, tabs }) {
     Object.assign(this, { events, selection, view, controls, tabs });
     this.timer = 0;

@@ -1,5 +1,9 @@
+import { byId, digits, linkRow, oncePerFrame, plural } from "./dom.js";
+import { seek, showEvent } from "./page.js";
+import { eventPlace, eventText, lastAtMost, NONE, outcomeText, SIDES, sizeText, unpack } from "./scene_run.js";
+
 // ---- widgets that several parts of the page use
-function textButton(text, action, title = "") {
+export function textButton(text, action, title = "") {
   const button = document.createElement("button");
   button.type = "button";
   button.className = "text";
@@ -33,7 +37,7 @@ const TERMS = {
 };
 
 /** Fills a list of terms: [[term, value or element, title of the term]]. */
-function fillList(list, rows) {
+export function fillList(list, rows) {
   list.replaceChildren(
     ...rows.flatMap(([term, value, title]) => {
       const dt = document.createElement("dt"),
@@ -49,7 +53,7 @@ function fillList(list, rows) {
 
 /** Copies text; returns true on success. `element` contains the text, and is selected if there is no
     clipboard, as on pages from disk. */
-async function copyText(text, element) {
+export async function copyText(text, element) {
   try {
     await navigator.clipboard.writeText(text);
     return true;
@@ -61,7 +65,7 @@ async function copyText(text, element) {
 
 // ---- the selection that all views show: one event, and possibly a face or a region. Views change it here
 // and their listeners are notified.
-class Selection {
+export class Selection {
   constructor(events) {
     this.events = events;
     this.event = 0;
@@ -117,7 +121,7 @@ class Selection {
 }
 
 // ---- the events listed in the table
-class EventFilter {
+export class EventFilter {
   constructor() {
     this.clear();
   }
@@ -204,7 +208,7 @@ const placeText = (body, { vertex, face, region }) =>
 
 /** Returns true if an event concerns the selected vertex, face or region; of a construction, if it is of an attempt
     there. */
-function concernsPicked(events, i, picked) {
+export function concernsPicked(events, i, picked) {
   if (!picked) return false;
   if (events.attempts) return events.attempts.eventsAt(picked).has(i);
   if (picked.face === NONE) return concernsRegion(events, i, picked.side, picked.region);
@@ -214,7 +218,7 @@ function concernsPicked(events, i, picked) {
 // ---- the events as a table. The document has only the visible rows, so that a million is as fast as ten.
 const TALLEST = 5e6; // pixels: browsers cannot scroll much further
 
-class EventTable {
+export class EventTable {
   constructor(events, selection, filter) {
     this.events = events;
     this.selection = selection;
@@ -343,7 +347,7 @@ class EventTable {
 }
 
 // ---- the fields that filter the table
-class FilterForm {
+export class FilterForm {
   constructor(events, filter, table) {
     Object.assign(this, { events, filter, table });
     this.listeners = []; // notified when another part of the work is listed
@@ -414,7 +418,7 @@ class FilterForm {
 }
 
 // ---- beside the view: the event, and the selected face or region, in words and numbers
-class Panel {
+export class Panel {
   constructor(events, selection, wrappers) {
     this.events = events;
     this.bodies = events.bodies;
@@ -572,7 +576,7 @@ class Panel {
 // ---- beside the view: why the two faces of an event, or two that were clicked, intersect or not; and for a
 // step without contact what separates the bodies
 /** Returns a number with four digits. */
-const short = (x) => {
+export const short = (x) => {
   const text = Math.abs(x) >= 1e6 ? x.toExponential(2) : String(Number(x.toPrecision(4)));
   return text.replace("e+", "e").replace("-", "\u2212");
 };
@@ -585,7 +589,7 @@ const least = (x) => {
 /** Distances of more ulps are shown without them: double arithmetic decides them reliably. */
 const MOST_ULPS = 1e6;
 
-class WhyPanel {
+export class WhyPanel {
   constructor(explanations, events, selection) {
     Object.assign(this, { explanations, events, selection });
     this.listeners = []; // notified when the explanation, or the highlighted row, has changed
@@ -824,11 +828,22 @@ class WhyPanel {
   }
 }
 
+// ---- the sorts of work, as the picture at the top and the icicle colour them
+export const WORK_SORTS = [
+  { name: "boxes", of: /^boxes( of nodes)?$/, colour: "var(--work-boxes)" },
+  { name: "boxes and planes of faces", of: /planes|leaves/, colour: "var(--work-planes)" },
+  { name: "face tests", of: /^face tests/, colour: "var(--work-tests)" },
+  { name: "refinements", of: /^wrappers refined/, colour: "var(--work-refined)" },
+  { name: "others", of: /./, colour: "var(--work-others)" },
+];
+/** Returns the sort of a part of the work. */
+export const workSort = ({ phase, outcome }) => WORK_SORTS.find((s) => s.of.test(outcome || phase));
+
 // ---- the distribution of the work, as an icicle: the query on top, its phases, and beneath each the
 // deciding tests
-const SVG = document.querySelector("svg").namespaceURI;
+export const SVG = document.querySelector("svg").namespaceURI;
 
-class WorkIcicle {
+export class WorkIcicle {
   /** `work`: {outcomes: [{phase, outcome, events, operations, micros}], timed}; null: not recorded. */
   constructor(work, events, filter, form, selection) {
     if (!work) return;
@@ -993,7 +1008,7 @@ class WorkIcicle {
 }
 
 // ---- rows of the page's tables link to regions, time steps, pairs and boxes, and show which of them is selected
-class RowLinks {
+export class RowLinks {
   /** `controls`: of the view; null: there is none. */
   constructor(events, selection, controls) {
     Object.assign(this, { events, selection, controls, rows: [] });

@@ -1,8 +1,10 @@
+import { digits, plural } from "./dom.js";
+
 // ---- number arrays packed as text by assets.hpp
-const NONE = 0xffffffff;
+export const NONE = 0xffffffff;
 
 /** Returns a Float32Array, or a Uint32Array in which NONE encodes kNull. */
-function unpack(text) {
+export function unpack(text) {
   const raw = atob(text.slice(3)),
     size = Number(text[1]),
     count = raw.length / size;
@@ -24,21 +26,8 @@ function unpack(text) {
   return out;
 }
 
-/** Returns a function that runs `action` at the next frame, once however often it is called until then. */
-function oncePerFrame(action) {
-  const soon = () => {
-    if (soon.waiting) return;
-    soon.waiting = true;
-    requestAnimationFrame(() => {
-      soon.waiting = false;
-      action();
-    });
-  };
-  return soon;
-}
-
 /** Returns the largest index whose value is at most `value`, in an ascending array; -1: none. */
-function lastAtMost(ascending, value) {
+export function lastAtMost(ascending, value) {
   let low = 0,
     high = ascending.length;
   while (low < high) {
@@ -50,9 +39,9 @@ function lastAtMost(ascending, value) {
 }
 
 // ---- a body: its LRB-rep as arrays, and the history of its faces
-const SIDES = ["A", "B"];
+export const SIDES = ["A", "B"];
 
-class Body {
+export class Body {
   constructor(json, side, dim) {
     this.side = side;
     this.dim = dim; // 2: faces are segments
@@ -125,7 +114,7 @@ class Body {
 }
 
 /** Returns the indices that have each value below `groups`. */
-function grouped(values, groups) {
+export function grouped(values, groups) {
   const offsets = new Uint32Array(groups + 1);
   for (const v of values) if (v !== NONE) offsets[v + 1]++;
   for (let g = 0; g < groups; g++) offsets[g + 1] += offsets[g];
@@ -140,7 +129,7 @@ function grouped(values, groups) {
 // ---- the events of the run that the page has. An event's index is its position among these; the number
 // shown to users is its id, its number in the trace. The meaning of the numbers `a` and `b` of a kind is
 // taken from the kind's words, so that new kinds are shown without a change.
-class Events {
+export class Events {
   constructor(json, bodies) {
     this.bodies = bodies;
     this.count = json.events.count;
@@ -174,8 +163,8 @@ class Events {
     /** Passes of a construction, which begins with the body itself: [{first, last, words}], ids of events;
         else null. */
     this.passes = json.passes;
-    /** What the builder tried where; null for other runs. */
-    this.attempts = json.attempts ? new Attempts(this, json.attempts) : null;
+    /** What the builder tried where: set by the page; null for other runs. */
+    this.attempts = null;
   }
 
   /** Replaces the events by others of the same run: all of them. */
@@ -297,7 +286,7 @@ function wrongPairs(json, steps) {
 }
 
 // ---- why two faces intersect or not, and what separates the bodies: the data packed by explanations.cpp
-class Explanations {
+export class Explanations {
   /** `json`: null if the page has no explanations. `stepNumbers`: the steps with explanations. */
   constructor(json, stepNumbers) {
     this.none = !json;
@@ -369,7 +358,7 @@ class Explanations {
 
 // ---- both wrappers after an event: replayed from the beginning of its time step, as in
 // trace/include/lrbscope/trace/replay.hpp
-class Wrappers {
+export class Wrappers {
   constructor(bodies, events, mode) {
     this.bodies = bodies;
     this.events = events;
@@ -452,13 +441,11 @@ class Wrappers {
 
 // ---- an event, a face, a region in words
 /** Returns a whole number with its digits in groups, as the rest of the page has them. */
-const digits = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
-const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : many}`;
 const relationText = (name) =>
   ({ a_inside_b: "A inside B", b_inside_a: "B inside A" })[name] || name.replaceAll("_", " ");
 
 /** Describes the elements that an event concerns. */
-function eventText(events, i) {
+export function eventText(events, i) {
   const two = events.bodies.length > 1,
     kind = events.kind[i],
     a = events.a[i],
@@ -499,7 +486,7 @@ function firstWrapperText(bodies) {
 
 /** Returns the number of visible faces of each body: of its wrapper, or of the body itself if it has no
     wrapper. */
-function sizeText(bodies, sizes) {
+export function sizeText(bodies, sizes) {
   const one = (n, side) =>
     `${bodies.length > 1 ? `${SIDES[side]} ` : ""}${digits(n)}${bodies[side].regionCount ? "" : " (no wrapper)"}`;
   return `${sizes.map(one).join(" + ")} faces`;
@@ -528,10 +515,10 @@ function builtText(events, i) {
 }
 
 /** Returns the outcome of an event; empty: unknown. */
-const outcomeText = (events, i) => events.outcomes[events.outcome[i]] || "";
+export const outcomeText = (events, i) => events.outcomes[events.outcome[i]] || "";
 
 /** Returns the position of an event in the run. */
-function eventPlace(events, i) {
+export function eventPlace(events, i) {
   const event = `event ${digits(events.id(i))}`;
   return events.firstOfStep.length > 1
     ? `Step ${digits(events.stepNumber(i))}, ${event}`
@@ -539,7 +526,7 @@ function eventPlace(events, i) {
 }
 
 /** Returns a sentence on an event and the wrappers after it. */
-function eventSentence(events, wrappers, i) {
+export function eventSentence(events, wrappers, i) {
   const meet = outcomeText(events, i);
   const result = meet ? ` (${meet})` : "";
   const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventText(events, i)}${result}.`;

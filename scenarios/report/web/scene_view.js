@@ -1,5 +1,10 @@
+import { byId, oncePerFrame } from "./dom.js";
+import { BodyView, Colours, COUNTERS, countsSoFar, sumsOfGroups } from "./scene_bodies.js";
+import { Legend, Marks, MeasuredMarks, WhyMarks } from "./scene_marks.js";
+import { NONE, unpack } from "./scene_run.js";
+
 // ---- the camera. The same as a scenario's: perspective over 0.6 radians, or orthographic.
-const FIELD = 0.6; // radians from bottom to top, as in render/include/lrbscope/render/camera.hpp
+export const FIELD = 0.6; // radians from bottom to top, as in render/include/lrbscope/render/camera.hpp
 const VIEW_FROM = [0.62, -0.68, 0.42]; // and the default view direction of frames
 
 class SceneCamera {
@@ -248,7 +253,7 @@ class SceneCamera {
 
 // ---- clicks in the view: picks the face
 /** Calls `action` for clicks on a canvas, but not at the end of a rotation. */
-function onClick(canvas, action) {
+export function onClick(canvas, action) {
   let down = null;
   canvas.addEventListener("pointerdown", (e) => (down = [e.clientX, e.clientY]));
   canvas.addEventListener("click", (e) => {
@@ -304,13 +309,13 @@ class Picker {
   }
 }
 
-function webglWorks() {
+export function webglWorks() {
   const canvas = document.createElement("canvas");
   return Boolean(canvas.getContext("webgl") || canvas.getContext("experimental-webgl"));
 }
 
 // ---- the bodies on a canvas that follows the size of its frame. Subclasses draw: draw() ends with render()
-class BodiesCanvas {
+export class BodiesCanvas {
   constructor(scene, bodies) {
     Object.assign(this, { bodies, canvas: byId("view-canvas"), colours: new Colours(scene.colours) });
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
@@ -406,7 +411,7 @@ class BodiesCanvas {
 }
 
 // ---- the 3D view: draws the selection, and selects by clicks
-class SceneView extends BodiesCanvas {
+export class SceneView extends BodiesCanvas {
   constructor(scene, selection, wrappers, why) {
     super(scene, selection.events.bodies);
     Object.assign(this, { selection, wrappers, events: selection.events });
@@ -734,58 +739,11 @@ class SceneView extends BodiesCanvas {
   }
 }
 
-function ballOf(box) {
+export function ballOf(box) {
   const centre = new THREE.Vector3();
   if (box.isEmpty()) return { centre, radius: 1 };
   return {
     centre: box.getCenter(centre),
     radius: Math.max(1e-6, box.getSize(new THREE.Vector3()).length() / 2),
   };
-}
-
-// ---- the same view beside another run's, in a page that compares them (index.html?alone in a frame): common
-// camera and step
-class Together {
-  constructor(view, selection, events) {
-    this.view = view;
-    this.selection = selection;
-    this.events = events;
-    this.listening = false; // while applying the other view's state: not to be sent back
-    document.documentElement.classList.add("alone");
-    view.camera.controls.addEventListener("change", () => this.tell({ camera: view.camera.json() }));
-    selection.listeners.push((what) => what === "event" && this.tell({ step: this.step }));
-    window.addEventListener("message", (e) => e.source === parent && e.data.lrbscope && this.hear(e.data.lrbscope));
-    this.tell({ camera: view.camera.json(), step: this.step }); // the view that is created last sets both
-  }
-
-  get step() {
-    return this.events.stepNumber(this.selection.event);
-  }
-
-  tell(what) {
-    if (!this.listening) parent.postMessage({ lrbscope: what }, "*");
-  }
-
-  hear({ camera, step, region }) {
-    if (region !== undefined) return this.showRegion(region);
-    this.listening = true;
-    if (camera) this.view.camera.set(camera);
-    if (step !== undefined && step !== this.step) seek("step", step);
-    this.listening = false;
-  }
-
-  /** Selects a region, and fills the view with it, just after it was made or before it is refined; null: none is
-      selected. */
-  showRegion(region) {
-    const { events, selection, view } = this;
-    if (region === null) return selection.pick(null);
-    if (!view.bodies[0].complete || region >= view.bodies[0].regionCount) return;
-    for (let i = 0; i < events.count; i++)
-      if (events.kind[i] === (events.passes ? events.REGION : events.REFINE) && events.a[i] === region) {
-        selection.goTo(events.passes ? i : Math.max(0, i - 1));
-        break;
-      }
-    selection.pickRegion(0, region);
-    view.frameSelection();
-  }
 }

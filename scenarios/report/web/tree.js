@@ -1,4 +1,8 @@
 // ---- the page of a tree: the volume and the triangles of one node, selected in the view, the icicle or a table
+import { byId, digits, linkRow, plural } from "./dom.js";
+import { boxEdges, mixed, WHITE } from "./scene_bodies.js";
+import { Body, grouped, NONE, unpack } from "./scene_run.js";
+import { BodiesCanvas, onClick, webglWorks } from "./scene_view.js";
 
 /** The nodes of a tree. A node is an index into these arrays, unless it is called an id: the engine's own
     number. */
@@ -277,4 +281,4 @@ class TreePage {
   }
 }
 
-const treePage = new TreePage(JSON.parse(byId("scene-data").textContent));
+export const treePage = new TreePage(JSON.parse(byId("scene-data").textContent));

@@ -99,11 +99,20 @@ TEST_CASE("parts of a run's page are in tabs, rows name what they lead to, and n
   CHECK(count(html, "data-to=") == 1);
 }
 
-TEST_CASE("every script of the view is in the page once") {
+TEST_CASE("a page has each module of its view once, after those that it imports") {
   const std::string html = report::Document("t").scene("{}").html();
-  for (const io::EmbeddedFile& file : io::embedded_files())
-    if (file.name.starts_with("scene") && file.name.ends_with(".js"))
-      CHECK_MESSAGE(count(html, std::string(file.text)) == 1, file.name);
+  for (const io::EmbeddedFile& file : io::embedded_files()) {
+    const std::string name(file.name.substr(0, file.name.find('.')));
+    if (!name.starts_with("scene") || !file.name.ends_with(".js")) continue;
+    const std::size_t begin = html.find("const " + name + "_js = (() => {\n");
+    REQUIRE_MESSAGE(begin != std::string::npos, name);
+    CHECK_MESSAGE(count(html, "const " + name + "_js = ") == 1, name);
+    for (std::size_t use = html.find("} = " + name + "_js;"); use != std::string::npos;
+         use = html.find("} = " + name + "_js;", use + 1))
+      CHECK_MESSAGE(begin < use, name);
+  }
+  CHECK(count(html, "\nimport ") == 0);
+  CHECK(count(html, "\nexport ") == 0);
 }
 
 TEST_CASE("missing parts of a page leave no markup") {

@@ -1,0 +1,30 @@
+// ---- what all pages use: elements, styles, and numbers as text
+export const byId = (id) => document.getElementById(id);
+export const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+export const digits = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+export const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : many}`;
+
+/** Makes a row of a table lead somewhere: by a click, or by Enter. */
+export function linkRow(row, follow) {
+  row.className = "leads";
+  row.tabIndex = 0;
+  row.addEventListener("click", follow);
+  row.addEventListener("keydown", (e) => {
+    if (e.key !== "Enter") return;
+    e.preventDefault();
+    follow();
+  });
+}
+
+/** Returns a function that runs `action` at the next frame, once however often it is called until then. */
+export function oncePerFrame(action) {
+  const soon = () => {
+    if (soon.waiting) return;
+    soon.waiting = true;
+    requestAnimationFrame(() => {
+      soon.waiting = false;
+      action();
+    });
+  };
+  return soon;
+}
