@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/mesh/io/formats.hpp"
 #include "render/gl.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
@@ -49,8 +50,7 @@ struct Source {
 };
 
 bool is_mesh_name(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  return ending == ".obj" || ending == ".stl" || ending == ".ply" || ending == ".off" || ending == ".lrb";
+  return has_mesh_extension(path) || path.ends_with(".lrb");
 }
 
 /// Returns the run in which the wrapper of a user's body is refined down to the body.

@@ -45,7 +45,7 @@ inline int rank_of(const Family& f) {
 }
 
 /// Returns the families of the program. A file NAME_families.cpp of this folder defines `std::vector<Family>
-/// NAME_families()`, and bench/CMakeLists.txt lists it (lrb_registry).
+/// NAME_families()`, and bench/cases/CMakeLists.txt lists it (lrb_registry).
 std::vector<Family> registered_families();
 
 /// Returns the same families, in their order.

@@ -3,6 +3,7 @@
 
 #include "engine/collide/query_context.hpp"
 #include <lrbscope/collide.hpp>
+#include <lrbscope/core/fields.hpp>
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
 
@@ -17,6 +18,9 @@ const char* to_string(Answer a) {
 const char* to_string(Recursion r) {
   return name_of(r).data();
 }
+
+// clear() needs a line for each new member.
+static_assert(detail::member_count<Counters>() == 9 && detail::member_count<CollideResult>() == 13);
 
 void clear(Counters& counters) {
   // Each member by name, because clear() takes a quarter of a query that ends at the roots. The vector keeps

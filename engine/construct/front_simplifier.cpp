@@ -366,6 +366,8 @@ void FrontSimplifier::work_off() {
   while (!queue_.empty()) evaluate(queue_.pop());
 }
 
+/// Makes a proposed collapse, or refuses it. A collapse that would cover excluded or too many faces is
+/// dropped without a verdict, here and in propose(), and so is an edge whose rim is too long.
 void FrontSimplifier::evaluate(const QueuedCollapse& c) {
   // Step 1: the star may have changed since the collapse was proposed.
   if (!open_.is_used(c.u) || !open_.is_used(c.v) || !open_.find_star(c.u, c.v, c.onto_v, star_)) return;

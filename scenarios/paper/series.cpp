@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/mesh/io/formats.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
@@ -56,11 +57,8 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
       continue;
     }
     std::vector<std::string> found;
-    for (const auto& entry : fs::directory_iterator(path, failure)) {
-      const std::string ending = entry.path().extension().string();
-      if (ending == ".obj" || ending == ".ply" || ending == ".stl" || ending == ".off")
-        found.push_back(entry.path().string());
-    }
+    for (const auto& entry : fs::directory_iterator(path, failure))
+      if (has_mesh_extension(entry.path().string())) found.push_back(entry.path().string());
     if (failure) throw InputError(printable_name(path) + ": cannot read the file: " + failure.message());
     std::sort(found.begin(), found.end());
     files.insert(files.end(), found.begin(), found.end());

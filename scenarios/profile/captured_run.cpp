@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/mesh/io/formats.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/profile/volumes.hpp"
@@ -331,10 +332,7 @@ render::FrameSpec captured_frames() {
 std::string mesh_name(const capture::Capture& c, std::uint32_t tree) {
   const std::filesystem::path name = c.meshes[c.trees[tree].mesh].name;
   if (name.filename().empty()) return "mesh " + std::to_string(c.trees[tree].mesh + 1);
-  const std::string extension = name.extension().string();
-  const bool is_file =
-      extension == ".obj" || extension == ".stl" || extension == ".ply" || extension == ".off";
-  return printable_name((is_file ? name.stem() : name.filename()).string());
+  return printable_name((has_mesh_extension(name.string()) ? name.stem() : name.filename()).string());
 }
 
 spec::Scenario captured_scenario(const capture::Capture& c, const TreePair& pair,

@@ -126,9 +126,8 @@ struct MadeBody {
 };
 
 /// Reorients inward-oriented components, if `turn`, and builds an LRB-rep, or takes it from the folder
-/// `options.cache`. A mesh without an LRB-rep, or with
-/// a failed proof, becomes a body without regions, and a note gives the reason. Throws InputError if the mesh
-/// cannot be queried at all.
+/// `options.cache`. A mesh without an LRB-rep, or with a failed proof, becomes a body without regions, and a
+/// note gives the reason. Throws InputError if the mesh cannot be queried at all.
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = true);
 
 /// Creates a body without regions, for callers that need only pairs of faces, distances and the relation.

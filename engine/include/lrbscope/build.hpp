@@ -43,9 +43,10 @@ constexpr auto enum_names(BuildStage) {
                                               {BuildStage::known, "known regions"}});
 }
 
-/// The result for a cap: accepted, or the reason for its rejection. The name can follow a
-/// number: "9 met the hull". For a chain in 2D, lengths are tried from a segment on, and the reported verdict
-/// is the first one in this order among all of them.
+/// The result for a cap: accepted, or the reason for its rejection. For a cap of too many faces it is the
+/// reason why the last edge collapse was refused (front_simplifier.cpp). The name can follow a number:
+/// "9 met the hull" (the front). For a chain in 2D, lengths are tried from a segment on, and the reported
+/// verdict is the first one in this order among all of them.
 enum class CapVerdict : std::uint8_t {
   accepted,
   too_thick,           ///< with fewer faces its deviation would exceed the limit of the pass

@@ -9,8 +9,7 @@
 ///   num_max_contacts is 1. With enable_contact, each has the centroid of the corners of the two triangles'
 ///   intersection as its point, and the normal and estimated depth of its contact region (ContactRegion).
 /// - Distances are measured between the surfaces, to 1e-12 of the meshes' size regardless of rel_err and
-/// abs_err; 0
-///   if they intersect. Nearest points are in the world frame.
+///   abs_err; 0 if they intersect. Nearest points are in the world frame.
 /// - As in FCL, a mesh inside another one does not collide with it unless the surfaces intersect.
 /// - Costs, and geometry that is not occupied, are forwarded to FCL.
 ///

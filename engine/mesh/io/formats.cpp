@@ -108,6 +108,11 @@ std::string extension_of(std::string_view path) {
   return lower(extension.empty() ? extension : extension.substr(1));
 }
 
+bool has_mesh_extension(std::string_view path) {
+  constexpr std::array kExtensions = {"obj"sv, "stl"sv, "ply"sv, "off"sv};
+  return std::find(kExtensions.begin(), kExtensions.end(), extension_of(path)) != kExtensions.end();
+}
+
 MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   const std::string extension = extension_of(name);
   // The header of a binary STL may begin with "solid", so its size is tested before that keyword.

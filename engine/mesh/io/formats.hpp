@@ -17,6 +17,8 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name);
 
 /// Returns the extension in lower case, without the dot, or an empty string if there is none.
 std::string extension_of(std::string_view path);
+/// Returns true for the usual extension of one of the formats.
+bool has_mesh_extension(std::string_view path);
 
 /// The keyword at the start of an OFF file: [ST][C][N][4][n]OFF.
 struct OffHeader {

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "engine/mesh/io/formats.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
@@ -230,6 +231,11 @@ TEST_CASE("content decides, not the extension") {
     CHECK(corner_points(read_mesh(to_stl_ascii(body), name)) == corner_points(body));
     CHECK(corner_points(read_mesh(to_stl_binary(body), name)) == corner_points(body));
   }
+}
+
+TEST_CASE("the usual extensions of meshes, in any case") {
+  for (const char* name : {"a.obj", "b.c/A.STL", "a.ply", ".x.Off"}) CHECK(has_mesh_extension(name));
+  for (const char* name : {"a.lrb", "a.obj.gz", "obj", "", "a.obj/b"}) CHECK_FALSE(has_mesh_extension(name));
 }
 
 TEST_CASE("round trips through files keep every bit") {
