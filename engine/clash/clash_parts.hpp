@@ -41,6 +41,14 @@ enum class WholeTriangles : std::uint8_t { no, yes };
 /// their ellipsoids).
 std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& inside, WholeTriangles whole);
 
+/// Bounds the penetration depth and the depth along a direction, each if it is requested, of solids whose
+/// interiors overlap. Lower bounds come from overlapping sets inside the bodies, upper bounds from
+/// translations that are proven to separate. For convex bodies both agree up to rounding. query: begun with
+/// the bodies. found: all pairs of intersecting simplices. adapter: null, or notified of bounds on the depth.
+void measure_depth(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                   const ClashRequest& request, QueryContext& query, const CollideResult& found,
+                   const UnitBodies& bodies, BoundsProbeAdapter* adapter, ClashResult& result);
+
 /// Returns an interval that contains the volume of the intersection of two bodies, in unit lengths cubed. The
 /// bodies must be closed and must not intersect themselves.
 ///
