@@ -6,7 +6,7 @@
 ///    to rounding.
 /// 3. Otherwise search for shorter translations: along face normals, then by small rotations of the best
 ///    direction.
-/// 4. Raise the lower bound by pairs of balls inside the bodies (overlap_proof.hpp), and search where that
+/// 4. Raise the lower bound by pairs of balls inside the bodies (overlap_proof.cpp), and search where that
 ///    fails.
 /// 5. Prove the best translation with the distance query.
 /// Only the lower bounds of steps 1 and 4 and the translation of step 5 are proven; the search is a
@@ -25,7 +25,6 @@
 #include "engine/clash/clash_parts.hpp"
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/clash/minkowski.hpp"
-#include "engine/clash/overlap_proof.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "engine/collide/relation.hpp"
 #include "engine/core/geometry.hpp"
