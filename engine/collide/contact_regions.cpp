@@ -21,7 +21,7 @@
 #include "engine/collide/interiors.hpp"
 #include "engine/collide/relation.hpp"
 #include "engine/core/tolerances.hpp"
-#include "engine/lrb/surface_graph.hpp"
+#include "engine/lrb/complex.hpp"
 
 namespace lrb {
 namespace {
