@@ -3,7 +3,7 @@
 /// 2. Disjoint solids: measure the distance, and compare it with the clearance.
 /// 3. Otherwise cut each surface by the other and count the pieces inside and outside (surface_pieces.hpp):
 ///    they decide whether interiors overlap, and the kind.
-/// 4. If interiors overlap, bound the penetration depth (depth.hpp) and the common volume
+/// 4. If interiors overlap, bound the penetration depth (depth.cpp) and the common volume
 ///    (shared_volume.cpp).
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "engine/clash/clash_parts.hpp"
-#include "engine/clash/depth.hpp"
 #include "engine/clash/surface_pieces.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "engine/collide/interiors.hpp"
@@ -127,16 +126,10 @@ void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
   // In one common frame, in which no coordinate exceeds 1/2.
   const UnitBodies bodies = penetration::unit_bodies(query);
   if (request.depth || request.along) {
-    penetration::SeparationSearch penetration(a, pose_a, b, pose_b, bodies);
     DepthProbeAdapter on_depth(probe);
     BoundsProbeAdapter adapter(on_depth);
-    penetration::DepthFinder finder(query, found, bodies, penetration, probe != nullptr ? &adapter : nullptr);
-    if (request.depth) {
-      const auto depth = finder.depth();
-      result.depth = depth.length;
-      result.translation = depth.translation;
-    }
-    if (request.along) result.along = finder.along(request.along->stableNormalized());
+    penetration::measure_depth(a, pose_a, b, pose_b, request, query, found, bodies,
+                               probe != nullptr ? &adapter : nullptr, result);
   }
   // The faces of a body that intersects itself do not bound a single solid.
   if (request.volume && !a.overlaps_itself() && !b.overlaps_itself())

@@ -1,11 +1,18 @@
 #pragma once
-/// One clash query, with buffers that later queries reuse. Internal: users of the installed engine include
-/// clash.hpp.
+/// One clash query, with buffers that later queries reuse, and the parts that it consists of. Internal: users
+/// of the installed engine include clash.hpp.
 
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
-#include "engine/clash/unit_bodies.hpp"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "engine/clash/clash_tolerances.hpp"
+#include "engine/collide/query_context.hpp"
 #include "engine/distance/distance_context.hpp"
 #include <lrbscope/clash.hpp>
 
@@ -18,6 +25,60 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
 }  // namespace lrb
 
 namespace lrb::penetration {
+
+// The triangles of two bodies in the world, relative to the centre of their common box and in a unit in
+// which no coordinate exceeds 1/2.
+
+using Eigen::Vector3d;
+
+struct UnitBody {
+  std::vector<Vector3d> points;  ///< each coordinate within kUnitRounding of the exact one
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward, also for mirrored bodies
+};
+
+/// From world to unit coordinates: subtract `origin`, divide by 2^exponent.
+struct UnitFrame {
+  Vector3d origin{0, 0, 0};
+  int exponent = 0;
+
+  Vector3d to_unit(const Vector3d& world) const;
+  Vector3d to_world(const Vector3d& unit) const;
+  /// Returns a length in world units. Exact, unless it overflows or underflows.
+  double length_to_world(double x) const;
+};
+
+struct UnitBodies {
+  UnitFrame frame;
+  UnitBody body[2];
+};
+
+/// Returns the bodies with which a context was begun. Both must have faces.
+UnitBodies unit_bodies(QueryContext& context);
+
+/// An AABB tree of the triangles of a body, for the distance of a point from its surface.
+class SurfaceDistance {
+ public:
+  /// Keeps a reference to the body.
+  explicit SurfaceDistance(const UnitBody& body);
+
+  /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius around it
+  /// is proven to contain no point of the surface. It is less than the distance by kClearanceMargin and
+  /// rounding, independently of the triangulation of the surface.
+  double at(const Vector3d& x) const;
+
+ private:
+  struct Node {
+    Eigen::AlignedBox3d box;
+    std::uint32_t begin, end;           ///< triangles, in `order_`
+    std::uint32_t left = 0, right = 0;  ///< 0: a leaf
+  };
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end, const std::vector<Vector3d>& centroids);
+  double bound(std::uint32_t triangle, const Vector3d& x) const;
+
+  const UnitBody& body_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
 
 // Convex sets that are proven to be inside a body.
 
@@ -40,6 +101,70 @@ enum class WholeTriangles : std::uint8_t { no, yes };
 /// other (as in Deits and Tedrake, "Computing Large Convex Regions of Obstacle-Free Space", 2015, without
 /// their ellipsoids).
 std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& inside, WholeTriangles whole);
+
+/// Proves that two bodies overlap after all translations that are short enough (overlap_proof.cpp).
+class OverlapProof {
+ public:
+  /// Returns true if a point is inside a body (units; B at its pose, before any translation).
+  using IsInside = std::function<bool(Side, const Vector3d&)>;
+  /// Keeps references to the surfaces.
+  OverlapProof(const SurfaceDistance& a, const SurfaceDistance& b, IsInside is_inside);
+
+  /// Begins with common points of both bodies, the best first, and with all translations shorter than `most`,
+  /// which must be less than 2 and should be slightly above the depth. Returns false if no point is in both
+  /// bodies.
+  bool begin(const std::vector<Vector3d>& common, double most);
+  /// Continues until about `max_points` more points have been tried, or no larger bound can be proven.
+  /// Returns the number of points tried.
+  unsigned grow(unsigned max_points);
+  /// Returns a proven lower bound: after all shorter translations of B the interiors overlap.
+  double lower() const { return lower_; }
+  /// Returns a translation near the shortest one that is not proven, which may separate the bodies, or 0 if
+  /// no cube is left.
+  Vector3d undecided() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().centre; }
+
+ private:
+  /// A point of both bodies, for a translation.
+  struct Common {
+    Vector3d x{0, 0, 0}, of_b{0, 0, 0}, shift{0, 0, 0};  ///< x, x - v and v
+    double clear_a = 0, clear_b = 0;                     ///< of x from A's surface, of x - v from B's
+    double room() const { return clear_a + clear_b; }
+  };
+  struct Cube {
+    double least;  ///< lower bound on the length of its translations
+    Vector3d centre;
+    double half;
+    Common near;  ///< of a nearby translation
+  };
+  void push(const Vector3d& centre, double half, const Common& near);
+  bool look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
+  bool is_in(Side side, const Vector3d& x, double radius, const Vector3d& known, double known_radius);
+  std::vector<Common> seeds(const Cube& cube) const;
+  bool find_room(const Cube& cube, double needed, const Common& seed, Common& best);
+  bool prove(const Cube& cube, Common& best);
+  void climb(double needed, bool thorough, Common& best);
+  static bool has_more(const Common& x, const Common& y) { return x.room() > y.room() * (1 + kClearlyMore); }
+  bool is_small(const Cube& cube) const { return cube.half < kSmallCube * (most_ - cube.least); }
+
+  const SurfaceDistance &a_, &b_;
+  IsInside is_inside_;
+  /// The initial points, followed by those for the centres of the proven cubes.
+  std::vector<Common> found_;
+  std::size_t first_ = 0;    ///< number of initial points
+  std::vector<Cube> cubes_;  ///< a min-heap
+  double most_ = 0, lower_ = 0;
+  unsigned points_ = 0;
+};
+
+// The measures of an overlap.
+
+/// Bounds the penetration depth and the depth along a direction, each if it is requested, of solids whose
+/// interiors overlap. Lower bounds come from overlapping sets inside the bodies, upper bounds from
+/// translations that are proven to separate. For convex bodies both agree up to rounding. query: begun with
+/// the bodies. found: all pairs of intersecting simplices. adapter: null, or notified of bounds on the depth.
+void measure_depth(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                   const ClashRequest& request, QueryContext& query, const CollideResult& found,
+                   const UnitBodies& bodies, BoundsProbeAdapter* adapter, ClashResult& result);
 
 /// Returns an interval that contains the volume of the intersection of two bodies, in unit lengths cubed. The
 /// bodies must be closed and must not intersect themselves.

@@ -3,7 +3,7 @@
 /// the effect of changing it.
 ///
 /// The clash query transforms bodies to units in which no coordinate and no difference of two coordinates
-/// exceeds 1 (unit_bodies.hpp): lengths and volumes are in these units. u = 2^-53.
+/// exceeds 1 (unit_bodies.cpp): lengths and volumes are in these units. u = 2^-53.
 
 namespace lrb {
 

@@ -6,29 +6,226 @@
 ///    to rounding.
 /// 3. Otherwise search for shorter translations: along face normals, then by small rotations of the best
 ///    direction.
-/// 4. Raise the lower bound by pairs of balls inside the bodies (overlap_proof.hpp), and search where that
+/// 4. Raise the lower bound by pairs of balls inside the bodies (overlap_proof.cpp), and search where that
 ///    fails.
 /// 5. Prove the best translation with the distance query.
 /// Only the lower bounds of steps 1 and 4 and the translation of step 5 are proven; the search is a
 /// heuristic.
 
-#include "engine/clash/depth.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "engine/clash/clash_parts.hpp"
 #include "engine/clash/clash_tolerances.hpp"
-#include "engine/clash/overlap_proof.hpp"
+#include "engine/clash/minkowski.hpp"
+#include "engine/collide/collide_into.hpp"
 #include "engine/collide/relation.hpp"
 #include "engine/core/geometry.hpp"
+#include "engine/core/tolerances.hpp"
+#include <lrbscope/clash.hpp>
 #include <lrbscope/contact.hpp>
 
 namespace lrb::penetration {
 namespace {
+
+/// A translation after which two bodies are separate.
+struct SeparatingTranslation {
+  Vector3d translation{0, 0, 0};  ///< world
+  double length = 0;              ///< at least the translation's length, rounded up
+};
+
+/// Tests and proves translations of B that separate it from A. Tests use the exact any-pair query on the
+/// rounded pose. Proofs add the distance query, with a margin above the rounding of the pose and of the
+/// corners.
+class SeparationSearch {
+ public:
+  SeparationSearch(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                   const UnitBodies& bodies);
+
+  /// Returns true if the exact query finds the bodies separate after B's pose is translated by `s` times `n`
+  /// (units).
+  bool is_separated(const Vector3d& n, double s);
+  /// Proves that a translation of B along n by `s` or slightly more separates it from A. Returns nullopt if
+  /// the proof fails.
+  std::optional<SeparatingTranslation> prove(const Vector3d& n, double s);
+  /// Proves that a translation of B by exactly s n, for `s` or a slightly larger s, separates it from A.
+  /// Returns that s (units), or nullopt if the proof fails.
+  std::optional<double> prove_along(const Vector3d& n, double s);
+  /// Returns the least of some sampled lengths along n, up to `most`, at which the bodies are separate,
+  /// refined by bisection, or `most` if no sample separates. Usually, but not always, finds the first
+  /// separation.
+  double least_separation(const Vector3d& n, double most, int samples);
+  /// Returns the number of queries.
+  std::uint64_t query_count() const { return query_count_; }
+
+ private:
+  struct Moved {
+    Pose pose;
+    Vector3d by;  ///< the displacement, rounded once
+  };
+  Moved moved(const Vector3d& n, double s) const;
+  bool is_proved(const Moved& m, double more);
+
+  const LrbRep &a_, &b_;
+  const Pose &pose_a_, &pose_b_;
+  const UnitFrame& frame_;
+  double reach_ = 0;               ///< the largest world coordinate of B
+  std::uint64_t query_count_ = 0;  ///< number of queries
+  QueryContext query_;
+  DistanceContext distance_;
+};
+
+SeparationSearch::SeparationSearch(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                                   const UnitBodies& bodies)
+    : a_(a), b_(b), pose_a_(pose_a), pose_b_(pose_b), frame_(bodies.frame) {
+  // Real faces only, so that the result does not depend on the regions.
+  for (FaceId f = 0; f < b.real_face_count(); ++f)
+    for (const VertexId v : b.face(f))
+      reach_ = std::max(reach_, pose_b.apply(b.vertices()[v]).cwiseAbs().maxCoeff());
+}
+
+SeparationSearch::Moved SeparationSearch::moved(const Vector3d& n, double s) const {
+  Moved m{pose_b_, Vector3d::Zero()};
+  for (int k = 0; k < 3; ++k) m.pose.t[k] += frame_.length_to_world(s * n[k]);
+  // The actual displacement, rounded once. The pose is rounded as well, so this differs from s n.
+  m.by = m.pose.t - pose_b_.t;
+  return m;
+}
+
+bool SeparationSearch::is_separated(const Vector3d& n, double s) {
+  const Moved m = moved(n, s);
+  // Coordinates could overflow. NaN is rejected as well.
+  if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
+  ++query_count_;
+  // One intersecting pair is enough to reject a translation.
+  CollideRequest request;
+  request.mode = Mode::any_pair;
+  NullProbe probe;
+  return collide(a_, pose_a_, b_, m.pose, request, query_, probe).relation == Relation::separate;
+}
+
+/// The query uses corners fl(q + t') of B, the contract fl(q + t), with the same q. They differ from a
+/// translation by t' - t by one rounding of each, which is u times coordinates of at most reach_ and reach_ +
+/// |by|. m.by is t' - t with an error of at most u |by| in each coordinate. The total is less than 2 u (2
+/// reach_ + 2 |by|) in length, u = 2^-53, plus the loss near underflow. Bodies that are farther apart than
+/// this are separate after the exact translation as well, because the surfaces do not intersect between the
+/// two positions.
+bool SeparationSearch::is_proved(const Moved& m, double more) {
+  if (!m.pose.t.allFinite() || !(reach_ + m.by.cwiseAbs().maxCoeff() < kLargestMoved)) return false;
+  // 0x1p-51 is 4 u, from the derivation above; `more` is the caller's own error.
+  const double rounding = 0x1p-51 * (reach_ + m.by.norm()) + more + kWorldUnderflow;
+  ++query_count_;
+  DistanceRequest request;
+  // The distance query decides whether the bodies are farther apart than the rounding.
+  request.within = rounding;
+  const DistanceResult result = distance(a_, pose_a_, b_, m.pose, request, distance_);
+  // Separate, not contained in each other, and farther apart than the rounding.
+  return result.relation == Relation::separate && result.within && !*result.within;
+}
+
+std::optional<SeparatingTranslation> SeparationSearch::prove(const Vector3d& n, double s) {
+  // Rounding of world coordinates, in units.
+  const double rounding = std::ldexp(0x1p-50 * (reach_ + frame_.length_to_world(s)), -frame_.exponent);
+  // Add a margin that grows by a factor of 8 until the proof succeeds.
+  for (double more = kSeparationMargin + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
+    const Moved m = moved(n, s + more);
+    if (is_proved(m, 0)) return SeparatingTranslation{m.by, stable_norm3(m.by) * (1 + 0x1p-50)};
+  }
+  return std::nullopt;
+}
+
+std::optional<double> SeparationSearch::prove_along(const Vector3d& n, double s) {
+  // As in prove(), but the direction must be n itself.
+  const double rounding = std::ldexp(0x1p-50 * (reach_ + frame_.length_to_world(s)), -frame_.exponent);
+  for (double more = kSeparationMargin + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
+    const Moved m = moved(n, s + more);
+    Vector3d wanted;
+    for (int k = 0; k < 3; ++k) wanted[k] = frame_.length_to_world((s + more) * n[k]);
+    // Deviation from the requested translation. Products and the difference are rounded by u times their size
+    // each.
+    if (is_proved(m, (m.by - wanted).norm() * 2 + 0x1p-50 * wanted.norm())) return s + more;
+  }
+  return std::nullopt;
+}
+
+double SeparationSearch::least_separation(const Vector3d& n, double most, int samples) {
+  // A linear search for the first sample that separates: concave bodies may collide again farther out.
+  double met = 0, apart = most;
+  for (int i = 1; i < samples; ++i) {
+    const double s = most * i / samples;
+    if (is_separated(n, s)) {
+      apart = s;
+      break;
+    }
+    met = s;
+  }
+  // Bisection between the last colliding and the first separating sample.
+  while (apart - met > kSeparationMargin) {
+    const double midpoint = 0.5 * (met + apart);
+    // No double lies between the two.
+    if (!(midpoint > met && midpoint < apart)) break;
+    (is_separated(n, midpoint) ? apart : met) = midpoint;
+  }
+  return apart;
+}
+
+/// Bounds depths. Lower bounds come from overlapping sets inside the bodies, upper bounds from translations
+/// that are proven to separate. For convex bodies both agree up to rounding.
+class DepthFinder {
+ public:
+  /// `query`: begun with the bodies, which must be closed. `result`: all pairs of intersecting simplices.
+  /// adapter: null, or notified of bounds on the depth.
+  DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
+              SeparationSearch& penetration, BoundsProbeAdapter* adapter = nullptr);
+
+  struct Depth {
+    ProvedInterval length;  ///< world
+    Vector3d translation{0, 0, 0};
+  };
+  Depth depth();
+  /// `n`: approximately of unit length.
+  ProvedInterval along(const Vector3d& n);
+
+ private:
+  /// Convex sets inside each body, around a common point.
+  struct Common {
+    ConvexPoints a, b;
+  };
+  std::optional<Vector3d> inside_point(Side side, const Vector3d& unit, const Vector3d& shift);
+  std::optional<ConvexPoints> shrunken(Side side);
+  Eigen::AlignedBox3d common_box(const Vector3d& shift);
+  static std::vector<Vector3d> starts(const Eigen::AlignedBox3d& box, int grid);
+  std::optional<Vector3d> deepest_common(const Vector3d& shift);
+  double common_clearance(const Vector3d& x, const Vector3d& shift);
+  std::optional<Common> common_sets(const Vector3d& shift, WholeTriangles whole);
+  const SurfaceDistance& surface(Side side);
+  double raise_lower(double known, double& best, Vector3d& best_n);
+  std::vector<Vector3d> directions();
+  void improve(const Vector3d& n, double& best, Vector3d& best_n);
+  void refine(double& best, Vector3d& best_n);
+  void find_depth(MinkowskiDifference& difference, unsigned max_steps, bool is_inner);
+  void notify(double least);
+  double hull_width(const Vector3d& n) const;
+  double along_lower(const Vector3d& n);
+
+  QueryContext& query_;
+  const CollideResult& result_;
+  const UnitBodies& bodies_;
+  SeparationSearch& separation_search_;
+  BoundsProbeAdapter* adapter_;
+  double reported_lower_ = 0;             ///< lower bound on the depth, world units; only with an adapter
+  std::uint64_t grown_ = 0;               ///< number of expansion steps; only with an adapter
+  std::optional<ConvexPoints> whole_[2];  ///< the set of a convex body
+  std::optional<SurfaceDistance> surface_[2];  ///< built on first use
+  std::vector<Vector3d> common_;               ///< points of both bodies at their poses, the deepest first
+};
 
 Vector3d normal_of(const UnitBody& body, std::uint32_t triangle) {
   const auto& t = body.triangles[triangle];
@@ -79,8 +276,6 @@ double farthest(const UnitBody& body, const Vector3d& n) {
   for (const Vector3d& x : body.points) most = std::max(most, n.dot(x));
   return most;
 }
-
-}  // namespace
 
 DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
                          SeparationSearch& penetration, BoundsProbeAdapter* adapter)
@@ -416,6 +611,21 @@ ProvedInterval DepthFinder::along(const Vector3d& n) {
   if (!upper) upper = separation_search_.prove_along(n, width);
   const UnitFrame& frame = bodies_.frame;
   return {frame.length_to_world(lower), upper ? frame.length_to_world(*upper) : kInfinity};
+}
+
+}  // namespace
+
+void measure_depth(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                   const ClashRequest& request, QueryContext& query, const CollideResult& found,
+                   const UnitBodies& bodies, BoundsProbeAdapter* adapter, ClashResult& result) {
+  SeparationSearch search(a, pose_a, b, pose_b, bodies);
+  DepthFinder finder(query, found, bodies, search, adapter);
+  if (request.depth) {
+    const DepthFinder::Depth depth = finder.depth();
+    result.depth = depth.length;
+    result.translation = depth.translation;
+  }
+  if (request.along) result.along = finder.along(request.along->stableNormalized());
 }
 
 }  // namespace lrb::penetration

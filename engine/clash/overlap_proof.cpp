@@ -1,4 +1,14 @@
-/// Branch and bound over the translations of B; the proof is in overlap_proof.hpp. Steps:
+/// Proves that two bodies overlap after all translations that are short enough.
+///
+/// If the open ball of radius r about x is in A, and the open ball of radius s about x - v is in B, then the
+/// interiors overlap after all translations of B that differ from v by less than r + s, because B's ball then
+/// reaches into A's. Translations are divided into cubes, nearest to 0 first. For each cube, a point x is
+/// searched whose two balls are large enough for the entire cube; if none is found, the cube is divided into
+/// eight. All translations shorter than the nearest remaining cube are proven. The closer these are to the
+/// depth, the smaller are the cubes near separating translations; their number grows as the inverse of the
+/// difference to the depth.
+///
+/// Branch and bound over the translations of B. Steps:
 /// 1. Take the cube of translations nearest to 0. All shorter translations are proven.
 /// 2. Search for a point whose clearances in A and, moved back, in B add up to more than the cube's half
 ///    diagonal: sample near known points, then climb to larger clearance.
@@ -8,13 +18,12 @@
 /// than kDifferenceRounding), and the bodies' points are within kUnitRounding of the exact ones; kRoomMargin
 /// covers both. Centres and half sizes of cubes are multiples of a power of two, and therefore exact.
 
-#include "engine/clash/overlap_proof.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "engine/clash/clash_parts.hpp"
 #include "engine/clash/clash_tolerances.hpp"
 
 namespace lrb::penetration {

@@ -2,14 +2,13 @@
 /// of two so that coordinates are at most 1/2. Scaling is exact, so each coordinate is rounded once, by the
 /// subtraction.
 
-#include "engine/clash/unit_bodies.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "engine/clash/clash_parts.hpp"
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/collide/interiors.hpp"
 #include "engine/core/geometry.hpp"

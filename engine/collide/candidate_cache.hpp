@@ -13,7 +13,6 @@
 
 #include "engine/collide/pair_order.hpp"
 #include "engine/collide/relative_motion.hpp"
-#include "engine/tree/pair_kernel.hpp"
 #include "engine/tree/tree_kernel.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/contact.hpp>

@@ -42,7 +42,6 @@
 #include <vector>
 
 #include "engine/collide/relation.hpp"
-#include "engine/collide/separation.hpp"
 #include "engine/collide/tree_query.hpp"
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"

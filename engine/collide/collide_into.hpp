@@ -7,10 +7,8 @@
 #include <numeric>
 
 #include "engine/collide/coarse_query.hpp"
-#include "engine/collide/contact_regions.hpp"
 #include "engine/collide/paper_query.hpp"
 #include "engine/collide/relation.hpp"
-#include "engine/collide/separation.hpp"
 #include "engine/collide/tree_query.hpp"
 #include "engine/exact/predicates.hpp"
 #include <lrbscope/collide.hpp>

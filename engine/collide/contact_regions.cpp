@@ -9,8 +9,6 @@
 // 4. Chain the edges of each component into loops.
 // 5. Estimate the depth along the normal from the enclosed vertices of both bodies.
 
-#include "engine/collide/contact_regions.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,8 +19,9 @@
 #include <Eigen/Geometry>
 
 #include "engine/collide/interiors.hpp"
+#include "engine/collide/relation.hpp"
 #include "engine/core/tolerances.hpp"
-#include "engine/lrb/surface_graph.hpp"
+#include "engine/lrb/complex.hpp"
 
 namespace lrb {
 namespace {

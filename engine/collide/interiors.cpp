@@ -16,7 +16,7 @@
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/lrb/surface_graph.hpp"
+#include "engine/lrb/complex.hpp"
 #include <lrbscope/contact.hpp>
 
 namespace lrb {

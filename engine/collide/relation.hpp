@@ -1,5 +1,8 @@
 #pragma once
-/// Determines the relation of two bodies, once their intersecting pairs are known.
+/// What a query finds out about two bodies once their intersecting pairs are known: their relation, a
+/// certificate of separation, and a description of the contact.
+
+#include <optional>
 
 #include "engine/collide/query_context.hpp"
 #include "engine/exact/locate.hpp"
@@ -68,5 +71,20 @@ bool decide_relation_watched(QueryContext& ctx, CollideResult& result, Probe& pr
   locate_in_phase(probe, [&](const auto& see) { decided = decide_relation(ctx, result, in_time, see); });
   return decided;
 }
+
+/// Returns true if two simplices (triangles, or segments in 2D) are proven to be further apart than `margin`:
+/// a slab of that width separates them. Returns false if no proof is found; at distances within a few margins
+/// either result is possible. Takes world coordinates. `margin` must be at least kWrapperMargin times the
+/// largest of them.
+bool separated_by(double margin, int dim, const double* const a[3], const double* const b[3]);
+
+/// Returns the certificate for two bodies that are known to be separate, or nullopt if a body is not closed
+/// or intersects itself, or if the bodies are nearer than wrapper_margin(), because refined wrappers cannot
+/// then be proven disjoint. Starts from the outermost wrappers, refines the larger region wherever two faces
+/// intersect, and at the end coarsens every region that the proof does not need.
+std::optional<Separation> find_separation(QueryContext& context);
+
+/// Sets interiors_overlap, contacts and regions of a result, as far as requested.
+void describe_contact(QueryContext& context, const CollideRequest& request, CollideResult& result);
 
 }  // namespace lrb

@@ -7,14 +7,13 @@
 /// 3. If a piece of one boundary is inside the other wrapper, refine there, then repeat step 2.
 /// 4. Coarsen every region that the proof does not need.
 
-#include "engine/collide/separation.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
+#include "engine/collide/relation.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/lrb/complex.hpp"

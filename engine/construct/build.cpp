@@ -1,9 +1,392 @@
+// Building of LRB-reps, and the builder for 3D bodies (progressive hulls); the one for 2D bodies is in
+// chain_builder.cpp.
+//
+// The builder works on the current front, at first the mesh itself, and adds one level after the other:
+// 1. One queue of edge collapses simplifies the entire front outward. It is cut into components by a cap on
+//    the number of faces beneath each (front_simplifier.hpp).
+// 2. A component whose lid is simple enough is proven, exactly, to be disjoint from all other faces
+//    (embed_check.hpp). The new front is then embedded again and encloses the old one, so that all faces of
+//    the complex intersect only in shared vertices and edges.
+// 3. The space between floor and lid becomes a region (front_update.hpp). The lid is part of the front of the
+//    next level.
+//
+// The first levels fit tightly: their deviation from the body is limited. When levels gain too little,
+// concavities are bridged, and finally one wrapper of few faces is put around all of them (closing.hpp).
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "engine/construct/aabb_tree.hpp"
 #include "engine/construct/builders.hpp"
+#include "engine/construct/closing.hpp"
+#include "engine/construct/complex_builder.hpp"
+#include "engine/construct/front_mesh.hpp"
+#include "engine/construct/front_simplifier.hpp"
+#include "engine/construct/half_spaces.hpp"
+#include "engine/core/tolerances.hpp"
+#include "engine/exact/locate.hpp"
+#include "engine/exact/predicates.hpp"
+#include "engine/mesh/nesting.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include <lrbscope/build.hpp>
+#include <lrbscope/core/disjoint_sets.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/parallel.hpp>
+
+namespace lrb::construct {
+namespace {
+
+using Slot = FrontMesh::Slot;
+using Corner = FrontMesh::Corner;
+
+// Nesting of a body's components: voids have negative volume (exact); an exact ray decides which components
+// contain each other; a solid component belongs to the innermost void that contains it.
+
+struct Component {
+  std::vector<FaceId> faces;
+  Eigen::AlignedBox3d box;
+};
+
+std::vector<Component> components_of(const FrontMesh& front) {
+  std::vector<Component> out(front.component_count());
+  for (Slot s = 0; s < front.slot_count(); ++s) {
+    // The triangles of a polygon are consecutive, so comparing with the last face removes duplicates.
+    Component& c = out[front[s].component];
+    if (c.faces.empty() || c.faces.back() != front[s].face) c.faces.push_back(front[s].face);
+    c.box.extend(box_of(front, s));
+  }
+  return out;
+}
+
+/// Returns the components around each one, ascending. The first corner of a face decides, unless it is on the
+/// other component's surface; if the corners of many faces are, the two have their surface in common.
+std::vector<std::vector<std::uint32_t>> find_holders(const Mesh& mesh,
+                                                     const std::vector<Component>& components) {
+  std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
+  for (std::uint32_t c = 0; c < components.size(); ++c)
+    for (const FaceId f : components[c].faces) component_of[f] = c;
+  // One ray per point answers for all components at once.
+  const SideFinder finder(mesh, std::move(component_of));
+  // Vertices on another component's surface decide nothing: try the next face, up to this many.
+  constexpr std::size_t kTries = 64;
+  std::vector<std::vector<std::uint32_t>> holders(components.size());
+  for (std::uint32_t c = 0; c < components.size(); ++c) {
+    const auto& faces = components[c].faces;
+    holders[c] = finder.around(c, [&](std::size_t i) {
+      return i < std::min(kTries, faces.size()) ? &mesh.vertices[mesh.face(faces[i])[0]] : nullptr;
+    });
+    // The box of a container contains that of the other. This excludes most components that merely cross.
+    std::erase_if(holders[c],
+                  [&](std::uint32_t h) { return !components[h].box.contains(components[c].box); });
+  }
+  return holders;
+}
+
+/// Returns the void in front of each component of the mesh's surface: (components) itself for a void, kNull
+/// for the outside. `front`: still the mesh's own surface. Exact, except that a component that crosses a
+/// void's wall is located by one of its vertices.
+std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const FrontMesh& front) {
+  const std::uint32_t count = front.component_count();
+  std::vector<std::uint32_t> home(count, kNull);
+  // The usual case: nothing can be nested.
+  if (count == 1) return home;
+  const std::vector<Component> components = components_of(front);
+  // Exact sign of the volume: a component that faces inward bounds a void.
+  std::vector<bool> is_void(count);
+  for (std::uint32_t c = 0; c < count; ++c) is_void[c] = volume_sign(mesh, components[c].faces) < 0;
+  const auto holders = find_holders(mesh, components);
+  const auto is_inside = [&](std::uint32_t inner, std::uint32_t outer) {
+    return std::binary_search(holders[inner].begin(), holders[inner].end(), outer);
+  };
+  for (std::uint32_t c = 0; c < count; ++c) {
+    // A void is its own home: its front faces the space inside it.
+    if (is_void[c]) {
+      home[c] = c;
+      continue;
+    }
+    // The innermost void around it is inside all others.
+    for (const std::uint32_t v : holders[c])
+      if (is_void[v] && (home[c] == kNull || is_inside(v, home[c]))) home[c] = v;
+  }
+  return home;
+}
+
+// Finds the faces of a self-intersecting body in front of which is not the outside:
+// 1. Connect the triangles that intersect nothing into sheets. No sheet crosses a surface, so the winding
+//    number of the surface is the same everywhere in front of it.
+// 2. Compute it at one vertex of each sheet, by an exact ray.
+// 3. A sheet whose number is not 0 is buried.
+
+/// Returns the sign of the x coordinate of a triangle's normal. Exact.
+int facing_x(const FrontMesh& front, Slot s) {
+  const auto& v = front[s].v;
+  // The coordinates y and z.
+  return exact::orient2d(front.x(v[0]).data() + 1, front.x(v[1]).data() + 1, front.x(v[2]).data() + 1);
+}
+
+/// Returns the winding number of the front just in front of the triangles around v, which intersect no
+/// others. Returns nullopt if these face both to +x and to -x, or if another triangle touches v.
+std::optional<int> winding_in_front(const FrontMesh& front, const AabbTree& tree, Corner v) {
+  // Step 1: does the ray from v to +x start in front of the triangles around v, or behind them?
+  const Eigen::Vector3d& p = front.x(v);
+  int side = 0;
+  bool is_decided = true;
+  front.for_each_around(v, [&](Slot s, int i) {
+    if (const int facing = facing_x(front, s); facing != 0) {
+      is_decided &= side != -facing;
+      side = facing;
+      return;
+    }
+    // A triangle parallel to the ray must not contain it.
+    for (int k = 1; k < 3; ++k) is_decided &= front.x(front[s].v[(i + k) % 3]).x() <= p.x();
+  });
+  if (!is_decided || side == 0) return std::nullopt;
+  // Step 2: where the ray leaves the surface, the winding number falls by 1; far away it is 0.
+  int winding = side > 0 ? 0 : -1;
+  const Eigen::Vector3d far(std::numeric_limits<double>::infinity(), p.y(), p.z());
+  tree.for_each_in(Eigen::AlignedBox3d(p, far), [&](Slot s) {
+    const auto& t = front[s].v;
+    if (t[0] == v || t[1] == v || t[2] == v) return;
+    const double* const triangle[3] = {front.x(t[0]).data(), front.x(t[1]).data(), front.x(t[2]).data()};
+    const exact::RayHit hit = exact::ray_crosses(p.data(), triangle);
+    if (hit == exact::RayHit::crosses) winding += facing_x(front, s);
+    is_decided &= hit != exact::RayHit::on_face;
+  });
+  return is_decided ? std::optional(winding) : std::nullopt;
+}
+
+/// Returns the faces of a mesh that crosses itself in front of which is not the outside: they are in another
+/// component, in another part of their own, or turned inward. `meeting`: the faces that intersect others in
+/// more than shared vertices and edges, ascending; they are not among those returned. `front`: the mesh
+/// itself.
+///
+/// A cap over such faces would be inside another part of the body, where no front stops it, and could pass
+/// through the faces under that part's caps.
+std::vector<FaceId> find_buried(const FrontMesh& front, const std::vector<FaceId>& meeting) {
+  if (meeting.empty()) return {};
+  const auto meets = [&](Slot s) {
+    return std::binary_search(meeting.begin(), meeting.end(), front[s].face);
+  };
+  // Step 1. Intersecting triangles are the borders of sheets.
+  DisjointSets sheets(front.slot_count());  // connected over edges
+  for (Slot s = 0; s < front.slot_count(); ++s)
+    for (const Slot t : front[s].across)
+      if (!meets(s) && !meets(t)) sheets.join(s, t);
+  // Step 2. A sheet that was not decided is tried again at its next triangle.
+  enum class SheetKind : std::uint8_t { unknown, free, buried };
+  const AabbTree tree(front);
+  const auto look_at = [&](Slot s) {
+    for (const Corner v : front[s].v) {
+      bool is_inner = true;
+      front.for_each_around(v, [&](Slot t, int) { is_inner &= !meets(t); });
+      if (!is_inner) continue;
+      if (const auto winding = winding_in_front(front, tree, v))
+        return *winding == 0 ? SheetKind::free : SheetKind::buried;
+    }
+    return SheetKind::unknown;
+  };
+  std::vector<SheetKind> known(front.slot_count(), SheetKind::unknown);  // at a sheet's leader
+  for (Slot s = 0; s < front.slot_count(); ++s)
+    if (SheetKind& sheet = known[sheets.leader(s)]; !meets(s) && sheet == SheetKind::unknown)
+      sheet = look_at(s);
+  // Step 3. Undecided sheets count as buried: covering them could not be proven safe.
+  std::vector<FaceId> buried;
+  for (Slot s = 0; s < front.slot_count(); ++s)
+    if (!meets(s) && known[sheets.leader(s)] != SheetKind::free) buried.push_back(front[s].face);
+  return buried;
+}
+
+/// Builds the regions of a 3D body, level by level:
+/// 1. Find the surfaces that bound voids, and the faces that must never be covered.
+/// 2. Fitted levels of limited deviation (unless lean), then levels without a limit, until there are few
+/// enough outer faces: FrontSimplifier.
+/// 3. Bridge concavities, fill voids, and close with a wrapper if there are still too many outer faces.
+class CollapseBuilder {
+ public:
+  CollapseBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
+      : options_(options),
+        workers_(options.threads),
+        front_(mesh),
+        complex_(mesh),
+        home_(find_nesting(mesh, front_)),
+        bounds_(mesh.vertices, kFrontSwell),
+        frozen_(mesh.face_count(), false),
+        component_boxes_(front_.component_count()),
+        passes_(options) {
+    // Faces that intersect others, and faces in front of which is not the outside, are never covered.
+    for (const FaceId f : meeting) frozen_[f] = true;
+    for (const FaceId f : find_buried(front_, meeting)) frozen_[f] = true;
+    for (Slot s = 0; s < front_.slot_count(); ++s)
+      component_boxes_[front_[s].component].extend(box_of(front_, s));
+  }
+
+  LrbData run() {
+    {
+      FrontSimplifier simplifier = make_simplifier();
+      if (!options_.lean) simplifier.fit(kFitDownTo, [&] { plan_polytope_from(kFittedPolytopeFrom); });
+      simplifier.simplify([&] { plan_polytope_from(kPolytopeFrom); });
+    }
+    if (outer_size() > options_.max_outer_faces && bridge())
+      make_simplifier().simplify([&] { plan_polytope_from(kPolytopeFrom); });
+    fill();
+    const std::uint32_t outer = outer_size();
+    const bool is_closed = outer > options_.max_outer_faces && close();
+    if (options_.probe) options_.probe->closed(is_closed ? polytope_size() : outer);
+    return complex_.finish(true, false);
+  }
+
+ private:
+  bool is_outer(Slot s) const { return home_[front_[s].component] == kNull; }
+
+  std::uint32_t outer_size() const {
+    std::uint32_t count = 0;
+    for (Slot s = 0; s < front_.slot_count(); ++s) count += front_.alive(s) && is_outer(s);
+    return count;
+  }
+
+  std::uint32_t polytope_size() const { return static_cast<std::uint32_t>(polytope_.face_count()); }
+
+  std::vector<Eigen::Vector3d> outer_points() const {
+    std::vector<Eigen::Vector3d> points;
+    for (Corner v = 0; v < front_.point_count(); ++v)
+      if (front_.degree(v) > 0 && is_outer(front_.any_slot(v))) points.push_back(front_.x(v));
+    return points;
+  }
+
+  FrontSimplifier make_simplifier() {
+    return {front_, complex_, frozen_, component_boxes_, bounds_, options_, passes_};
+  }
+
+  /// Plans the outermost wrapper as soon as the front is simple enough: from now on it stays inside.
+  void plan_polytope_from(std::uint32_t triangles) {
+    if (front_.triangle_count() <= triangles) plan_polytope();
+  }
+
+  bool bridge() {
+    passes_.report_begin(BuildStage::bridge, front_.triangle_count());
+    const bool accepted = bridge_pockets();
+    passes_.report_end({.front_faces = front_.triangle_count()});
+    if (!accepted) return false;
+    end_pass();
+    return true;
+  }
+
+  bool bridge_pockets() {
+    // The convex hull of n points in one plane takes O(n^2) steps.
+    for (Slot s = 0; s < front_.slot_count(); ++s)
+      if (front_.alive(s) && front_.is_crowded(s)) return report_whole_cap(0, CapVerdict::too_crowded);
+    std::vector<bool> joined(front_.component_count());
+    for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
+    plan_polytope();
+    return bridge_concavities(front_, complex_, joined, passes_.layer(), options_.probe) ==
+           CapVerdict::accepted;
+  }
+
+  /// Reports a cap of `faces` faces over the entire outer front to the probe. Returns true if the cap was
+  /// accepted.
+  bool report_whole_cap(std::uint32_t faces, CapVerdict verdict) const {
+    if (options_.probe) {
+      Slot first = 0;
+      while (!front_.alive(first) || !is_outer(first)) ++first;
+      const std::uint32_t outer = outer_size();
+      options_.probe->patch({front_.point(front_[first].v[0]).id, outer, 0});
+      options_.probe->cap({faces, outer, verdict, false, -1});
+    }
+    return verdict == CapVerdict::accepted;
+  }
+
+  void fill() {
+    const std::uint32_t before = complex_.region_count(), faces = front_.triangle_count();
+    fill_voids(front_, home_, passes_.layer(), complex_);
+    if (complex_.region_count() == before) return;
+    passes_.report_begin(BuildStage::fill, faces);
+    passes_.report_regions(complex_, before);
+    passes_.report_end({.front_faces = outer_size()});
+  }
+
+  /// Plans the outermost wrapper; from now on all fronts stay inside it.
+  void plan_polytope() {
+    if (polytope_.face_count() > 0) return;
+    polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
+    if (polytope_.face_count() == 0) return;
+    // The front keeps a margin from the wrapper, so that the exact confirmation in find_closing() succeeds.
+    bounds_ = BodyBounds(polytope_, kFrontDistance * size_of(polytope_));
+  }
+
+  static double size_of(const Mesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const auto& v : mesh.vertices) box.extend(v);
+    return box.sizes().maxCoeff();
+  }
+
+  /// Puts the outermost wrapper around the front. Returns false if no wrapper is found.
+  bool close() {
+    const std::uint32_t outer = outer_size(), before = complex_.region_count();
+    passes_.report_begin(BuildStage::close, outer);
+    const CapVerdict verdict = find_closing();
+    const bool accepted = report_whole_cap(polytope_size(), verdict);
+    if (accepted) enclose(front_, home_, polytope_, passes_.layer(), complex_);
+    passes_.report_regions(complex_, before);
+    passes_.report_end({.front_faces = accepted ? polytope_size() : outer});
+    if (accepted) end_pass();
+    return accepted;
+  }
+
+  CapVerdict find_closing() {
+    plan_polytope();
+    const std::vector<Eigen::Vector3d> points = outer_points();
+    const auto holds_all = [&] {
+      return std::all_of(points.begin(), points.end(), [&](const auto& p) { return holds(polytope_, p); });
+    };
+    if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
+    // Rounding or bridging may have moved the front outside: plan again around the current front.
+    if (!holds_all())
+      polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
+    if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
+    return holds_all() ? CapVerdict::accepted : CapVerdict::leaves_out;
+  }
+
+  void end_pass() { passes_.end_pass(complex_, front_.triangle_count()); }
+
+  /// Fitting ends when the front has no more triangles than this.
+  static constexpr std::uint32_t kFitDownTo = 200;
+  /// The outermost wrapper is planned when the front has no more triangles than this: few enough to be quick,
+  /// and still close to the mesh.
+  static constexpr std::uint32_t kPolytopeFrom = 30000;
+  /// The same while fitting, where the front is close to the mesh for longer.
+  static constexpr std::uint32_t kFittedPolytopeFrom = 2000;
+
+  const BuildOptions& options_;
+  Workers workers_;
+  FrontMesh front_;
+  ComplexBuilder complex_;
+  const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()
+  BodyBounds bounds_;
+  /// (|real faces|) true for faces that are never covered
+  std::vector<bool> frozen_;
+  std::vector<Eigen::AlignedBox3d> component_boxes_;
+  Mesh polytope_;  ///< empty until planned
+  PassCounter passes_;
+};
+
+/// Builds an LRB-rep from a 3D mesh that is MeshReport::buildable() and oriented outward. `meeting`: the
+/// faces that intersect others in more than shared vertices and edges, ascending; only the outermost region
+/// covers these.
+LrbData build_by_collapses(const Mesh& mesh, const std::vector<FaceId>& meeting,
+                           const BuildOptions& options) {
+  return CollapseBuilder(mesh, meeting, options).run();
+}
+
+}  // namespace
+}  // namespace lrb::construct
 
 namespace lrb {
 namespace {

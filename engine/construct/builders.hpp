@@ -1,5 +1,6 @@
 #pragma once
-/// The builder for 2D bodies: build_by_collapses() in one dimension less.
+/// The builder for 2D bodies, that for 3D bodies (build.cpp) in one dimension less; and the schedule of
+/// passes of both.
 ///
 /// A patch is a chain of segments, and its ring is the two ends of the chain. The cap is the chord between
 /// them if the chain is behind it, otherwise two segments whose common vertex is in front of the lines of all
@@ -20,7 +21,7 @@ namespace lrb::construct {
 /// faces that intersect others in more than shared vertices and edges, ascending.
 LrbData build_by_chains(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options);
 
-// The schedule of passes by which builders make tightly fitting fronts.
+// The schedule of passes by which both builders make tightly fitting fronts.
 
 /// Acceptance limits for the caps of a pass.
 struct CapGoal {
@@ -78,24 +79,5 @@ void fit_fronts(double size, std::uint32_t least, double gain, Faces faces, Pass
     }
   }
 }
-
-// The builder for 3D bodies (progressive hulls).
-//
-// The builder works on the current front, at first the mesh itself, and adds one level after the other:
-// 1. One queue of edge collapses simplifies the entire front outward. It is cut into components by a cap on
-//    the number of faces beneath each (front_simplifier.hpp).
-// 2. A component whose lid is simple enough is proven, exactly, to be disjoint from all other faces
-//    (lid_proof.hpp). The new front is then embedded again and encloses the old one, so that all faces of the
-//    complex intersect only in shared vertices and edges.
-// 3. The space between floor and lid becomes a region (front_update.hpp). The lid is part of the front of the
-//    next level.
-//
-// The first levels fit tightly: their deviation from the body is limited. When levels gain too little,
-// concavities are bridged, and finally one wrapper of few faces is put around all of them (closing.hpp).
-
-/// Builds an LRB-rep from a 3D mesh that is MeshReport::buildable() and oriented outward. `meeting`: the
-/// faces that intersect others in more than shared vertices and edges, ascending; only the outermost region
-/// covers these.
-LrbData build_by_collapses(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options);
 
 }  // namespace lrb::construct

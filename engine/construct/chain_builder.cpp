@@ -21,7 +21,6 @@
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/mesh/nesting.hpp"
-#include "engine/mesh/point_inside.hpp"
 #include <lrbscope/contact.hpp>
 
 namespace lrb::construct {

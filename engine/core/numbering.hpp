@@ -1,4 +1,5 @@
 #pragma once
+/// Numbers keys in the order of their first use, with memory that is reused.
 
 #include <array>
 #include <bit>
@@ -6,6 +7,8 @@
 #include <cstdint>
 #include <utility>
 #include <vector>
+
+#include <lrbscope/ids.hpp>
 
 namespace lrb {
 
@@ -80,6 +83,37 @@ class Numbering {
   int shift_ = 0;
   std::uint32_t count_ = 0;
   std::uint32_t epoch_ = 0;
+};
+
+/// Numbers some of the ids 0, 1, ... in the order of their first use; forgetting them takes constant time.
+class SparseNumbers {
+ public:
+  void begin(std::size_t ids) {
+    if (entries_.size() < ids) entries_.resize(ids);
+    count_ = 0;
+    if (++epoch_ != 0) return;
+    for (Entry& entry : entries_) entry.epoch = 0;
+    epoch_ = 1;
+  }
+  /// Returns the number of an id, and true if the id is new.
+  std::pair<std::uint32_t, bool> add(std::uint32_t id) {
+    Entry& entry = entries_[id];
+    if (entry.epoch == epoch_) return {entry.number, false};
+    entry = {epoch_, count_};
+    return {count_++, true};
+  }
+  /// Returns kNull if the id has no number.
+  std::uint32_t operator()(std::uint32_t id) const {
+    return entries_[id].epoch == epoch_ ? entries_[id].number : kNull;
+  }
+  std::uint32_t size() const { return count_; }
+
+ private:
+  struct Entry {
+    std::uint32_t epoch = 0, number = 0;
+  };
+  std::vector<Entry> entries_;
+  std::uint32_t epoch_ = 0, count_ = 0;
 };
 
 }  // namespace lrb

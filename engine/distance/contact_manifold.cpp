@@ -18,7 +18,7 @@
 #include "engine/collide/relation.hpp"
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
-#include "engine/distance/manifold_context.hpp"
+#include "engine/distance/manifold_points.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/core/disjoint_sets.hpp>

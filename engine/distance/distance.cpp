@@ -5,22 +5,29 @@
 /// 4. Complete the answer: closest points and relation of the bodies.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "engine/collide/collide_into.hpp"
+#include "engine/collide/relation.hpp"
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/distance/distance_context.hpp"
-#include "engine/distance/far_pairs.hpp"
+#include "engine/distance/distance_kernel.hpp"
 #include "engine/distance/nearest_pairs.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
 #include <lrbscope/parallel.hpp>
+#include <lrbscope/point_distance.hpp>
 
 namespace lrb {
 
@@ -440,6 +447,96 @@ double WorldWalk::rest() const {
   double least = dropped_;
   if (!waiting_.empty()) least = std::min(least, waiting_.front().bound);
   return least < kInfinity ? scaled_down(least, exponent_) : kInfinity;
+}
+
+// Bounds the approach of two bodies between two poses. Let Q = R_A' R_A^T, the rotation of A's axes from one
+// pose to the next. Let w be the vector from a point x of A to a point y of B in the world, and w' the same
+// vector at the next pose. Then
+//     w' - Q w = (R_B' - Q R_B) y + (t_B' - t_A') - Q (t_B - t_A) + (Q R_A - R_A') x,
+// where the last term is at most |R_A'| |R_A^T R_A - 1| |x|. With D = R_B' - Q R_B, d the sum of the terms in
+// t, c the centre of B and r its radius, the other terms are at most |D c + d| + |D| r; turn_bound() bounds
+// |D|. |Q w| equals |w| up to |Q^T Q - 1| |w|. Computed values are rounded by a few u = 2^-53 times the sizes
+// of world coordinates, and these by 4 u at either pose: 128 u times the sum of all sizes covers both.
+
+double nearer_by(const LrbRep& a, const LrbRep& b, const PosePair& from, const PosePair& to, double reach) {
+  // Q, then Q R_B and D.
+  const Eigen::Matrix3d turn = to.a.r * from.a.r.transpose();
+  const Eigen::Matrix3d was = turn * from.b.r, d = to.b.r - was;
+  const double defect_a = rotation_defect(from.a.r) + rotation_defect(to.a.r);
+  const double defect_b = rotation_defect(was) + rotation_defect(to.b.r);
+  // The bounds hold for rotations, up to kRigid, and only if the orientation of B is kept.
+  if (!(defect_a <= kRigid && defect_b <= kRigid) || !(was.determinant() * to.b.r.determinant() > 0))
+    return kInfinity;
+  const TreeNode& root = b.tree().nodes()[0];
+  const double unit = b.tree().unit();
+  // c, and d: the displacement of B's origin relative to A.
+  const Eigen::Vector3d centre = Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]) * unit;
+  const Eigen::Vector3d shift = (to.b.t - to.a.t) - turn * (from.b.t - from.a.t);
+  const double turned = turn_bound(d, defect_b);
+  // Displacement of the centre, plus the largest displacement by the rotation at distance r.
+  const double moved = (d * centre + shift).norm() + turned * static_cast<double>(root.radius) * unit;
+  // The term in x, with |x| at most sqrt(3) times the largest coordinate.
+  const double of_a = 2 * defect_a * std::sqrt(3.0) * a.tree().extent();
+  // The stretch of |Q w|; `reach` bounds |w|.
+  const double stretched = 2 * (defect_a + kWorldRounding) * reach;
+  // Rounding of world coordinates at both poses.
+  const double sizes = world_size(from.a, a.tree()) + world_size(to.a, a.tree()) +
+                       world_size(from.b, b.tree()) + world_size(to.b, b.tree()) + kWorldUnderflow;
+  const double by = (moved + of_a + stretched) * (1 + kWorldRounding) + 4 * kWorldRounding * sizes;
+  // Overflow: no bound is known.
+  return std::isfinite(by) ? by : kInfinity;
+}
+
+// Signed distances of points; point_distance.hpp names the method.
+
+namespace {
+
+/// Returns a body of one simplex whose corners are all in the origin. A translation moves it to any point
+/// without rounding.
+LrbRep body_of_one_point(int dim) {
+  Mesh mesh;
+  mesh.dim = dim;
+  mesh.vertices.assign(static_cast<std::size_t>(dim), Eigen::Vector3d::Zero());
+  const std::array<VertexId, 3> corners{VertexId(0), VertexId(1), VertexId(2)};
+  mesh.add_face(std::span(corners).first(static_cast<std::size_t>(dim)));
+  return LrbRep::without_regions(mesh, false, false);
+}
+
+}  // namespace
+
+std::vector<PointDistance> point_distances(const LrbRep& body, const Pose& pose,
+                                           std::span<const Eigen::Vector3d> points,
+                                           const PointDistanceRequest& request, unsigned threads) {
+  DistanceRequest ask;
+  ask.tolerance = request.tolerance;
+  ask.relative_tolerance = request.relative_tolerance;
+  ask.relation = false;
+  check_request(ask);
+  // All points are checked first, so that the message names the first wrong one on any number of threads.
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!points[i].head(body.dim()).allFinite())
+      throw InputError("point " + std::to_string(i) +
+                       ": expected finite coordinates, found a NaN or an infinity");
+  const LrbRep point = body_of_one_point(body.dim());
+  Workers workers(threads);
+  std::vector<DistanceContext> contexts(workers.count());
+  std::vector<PointDistance> results(points.size());
+  workers.for_each(points.size(), [&](std::size_t i, unsigned worker) {
+    DistanceContext& context = contexts[worker];
+    Eigen::Vector3d p = points[i];
+    if (body.dim() == 2) p.z() = 0;
+    const DistanceResult at = distance(body, pose, point, Pose::translation(p), ask, context);
+    PointDistance& result = results[i];
+    result.lower = at.lower;
+    result.upper = at.upper;
+    result.closest = at.witness[0];
+    if (at.meet)
+      result.side = Where::on_surface;
+    else if (request.side && body.closed() && !body.tree().empty())
+      // The query has left the body at its pose in the context.
+      result.side = locate(context.query.body[0], p.data());
+  });
+  return results;
 }
 
 }  // namespace lrb

@@ -1,17 +1,23 @@
 #pragma once
-/// Reports bounds to a probe when they change.
+/// One distance query, with buffers that later queries reuse. Internal: users of the installed engine include
+/// distance.hpp.
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "engine/distance/distance_kernel.hpp"
-#include "engine/distance/far_pairs.hpp"
 #include "engine/distance/nearest_pairs.hpp"
 #include <lrbscope/distance.hpp>
+#include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/pose.hpp>
 
 namespace lrb {
 
+/// Reports bounds to a probe when they change.
 class BoundsProbeAdapter {
  public:
   explicit BoundsProbeAdapter(BoundsProbe& probe) : probe_(probe) {}
@@ -42,8 +48,31 @@ class BoundsProbeAdapter {
   Bounds known_{0, 0, std::numeric_limits<double>::infinity()};
 };
 
-// One distance query, with buffers that later queries reuse. Internal: users of the installed engine include
-// distance.hpp.
+/// Planes that separate pairs of nodes, kept from step to step of a motion.
+class FarPairs {
+ public:
+  /// Passes the cache to the kernel for one step. k.tree: of the same trees at each step. node_pairs: the
+  /// number of pairs of nodes of both trees.
+  void lend(DistanceKernel& k, std::size_t node_pairs);
+
+ private:
+  std::vector<FarNodes> nodes_;
+  double m_[3][4] = {};  ///< TreeKernel::m of the last step; 0 before the first, a large change
+  double turned_ = 0;    ///< sum of the norms of its changes since planes were last cleared
+};
+
+// Bounds the approach of two bodies from one step of a motion to the next.
+
+/// The poses of two bodies.
+struct PosePair {
+  Pose a, b;
+};
+
+/// Returns an upper bound on the decrease of the distance between any point of A and any point of B from
+/// `from` to `to`, for points at most `reach` apart at `from`, or infinity if a pose is not a rotation or B
+/// becomes mirrored. The bound also holds for all poses in between if the motion of B relative to A is
+/// interpolated at constant velocity.
+double nearer_by(const LrbRep& a, const LrbRep& b, const PosePair& from, const PosePair& to, double reach);
 
 /// Buffers of a query; one for each thread.
 struct DistanceContext {

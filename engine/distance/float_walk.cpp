@@ -3,8 +3,12 @@
 /// 2. Run the kernel. When it stops, grow its buffers, decide contact by the exact query, or report; then
 ///    resume.
 /// 3. Measure the remaining pairs, closest first.
+///
+/// The cache of separating planes along a motion: passed to the kernel at each step, and cleared when the
+/// relative rotation accumulated since the planes were stored, which weakens them, becomes too large.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +17,46 @@
 #include "engine/distance/distance_kernel.hpp"
 
 namespace lrb {
+
+namespace {
+
+/// Maximum number of cache slots. Smaller: pairs evict each other and are expanded again; larger: the cache
+/// exceeds a processor's L2 cache.
+constexpr std::size_t kMaxSlots = 4096;
+/// Accumulated rotation of B at which all planes are cleared. Larger: the float sum has larger errors, and
+/// planes separate less.
+constexpr double kMaxTurned = 0.5;
+constexpr FarNodes kNone = {~0U, ~0U, {0, 0, 0}, 0, 0};
+
+/// Returns the Frobenius norm of the change of a map, rounded up.
+double change(const double (&from)[3][4], const double (&to)[3][4]) {
+  double square = 0;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) square += std::pow(to[column][row] - from[column][row], 2);
+  constexpr double kUp = 1 + 0x1p-40;
+  return std::sqrt(square) * kUp;
+}
+
+}  // namespace
+
+void FarPairs::lend(DistanceKernel& k, std::size_t node_pairs) {
+  // A power of two, because the slot is the masked hash.
+  nodes_.resize(std::bit_ceil(std::clamp<std::size_t>(node_pairs, 1, kMaxSlots)), kNone);
+  // The length of the path of the relative rotation bounds its change since any earlier step.
+  turned_ += change(m_, k.tree.m);
+  // Too much rotation, or NaN. The first step, which starts from a zero map, is such a case.
+  if (!(turned_ <= kMaxTurned)) {
+    std::fill(nodes_.begin(), nodes_.end(), kNone);
+    turned_ = 0;
+  }
+  for (int column = 0; column < 3; ++column) std::copy_n(k.tree.m[column], 4, m_[column]);
+  k.far = nodes_.data();
+  k.far_slots = static_cast<std::uint32_t>(nodes_.size());
+  // One rounded up, the other down: their difference is never less than the true one.
+  k.turned = rounded_up(turned_);
+  k.min_turned = rounded_down(turned_);
+}
+
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();

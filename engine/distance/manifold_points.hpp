@@ -1,5 +1,7 @@
 #pragma once
-/// The points of a contact manifold: corners of the overlay of two patches, reduced to at most 4.
+/// Contact manifolds: their points, corners of the overlay of two patches, reduced to at most 4; and the
+/// query with buffers that later queries reuse. Internal: users of the installed engine include
+/// contact_manifold.hpp.
 
 #include <cstdint>
 #include <functional>
@@ -8,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "engine/distance/near_pairs_context.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/lrb_rep.hpp>
 
@@ -65,5 +68,17 @@ std::vector<ManifoldCandidate> overlay_corners(std::span<const PatchSimplex> of_
 std::vector<ManifoldCandidate> reduce_candidates(
     std::vector<ManifoldCandidate> candidates, int dim, const Eigen::Vector3d& normal, double size,
     const std::function<bool(const ManifoldCandidate&)>& is_valid);
+
+struct ManifoldContext {
+  NearPairsResult near;
+  VertexStars stars[2];  ///< of A and of B
+};
+
+/// Finds the manifolds as contact_manifolds() does. `query`, `near`, `context`: buffers. `result`:
+/// overwritten; must not be `previous`.
+void contact_manifolds_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                            const ManifoldRequest& request, const ManifoldResult* previous, Workers& workers,
+                            QueryContext& query, NearPairsContext& near, ManifoldContext& context,
+                            ManifoldResult& result);
 
 }  // namespace lrb

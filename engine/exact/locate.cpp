@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "engine/core/geometry.hpp"
+#include "engine/exact/plane_side.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/rational.hpp"
-#include "engine/exact/simplex_parts.hpp"
 
 namespace lrb::exact {
 

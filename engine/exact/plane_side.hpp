@@ -1,11 +1,15 @@
 #pragma once
-/// Sides of several points relative to one plane: the plane's part of orient3d and of its error bound is
-/// computed once.
+/// Parts of the exact tests of simplices: sides of several points relative to one plane, where the plane's
+/// part of orient3d and of its error bound is computed once; convex hulls and projections of degenerate
+/// triangles.
 
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Core>
+
 #include "engine/exact/predicates.hpp"
+#include <lrbscope/contact.hpp>
 
 namespace lrb::exact {
 
@@ -151,5 +155,33 @@ struct CrossingPlanes {
     return {sign * plane.side(b[on_b.low]), sign * plane.side(b[on_b.high])};
   }
 };
+
+/// Returns the intersection of the segment p, q with the plane of triangle t. p must not be in the plane, nor
+/// q on p's side of it. hp, hq: PlaneSide::determinant() of that plane at p and q. Each coordinate is within
+/// 1e-13 |q - p| plus one rounding of the exact point.
+Eigen::Vector3d cut_by_plane(const double* p, const Approximate& hp, const double* q, const Approximate& hq,
+                             const double* const t[3]);
+
+// Coplanar triangles, and triangles with collinear corners: parts of the exact tests.
+
+/// The convex hull of a triangle's corners, exactly: the triangle, a segment or a point.
+struct Hull {
+  const double* corner[3];  ///< the first dim + 1; of a segment, the lexicographic extremes of the three
+  int dim;
+};
+
+Hull hull_of(const double* const t[3]);
+
+/// A pair of coordinates such that the projections of three points are collinear only if the points are.
+struct Axes {
+  int x, y;
+  int turn;  ///< orientation of the projected points, -1 or +1; 0: collinear
+};
+
+/// Returns axes for three points; turn = 0 if they are collinear.
+Axes axes_for(const double* a, const double* b, const double* c);
+
+/// Returns true if two hulls intersect. They may have any dimensions, but two triangles must be coplanar.
+bool hulls_meet(const Hull& a, const Hull& b);
 
 }  // namespace lrb::exact

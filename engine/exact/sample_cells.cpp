@@ -13,7 +13,6 @@
 #include "engine/exact/plane_side.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/exact/rational.hpp"
-#include "engine/exact/simplex_parts.hpp"
 
 namespace lrb::exact {
 /// A named namespace, because CutFace::Parts has members of these types.

@@ -10,7 +10,6 @@
 
 #include "engine/exact/plane_side.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/simplex_parts.hpp"
 #include <lrbscope/contact.hpp>
 
 namespace lrb::exact {

@@ -1,6 +1,8 @@
 #pragma once
+/// Neighbourhoods in the faces of an LRB-rep: closed sets of faces, components, neighbours.
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -36,8 +38,6 @@ class BoundarySum {
   std::vector<std::uint32_t> touched_;
 };
 
-class LrbRep;
-
 /// Returns one vertex of each connected component of the given faces, in the order of the faces. Faces that
 /// share a vertex belong to one component.
 std::vector<VertexId> piece_vertices(const LrbRep& rep, std::span<const FaceId> faces);
@@ -49,5 +49,22 @@ using Across = std::array<SimplexId, 3>;
 /// Returns the neighbours of each real simplex. At an edge with more than two simplices, each has one of the
 /// others as its neighbour.
 std::vector<Across> real_neighbours(const LrbRep& rep);
+
+/// The real vertices connected to each vertex by an edge of a real face, and the vertices that coincide.
+class SurfaceGraph {
+ public:
+  explicit SurfaceGraph(const LrbRep& rep);
+  /// Returns them ascending.
+  std::span<const VertexId> neighbours(VertexId v) const {
+    return {neighbours_.data() + offsets_[v], offsets_[v + 1] - offsets_[v]};
+  }
+  /// Returns the first vertex with the same coordinates: vertices along a texture seam are one place.
+  VertexId place(VertexId v) const { return places_.empty() ? v : places_[v]; }
+
+ private:
+  std::vector<std::uint32_t> offsets_;  ///< (|V| + 1)
+  std::vector<VertexId> neighbours_;
+  std::vector<VertexId> places_;  ///< (|V|); empty if no two vertices coincide
+};
 
 }  // namespace lrb

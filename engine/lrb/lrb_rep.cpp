@@ -9,7 +9,6 @@
 
 #include "engine/core/geometry.hpp"
 #include "engine/lrb/complex.hpp"
-#include "engine/lrb/surface_graph.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>

@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/mesh/vertex_buckets.hpp"
-#include "engine/mesh/vertex_merger.hpp"
+#include "engine/mesh/vertex_groups.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
 #include <lrbscope/mesh_repair.hpp>
 

@@ -1,13 +1,72 @@
 #pragma once
+/// Points and components inside closed surfaces.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
 
 namespace lrb {
+
+enum class PointSide { outside, inside, on_surface };
+
+/// Locates a point relative to a closed set of faces (fans of triangles; 2D: segments), by the parity of an
+/// exact ray.
+PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eigen::Vector3d& p);
+
+/// Locates points relative to many closed surfaces, in one traversal of an AABB tree along a ray.
+class SideFinder {
+ public:
+  /// `surface_of_face` (|F|): the surface of each face; kNull: none.
+  SideFinder(const Mesh& mesh, std::vector<std::uint32_t> surface_of_face);
+
+  struct Side {
+    std::uint32_t surface;
+    PointSide side;
+  };
+  /// Returns the surfaces that the point is in or on, ascending. It is outside all others.
+  std::vector<Side> sides(const Eigen::Vector3d& p) const;
+
+  /// Returns the surfaces that enclose the surface `inner`, ascending, given points of it. For each surface
+  /// the first point that is not on it decides; a surface that contains all of the points on it does not
+  /// enclose `inner`. next_point(i): the i-th point, or nullptr after the last.
+  template <class NextPoint>
+  std::vector<std::uint32_t> around(std::uint32_t inner, NextPoint next_point) const {
+    std::vector<std::uint32_t> holders, open;
+    for (std::size_t i = 0; const Eigen::Vector3d* p = next_point(i); ++i) {
+      std::vector<std::uint32_t> still_open;
+      for (const Side& s : sides(*p)) {
+        if (s.surface == inner || (i > 0 && !std::binary_search(open.begin(), open.end(), s.surface)))
+          continue;
+        (s.side == PointSide::inside ? holders : still_open).push_back(s.surface);
+      }
+      open = std::move(still_open);
+      if (open.empty()) break;
+    }
+    std::sort(holders.begin(), holders.end());
+    return holders;
+  }
+
+ private:
+  struct Node {
+    Eigen::AlignedBox3d box;
+    std::uint32_t first, last;  ///< into order_
+    std::uint32_t right;        ///< right child; the left one follows its parent. 0: leaf
+  };
+
+  std::uint32_t build(std::uint32_t first, std::uint32_t last);
+
+  const Mesh& mesh_;
+  std::vector<std::uint32_t> surface_of_face_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< (|F|)
+  std::vector<FaceId> order_;               ///< in the order of the tree's leaves
+  std::vector<Node> nodes_;
+};
 
 /// Returns the wrongly oriented closed components, as lists of their faces, in the order of the first face. A
 /// component inside an even number of others bounds a solid and must face outward; one inside an odd number

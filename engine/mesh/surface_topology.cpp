@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <span>
 
-#include "engine/mesh/vertex_buckets.hpp"
+#include "engine/mesh/vertex_groups.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
 #include <lrbscope/mesh_check.hpp>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/distance/distance_context.hpp"
-#include "engine/motion/pair_motion.hpp"
+#include "engine/motion/motion_bounds.hpp"
 #include <lrbscope/first_contact.hpp>
 
 namespace lrb {

@@ -5,8 +5,6 @@
 ///   first root is the time for which the slab separates the simplices.
 /// - has_passed(): a continuity argument on the Minkowski difference, explained there.
 
-#include "engine/motion/pair_motion.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +14,7 @@
 #include "engine/collide/tree_query.hpp"
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/motion/motion_bounds.hpp"
 #include "engine/tree/kernel_setup.hpp"
 
 namespace lrb {
@@ -138,7 +137,7 @@ double PairMotion::separated_for(const Vector3d& n) const {
   double least = kInfinity;
   for (int i = 0; i < n_; ++i)
     for (int j = 0; j < n_; ++j) {
-      // c + v d - k d^2 / 2 of pair_motion.hpp, rounded to the safe side.
+      // c + v d - k d^2 / 2 of motion_bounds.hpp, rounded to the safe side.
       const double c = sign * (ahead[1][j] - ahead[0][i]) - rounding;
       if (!(c > 0)) return 0;
       const double v = sign * (speed[1][j] - speed[0][i]) - speed_rounding;

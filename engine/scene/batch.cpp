@@ -5,8 +5,8 @@
 
 #include "engine/clash/clash_parts.hpp"
 #include "engine/collide/collide_into.hpp"
-#include "engine/collide/contact_regions.hpp"
-#include "engine/distance/manifold_context.hpp"
+#include "engine/collide/relation.hpp"
+#include "engine/distance/manifold_points.hpp"
 #include "engine/distance/near_pairs_context.hpp"
 #include "engine/motion/contact_search.hpp"
 #include <lrbscope/error.hpp>

@@ -5,8 +5,6 @@
 // 3. The best ranked cuts are evaluated with the tight boxes of the halves, and the cheapest one is chosen.
 // 4. The orders along the coordinate axes are partitioned stably, so that no half is sorted again.
 
-#include "engine/tree/fitted_cut.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -16,6 +14,7 @@
 
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/tree/binary_tree.hpp"
 #include "engine/tree/kernel_setup.hpp"
 
 namespace lrb {

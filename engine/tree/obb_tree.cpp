@@ -14,7 +14,6 @@
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/binary_tree.hpp"
-#include "engine/tree/fitted_cut.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/obb_tree.hpp>

@@ -2,7 +2,7 @@
 // the tree kernel, because the speed of that kernel depends on inlining into its one loop.
 
 #include "engine/tree/kernel_triangles.inl"
-#include "engine/tree/pair_kernel.hpp"
+#include "engine/tree/tree_kernel.hpp"
 
 namespace lrb {
 namespace {

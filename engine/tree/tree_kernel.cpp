@@ -2,7 +2,6 @@
 
 #include "engine/tree/box_kernel.hpp"
 #include "engine/tree/kernel_setup.hpp"
-#include "engine/tree/pair_kernel.hpp"
 
 namespace lrb {
 

@@ -1,11 +1,10 @@
 // Proofs that two bodies still overlap after a translation.
-#include "engine/clash/overlap_proof.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "engine/clash/clash_parts.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "engine/collide/relation.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"

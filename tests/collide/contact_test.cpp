@@ -9,7 +9,7 @@
 
 #include "engine/collide/interiors.hpp"
 #include "engine/collide/relation.hpp"
-#include "engine/lrb/surface_graph.hpp"
+#include "engine/lrb/complex.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/closed_body.hpp"
 #include "tests/support/hard_bodies.hpp"

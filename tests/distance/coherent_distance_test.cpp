@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/distance/far_pairs.hpp"
+#include "engine/distance/distance_context.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/closed_body.hpp"
 #include <lrbscope/collide.hpp>

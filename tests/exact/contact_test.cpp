@@ -10,8 +10,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <doctest/doctest.h>
 
+#include "engine/exact/plane_side.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/exact/simplex_parts.hpp"
 #include "tests/support/contact_oracle.hpp"
 #include "tests/support/random_simplices.hpp"
 #include <lrbscope/contact.hpp>

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/mesh/point_inside.hpp"
+#include "engine/mesh/nesting.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/error.hpp>

@@ -5,7 +5,6 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/mesh/point_inside.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/mesh_check.hpp>
 

@@ -1,5 +1,4 @@
 // Where a tree cuts its simplices in two: against all cuts, one by one.
-#include "engine/tree/fitted_cut.hpp"
 
 #include <algorithm>
 #include <cmath>

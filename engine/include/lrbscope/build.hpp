@@ -173,7 +173,7 @@ struct BuildOptions {
 };
 
 /// Builds an LRB-rep by outward edge collapses (progressive hulls: Sander et al., "Silhouette Clipping",
-/// 2000; collapse_builder.cpp; 2D: chain_builder.cpp). The mesh must be closed, manifold and oriented with
+/// 2000; construct/build.cpp; 2D: chain_builder.cpp). The mesh must be closed, manifold and oriented with
 /// the solid behind its faces (MeshReport::buildable()). Use CheckedMesh::turn_outward() first for an
 /// inward-oriented body. Throws InputError naming the affected elements otherwise. The result depends on the
 /// seed, not on the number of threads.

@@ -13,8 +13,8 @@
 ///    without such pairs are skipped.
 /// 2. Each pair advances by conservative steps (conservative advancement: Mirtich, "Impulse-based Dynamic
 ///    Simulation", 1996): as long as a separating slab is proven to separate the two, given a bound on their
-///    motion along its normal (Tang, Kim and Manocha, "C2A", 2009; pair_motion.hpp). Steps towards a contact
-///    shrink as in Newton's method.
+///    motion along its normal (Tang, Kim and Manocha, "C2A", 2009; motion_bounds.hpp). Steps towards a
+///    contact shrink as in Newton's method.
 /// 3. t0 is the minimum of the times that pairs reach. The exact query decides there.
 ///
 /// Every search terminates. Its steps count: a time interval, a pair found in it, an advancement of a pair,

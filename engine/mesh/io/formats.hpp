@@ -1,24 +1,13 @@
 #pragma once
-/// Detection of a file's format by content; the extension decides only if the content is ambiguous.
+/// The readers of mesh files, and what they share.
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include <lrbscope/mesh.hpp>
 
 namespace lrb {
-
-enum class MeshFormat : std::uint8_t { obj, stl_ascii, stl_binary, ply, off };
-
-/// Returns the format. Throws InputError with a description of the content if it is none of the formats.
-MeshFormat tell_format(std::string_view bytes, std::string_view name);
-
-/// Returns the extension in lower case, without the dot, or an empty string if there is none.
-std::string extension_of(std::string_view path);
-/// Returns true for the usual extension of one of the formats.
-bool has_mesh_extension(std::string_view path);
 
 /// The keyword at the start of an OFF file: [ST][C][N][4][n]OFF.
 struct OffHeader {
@@ -39,7 +28,7 @@ inline std::optional<OffHeader> parse_off_header(std::string_view word) {
   return word == "OFF" ? std::optional(header) : std::nullopt;
 }
 
-// The readers, one for each format. They take the content of the file and its name for messages. They throw
+// One reader for each format. They take the content of the file and its name for messages. They throw
 // InputError with name and line (binary files: byte and element), the expected and the found content, and a
 // remedy.
 //
@@ -52,6 +41,9 @@ Mesh read_stl_ascii(std::string_view bytes, std::string_view name);
 Mesh read_stl_binary(std::string_view bytes, std::string_view name);
 Mesh read_ply(std::string_view bytes, std::string_view name);
 Mesh read_off(std::string_view bytes, std::string_view name);
+
+/// Returns true for the usual extension of one of the formats, in any case.
+bool has_mesh_extension(std::string_view path);
 
 /// Returns true if the size fits a binary STL file: 84 bytes, plus 50 for each triangle in its header.
 bool has_size_of_binary_stl(std::string_view bytes);

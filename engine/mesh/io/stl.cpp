@@ -6,7 +6,7 @@
 
 #include "engine/mesh/io/formats.hpp"
 #include "engine/mesh/io/scan.hpp"
-#include "engine/mesh/vertex_merger.hpp"
+#include "engine/mesh/vertex_groups.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
