@@ -1,6 +1,6 @@
 #pragma once
-/// What a query finds out about two bodies once their intersecting pairs are known: their relation, a
-/// certificate of separation, and a description of the contact.
+/// Results of a query beyond the intersecting pairs: the relation of the bodies, a certificate of separation,
+/// and a description of the contact.
 
 #include <optional>
 

@@ -112,7 +112,7 @@ class SurfaceWalk {
   std::vector<Node> nodes_;
   std::vector<Slot> slots_;  ///< leaf by leaf
   Eigen::Vector3d centre_;
-  double unit_, scale_;  ///< scale_ = 1 / unit_
+  double scale_;  ///< 1 / unit
 };
 
 // The simplifier.

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "engine/collide/query_context.hpp"
 #include "engine/distance/near_pairs_context.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/lrb_rep.hpp>

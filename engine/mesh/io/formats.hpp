@@ -1,5 +1,5 @@
 #pragma once
-/// The readers of mesh files, and what they share.
+/// The readers of mesh files, and their common checks.
 
 #include <cstdint>
 #include <optional>
