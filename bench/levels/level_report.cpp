@@ -17,7 +17,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/workers/child.hpp"
 #include "bench/workers/workers.hpp"
 #include "engine/lrb/thickness.hpp"
 #include "render/pictures/panel.hpp"
