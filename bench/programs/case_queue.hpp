@@ -14,8 +14,8 @@
 #include <unistd.h>
 
 #include "bench/methods/method.hpp"
-#include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_experiment.hpp"
 
 namespace lrb::worker_programs {
 

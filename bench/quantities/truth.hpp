@@ -7,7 +7,7 @@
 
 #include "bench/cases/families.hpp"
 #include "bench/methods/method.hpp"
-#include "bench/stability/judge.hpp"
+#include "bench/stability/stability_experiment.hpp"
 #include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::stability {
