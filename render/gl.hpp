@@ -1,5 +1,5 @@
 #pragma once
-/// The functions of OpenGL 3.3 core used by render, loaded at run time (gl_backend.hpp).
+/// The functions of OpenGL 3.3 core used by render, loaded at run time.
 
 #include <cstddef>
 #include <memory>
@@ -141,7 +141,7 @@ GlProgram make_program(const Gl& gl, const std::string& name, const std::string&
 
 // An OpenGL 3.3 core context without a window.
 
-class GlContext;  // gl_backend.hpp
+class GlContext;
 
 class Offscreen {
  public:

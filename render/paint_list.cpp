@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Style of hidden lines and points on top in Rasterizer::draw() (shaders.hpp): share of the width; length of
-/// dashes in half widths; radius of rings to their centre line, and their width, as shares of the radius.
+/// Style of hidden lines and points on top in Rasterizer::draw() (rasterize.cpp): share of the width; length
+/// of dashes in half widths; radius of rings to their centre line, and their width, as shares of the radius.
 constexpr double kGhostWidth = 0.6, kGhostDash = 5, kRingRadius = 0.8, kRingWidth = 0.4;
 /// Visible or hidden runs shorter than this many pixels of the depth image are merged with their neighbours.
 constexpr double kMinRun = 1.5;

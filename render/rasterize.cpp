@@ -11,7 +11,6 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "render/gl.hpp"
-#include "render/shaders.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
 #include <lrbscope/render/overlay.hpp>
@@ -19,6 +18,116 @@
 
 namespace lrb::render {
 namespace {
+
+// The shaders. Positions are final device coordinates; colours are straight on input and premultiplied on
+// output. Coverage is rounded to sixteenths, so that last-bit differences between processors rarely change a
+// pixel.
+
+namespace shaders {
+
+constexpr const char* kFaceVertex = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 edge_distance;
+layout(location = 2) in vec4 face_colour;
+layout(location = 3) in vec4 edge_colour;
+layout(location = 4) in float half_width;
+layout(location = 5) in uint id;
+out vec3 v_edge;
+flat out vec4 v_face_colour;
+flat out vec4 v_edge_colour;
+flat out float v_half_width;
+flat out uint v_id;
+void main() {
+  gl_Position = vec4(position, 1.0);
+  v_edge = edge_distance;
+  v_face_colour = face_colour;
+  v_edge_colour = edge_colour;
+  v_half_width = half_width;
+  v_id = id;
+}
+)";
+
+constexpr const char* kFaceCommon = R"(#version 330 core
+in vec3 v_edge;
+flat in vec4 v_face_colour;
+flat in vec4 v_edge_colour;
+flat in float v_half_width;
+out vec4 colour;
+vec4 face_with_edges() {
+  float distance = min(v_edge.x, min(v_edge.y, v_edge.z));
+  float covered = floor(clamp(v_half_width - distance + 0.5, 0.0, 1.0) * 16.0 + 0.5) * 0.0625;
+  vec4 face = vec4(v_face_colour.rgb * v_face_colour.a, v_face_colour.a);
+  vec4 edge = vec4(v_edge_colour.rgb * v_edge_colour.a, v_edge_colour.a);
+  return edge * covered + face * (1.0 - edge.a * covered);
+}
+)";
+
+constexpr const char* kFaceFragment = R"(
+void main() { colour = face_with_edges(); }
+)";
+
+/// Draws faces on top; the ghosted part is fainter (`strength` in 1/256).
+constexpr const char* kGhostFragment = R"(
+uniform int strength;
+void main() { colour = face_with_edges() * (float(strength) * 0.00390625); }
+)";
+
+constexpr const char* kIdFragment = R"(#version 330 core
+flat in uint v_id;
+out uint id;
+void main() { id = v_id; }
+)";
+
+constexpr const char* kLineVertex = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec2 along_across;
+layout(location = 2) in vec4 shape;  // length, half width, dash, dash start
+layout(location = 3) in vec4 line_colour;
+out vec2 v_at;
+flat out vec4 v_shape;
+flat out vec4 v_colour;
+void main() {
+  gl_Position = vec4(position, 1.0);
+  v_at = along_across;
+  v_shape = shape;
+  v_colour = line_colour;
+}
+)";
+
+constexpr const char* kLineFragment = R"(#version 330 core
+in vec2 v_at;
+flat in vec4 v_shape;
+flat in vec4 v_colour;
+uniform int ghost;  // the hidden part of overlays: lines thinner and dashed, points as rings
+out vec4 colour;
+void main() {
+  float length_ = v_shape.x;
+  float half_width = v_shape.y;
+  float dash = v_shape.z;
+  vec2 beyond = vec2(max(max(-v_at.x, v_at.x - length_), 0.0), v_at.y);
+  float distance = sqrt(dot(beyond, beyond));
+  if (ghost != 0) {
+    if (length_ == 0.0) {
+      distance = abs(distance - half_width * 0.8);
+      half_width *= 0.2;
+    } else {
+      if (dash == 0.0) dash = 5.0 * half_width;
+      half_width *= 0.6;
+    }
+  }
+  float covered = clamp(half_width - distance + 0.5, 0.0, 1.0);
+  if (dash > 0.0 && length_ > 0.0) {
+    float at = v_shape.w + clamp(v_at.x, 0.0, length_);
+    float phase = at - floor(at / (2.0 * dash)) * 2.0 * dash;  // 0 .. dash: drawn
+    covered *= clamp(min(phase, dash - phase) + 0.5, 0.0, 1.0);
+  }
+  covered = floor(covered * 16.0 + 0.5) * 0.0625;
+  if (covered <= 0.0) discard;
+  colour = vec4(v_colour.rgb, 1.0) * (v_colour.a * covered);
+}
+)";
+
+}  // namespace shaders
 
 constexpr int kGhostStrength = 96;  ///< of hidden faces on top, in 1/256
 constexpr int kFullStrength = 256;
@@ -81,7 +190,7 @@ struct Rasterizer::State {
     ghost = make_program(gl, "ghost", shaders::kFaceVertex, common + shaders::kGhostFragment);
     id = make_program(gl, "id", shaders::kFaceVertex, shaders::kIdFragment);
     line = make_program(gl, "line", shaders::kLineVertex, shaders::kLineFragment);
-    // The layouts must match the attribute locations in shaders.hpp.
+    // The layouts must match the attribute locations of the shaders.
     faces = make_mesh();
     using F = FaceVertex;
     const GLsizei f = sizeof(F);
@@ -239,7 +348,7 @@ struct Rasterizer::State {
     gl.Disable(GL_BLEND);
   }
 
-  /// The faces come in painting order (depth_order.hpp), so that one pass blends all layers.
+  /// The faces come in painting order (back_to_front()), so that one pass blends all layers.
   void draw_translucent(const ScreenMesh& mesh) {
     const auto layer = static_cast<std::size_t>(Layer::translucent);
     if (mesh.face_layers[layer].count > 0) {

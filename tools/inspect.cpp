@@ -13,7 +13,6 @@
 
 #include "render/pictures/answer_picture.hpp"
 #include "render/pictures/body_picture.hpp"
-#include "render/pictures/findings_picture.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"

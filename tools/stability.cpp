@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "bench/stability/case_meshes.hpp"
-#include "bench/stability/counterexample.hpp"
 #include "bench/stability/minimise.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/saved_case.hpp"

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "bench/speed/peer_table.hpp"
-#include "bench/tails/wrong_poses.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/report/document.hpp"
 #include "tools/commands.hpp"

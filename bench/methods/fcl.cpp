@@ -17,10 +17,6 @@ constexpr int kRank = 30;
 
 #ifdef LRB_HAS_FCL
 
-#ifdef LRB_FCL_HEADERS
-#include "bench/methods/fcl_instantiated.hpp"
-#endif
-
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>

@@ -14,6 +14,7 @@
 
 #include <lrbscope/collide.hpp>
 #include <lrbscope/enum_names.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::methods {
 
@@ -190,7 +191,11 @@ inline MethodEntry absent(const char* name, const char* title, const char* packa
 std::vector<MethodEntry> registered_methods();
 
 /// Returns the method of that name. Throws InputError if it is unknown or absent.
-const MethodEntry& find_method(const std::vector<MethodEntry>& methods, const std::string& name);
+inline const MethodEntry& find_method(const std::vector<MethodEntry>& methods, const std::string& name) {
+  for (const MethodEntry& e : methods)
+    if (e.info.name == name && e.info.present) return e;
+  throw InputError("unknown method '" + name + "', or not installed here");
+}
 
 // The quantity that methods are compared on: intersecting pairs, or a number.
 

@@ -87,7 +87,7 @@ lrb_add_peer(ode HAS LRB_HAS_ODE LIBRARIES ${ode_library})
 
 # lrbscope's own methods.
 set_property(GLOBAL PROPERTY lrb_own_methods ours plain_double spheres)
-add_library(lrb_own_methods STATIC methods/ours.cpp methods/approximations.cpp)
+add_library(lrb_own_methods STATIC methods/ours.cpp)
 target_link_libraries(lrb_own_methods PUBLIC lrb::methods)
 
 # lrb_register_methods(TARGET [PEER...]): links a program with the methods of the given engines and, unless it
@@ -105,16 +105,13 @@ function(lrb_register_methods target)
   lrb_registry(${target} lrb::methods bench/methods/method.hpp MethodEntry methods ${names})
 endfunction()
 
-add_library(lrb_case_queue STATIC programs/case_queue.cpp)
-target_link_libraries(lrb_case_queue PUBLIC lrb::stability CLI11::CLI11 lrb_options)
-
 get_property(LRB_WORKER_PROGRAMS GLOBAL PROPERTY lrb_worker_programs)
 list(APPEND LRB_WORKER_PROGRAMS lrbscope-methods)
 list(REMOVE_DUPLICATES LRB_WORKER_PROGRAMS)
 foreach(program IN LISTS LRB_WORKER_PROGRAMS)
   get_property(names GLOBAL PROPERTY lrb_peers_of_${program})
   add_executable(${program} programs/methods.cpp)
-  target_link_libraries(${program} PRIVATE lrb_case_queue lrb::speed lrb::tails)
+  target_link_libraries(${program} PRIVATE lrb::stability lrb::speed lrb::tails CLI11::CLI11)
   lrb_register_methods(${program} ${names})
 endforeach()
 

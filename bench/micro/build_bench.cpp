@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/micro/poses.hpp"
+#include "bench/micro/subjects.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/lrb_rep.hpp>

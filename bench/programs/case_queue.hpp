@@ -14,8 +14,9 @@
 #include <unistd.h>
 
 #include "bench/methods/method.hpp"
-#include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_experiment.hpp"
+#include <lrbscope/error.hpp>
 
 namespace lrb::worker_programs {
 
@@ -45,21 +46,56 @@ struct CaseQueue {
   std::uint64_t seed = 1, cases = 1, begin = 0, end = 0;
 };
 
-void add_options(CLI::App& app, CaseQueue& queue);
+inline void add_options(CLI::App& app, CaseQueue& queue) {
+  app.add_flag("--list", queue.list);
+  app.add_option("--family", queue.family);
+  app.add_option("--method", queue.method);
+  app.add_option("--seed", queue.seed);
+  app.add_option("--cases", queue.cases)->check(CLI::PositiveNumber);
+  app.add_option("--begin", queue.begin);
+  app.add_option("--end", queue.end);
+  app.add_option("--expected", queue.expected);
+}
 
 /// Throws InputError if the family is unknown.
-const cases::Family& family_of(const CaseQueue& queue);
-cases::Case make(const cases::Family& family, const CaseQueue& queue, std::uint64_t number);
+inline const cases::Family& family_of(const CaseQueue& queue) {
+  const cases::Family* family = cases::find_family(queue.family);
+  if (family == nullptr) throw InputError("unknown family '" + queue.family + "'");
+  return *family;
+}
+
+inline cases::Case make(const cases::Family& family, const CaseQueue& queue, std::uint64_t number) {
+  return cases::make_case(family, queue.seed, static_cast<int>(number / queue.cases), number % queue.cases);
+}
+
 /// Returns the record of a case, before it is answered.
-stability::Record record_of(const CaseQueue& queue, std::uint64_t number);
+inline stability::Record record_of(const CaseQueue& queue, std::uint64_t number) {
+  stability::Record record;
+  record.family = queue.family;
+  record.method = queue.method;
+  record.difficulty = static_cast<int>(number / queue.cases);
+  record.case_index = number % queue.cases;
+  record.seed = queue.seed;
+  return record;
+}
 
 /// Correct answers from a file, starting at the first requested case.
 class KnownAnswers {
  public:
   /// Throws InputError if a file is given and ends before that case.
-  explicit KnownAnswers(const CaseQueue& queue);
+  explicit KnownAnswers(const CaseQueue& queue) {
+    if (queue.expected.empty()) return;
+    in_.open(queue.expected);
+    std::string line;
+    for (std::uint64_t k = 0; k < queue.begin; ++k) std::getline(in_, line);
+    if (!in_) throw InputError(queue.expected + ": has too few lines");
+  }
   /// Returns the next answer, or nullopt without a file or at its end.
-  std::optional<stability::RightAnswer> next();
+  std::optional<stability::RightAnswer> next() {
+    std::string line;
+    if (!in_.is_open() || !std::getline(in_, line)) return std::nullopt;
+    return stability::expected_from(line);
+  }
 
  private:
   std::ifstream in_;
@@ -78,14 +114,5 @@ int run_worker(Work work) {
     return kBadInput;
   }
 }
-
-// Methods that misbehave, to test the handling of failures. They are listed only if the environment has
-// LRBSCOPE_FAKE_METHODS.
-
-/// Returns the fake methods. All answer correctly if there is no contact. Otherwise "fake-crash" aborts,
-/// "fake-hang" never returns, "fake-refuse" rejects the query, "fake-throw" throws, and "fake-miss" omits the
-/// first pair. "fake-absent" is absent. Returns an empty list if "ours", which they imitate, is not among the
-/// program's methods.
-std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::MethodEntry>& methods);
 
 }  // namespace lrb::worker_programs

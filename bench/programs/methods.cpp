@@ -28,9 +28,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include "bench/methods/method.hpp"
 #include "bench/programs/case_queue.hpp"
@@ -47,6 +50,60 @@ namespace lrb::worker_programs {
 namespace {
 
 using nlohmann::ordered_json;
+
+// Methods that misbehave, to test the handling of failures. They are listed only if the environment has
+// LRBSCOPE_FAKE_METHODS.
+
+using methods::Method;
+using methods::MethodAnswer;
+using methods::MethodBody;
+
+enum class Vice { crash, hang, reject, raise, miss };
+
+std::unique_ptr<Method> (*make_honest)() = nullptr;  // set before the first is made
+
+class Fake : public Method {
+ public:
+  explicit Fake(Vice vice) : vice_(vice), honest_(make_honest()) {}
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return honest_->build(rep); }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    MethodAnswer answer = honest_->query(a, pose_a, b, pose_b, mode);
+    if (!answer.contact) return answer;
+    if (vice_ == Vice::crash) std::abort();
+    while (vice_ == Vice::hang) pause();
+    if (vice_ == Vice::reject) throw InputError("the fake does not like contacts");
+    if (vice_ == Vice::raise) throw std::logic_error("the fake is at its wits' end");
+    answer.pairs.erase(answer.pairs.begin());
+    return answer;
+  }
+
+ private:
+  Vice vice_;
+  std::unique_ptr<Method> honest_;
+};
+
+template <Vice vice>
+methods::MethodEntry fake(const char* name, methods::MethodEntry entry) {
+  entry.info.name = entry.info.title = name;
+  entry.make = []() -> std::unique_ptr<Method> { return std::make_unique<Fake>(vice); };
+  return entry;
+}
+
+/// Returns the fake methods. All answer correctly if there is no contact. Otherwise "fake-crash" aborts,
+/// "fake-hang" never returns, "fake-refuse" rejects the query, "fake-throw" throws, and "fake-miss" omits the
+/// first pair. "fake-absent" is absent. Returns an empty list if "ours", which they imitate, is not among the
+/// program's methods.
+std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::MethodEntry>& methods) {
+  const auto ours = std::find_if(methods.begin(), methods.end(),
+                                 [](const methods::MethodEntry& e) { return e.info.name == "ours"; });
+  if (ours == methods.end()) return {};
+  make_honest = ours->make;
+  return {fake<Vice::crash>("fake-crash", *ours),   fake<Vice::hang>("fake-hang", *ours),
+          fake<Vice::reject>("fake-refuse", *ours), fake<Vice::raise>("fake-throw", *ours),
+          fake<Vice::miss>("fake-miss", *ours),     methods::absent("fake-absent", "fake-absent", "nothing")};
+}
 
 struct WorkerOptions {
   CaseQueue queue;

@@ -9,8 +9,8 @@
 #include "bench/programs/case_queue.hpp"
 #include "bench/quantities/number_method.hpp"
 #include "bench/speed/bench_runner.hpp"
+#include "bench/speed/data_set.hpp"
 #include "bench/speed/metrics.hpp"
-#include "bench/speed/record.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/workers/worker_json.hpp"
 #include <lrbscope/error.hpp>

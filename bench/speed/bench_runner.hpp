@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/methods/method.hpp"
-#include "bench/speed/record.hpp"
+#include "bench/speed/data_set.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/lrb_rep.hpp>
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/speed/data_set.hpp"
 #include "bench/speed/make_sets.hpp"
-#include "bench/speed/record.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/report/document.hpp"
 

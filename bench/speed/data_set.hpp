@@ -1,14 +1,18 @@
 #pragma once
 /// The queries on which methods are measured: pairs of two bodies, or a number, at poses of several classes,
 /// with the right answers. A data set has its own file, so that worker programs can read it.
+/// Raw records: the answer of a method to a query, its time and its errors. A file contains one JSON object
+/// per line. All other results are computed from these.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "bench/methods/method.hpp"
 #include <lrbscope/collide.hpp>
@@ -104,5 +108,121 @@ DataSet read_data_set(const std::string& path);
 /// worker of methods that return a number. Throws EnvironmentError if that program is missing, and
 /// InputError, which names the query, if a query has no answer.
 void find_numbers(DataSet& set);
+
+// Errors.
+
+/// An error measure, from 0 (exact) to its worst value, which is the score of an unanswered query.
+enum class Metric : std::uint8_t {
+  contact,    ///< reports contact of disjoint bodies, or the reverse
+  precision,  ///< share of the reported pairs that do not intersect (1 - precision)
+  recall,     ///< share of the intersecting pairs that were not reported (1 - recall)
+  hausdorff,  ///< distance of the contact regions
+  deviation,  ///< distance of the answer's points from both bodies
+  length,
+  area,
+  centroid,
+  normal,
+  depth,
+  distance,        ///< error of the distance, for methods compared on it
+  time_of_impact,  ///< error of the time of first contact, for methods compared on it
+  penetration,     ///< error of the penetration depth, for methods compared on it
+  list,            ///< pairs in one list only, for methods compared on near pairs
+};
+
+struct MetricInfo {
+  Metric metric;
+  const char* name;  ///< in files and tables
+  const char* what;  ///< with its unit
+  double worst;
+};
+inline constexpr auto kMetricInfos = std::to_array<MetricInfo>({
+    {Metric::contact, "contact", "fraction of poses with a false or a missed contact", 1},
+    {Metric::precision, "precision",
+     "1 - precision: fraction of the listed pairs that do not intersect or are not near", 1},
+    {Metric::recall, "recall", "1 - recall: fraction of the intersecting or near pairs that are not listed",
+     1},
+    {Metric::hausdorff, "hausdorff",
+     "Hausdorff distance of the contact regions, relative to the larger body's diagonal", 1},
+    {Metric::deviation, "off",
+     "largest sum of the distances of a point of the result from the two bodies, relative to the diagonal",
+     1},
+    {Metric::length, "length", "error of the length of the contact curves, relative to the larger length", 1},
+    {Metric::area, "area", "error of the contact area, relative to the larger area", 1},
+    {Metric::centroid, "centroid", "distance of the contacts' centroids, relative to the diagonal", 1},
+    {Metric::normal, "normal", "angle between the normals of the largest contact, relative to 180 degrees",
+     1},
+    {Metric::depth, "depth", "error of the largest estimated depth, relative to the diagonal", 1},
+    {Metric::distance, "distance",
+     "error of the distance, of near pairs the largest one, relative to the larger body's diagonal", 1},
+    {Metric::time_of_impact, "time",
+     "error of the time of first contact, as a fraction of the motion; 1: a false or a missed contact", 1},
+    {Metric::penetration, "penetration",
+     "error of the penetration depth, relative to the larger body's diagonal", 1},
+    {Metric::list, "list", "fraction of the listed and the near pairs that are missing or extra", 1},
+});
+inline constexpr std::size_t kMetrics = kMetricInfos.size();
+
+/// Returns the row of a metric: row static_cast<std::size_t>(m) of the table.
+constexpr const MetricInfo& metric_info(Metric m) {
+  return kMetricInfos[static_cast<std::size_t>(m)];
+}
+consteval bool metrics_are_in_enum_order() {
+  for (std::size_t i = 0; i < kMetrics; ++i)
+    if (static_cast<std::size_t>(kMetricInfos[i].metric) != i) return false;
+  return true;
+}
+static_assert(metrics_are_in_enum_order());
+/// The errors of the answer to one query; nullopt if the method does not provide it.
+using Errors = std::array<std::optional<double>, kMetrics>;
+
+// Records.
+
+enum class Outcome : std::uint8_t { answered, rejected, crashed, timed_out };
+constexpr auto enum_names(Outcome) {
+  return std::to_array<EnumName<Outcome>>({{Outcome::answered, "answered"},
+                                           {Outcome::rejected, "refused"},
+                                           {Outcome::crashed, "crashed"},
+                                           {Outcome::timed_out, "timed_out"}});
+}
+
+/// The answer in one mode.
+struct Reply {
+  bool contact = false;
+  std::uint64_t count = 0;              ///< number of pairs
+  std::uint64_t missed = 0, extra = 0;  ///< compared with the exact list
+  double cold_us = 0;  ///< time of the first query, after the processor's caches were flushed
+  double hot_us = 0;   ///< minimum time of some repetitions
+  std::uint64_t face_tests = 0;
+  std::optional<double> error_bound;   ///< as in methods::MethodAnswer; of a number: width of its interval
+  std::optional<double> lower, upper;  ///< the number, if that is the quantity; equal: no interval
+  friend bool operator==(const Reply&, const Reply&) = default;
+};
+
+struct Record {
+  std::string set, method;
+  std::optional<double> setting;
+  std::uint64_t question = 0;
+  std::uint64_t round = 0;  ///< of timing; the answer is judged in round 0
+  PoseClass pose_class = PoseClass::apart;
+  Outcome outcome = Outcome::answered;
+  std::string message;  ///< reason if there is no answer
+  Reply all, first;
+  double build_seconds = 0;  ///< for both bodies
+  double bytes = 0;          ///< growth of the heap by both bodies
+  /// Errors of the answer with all pairs, if it was judged. Pairs and points themselves are not stored: those
+  /// of some meshes at one pose take 100 MB.
+  std::optional<Errors> errors;
+};
+
+nlohmann::ordered_json to_json(const Record& r);
+/// Reads a record. Throws InputError, which describes the error in the value, if it is invalid.
+Record record_from(const nlohmann::json& value);
+/// Reads a file of records. Returns an empty list if the file does not exist. Skips incomplete lines, which
+/// interrupted runs leave.
+std::vector<Record> read_records(const std::string& path);
+
+/// Returns the method's name with its setting: "fcl", "spheres 4".
+std::string name_of(const Record& r);
+std::string name_of(const std::string& method, std::optional<double> setting);
 
 }  // namespace lrb::bench

@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "bench/methods/method.hpp"
-#include "bench/speed/errors.hpp"
-#include "bench/speed/record.hpp"
+#include "bench/speed/data_set.hpp"
 #include "engine/lrb/thickness.hpp"
 #include <lrbscope/workspace.hpp>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/methods/method.hpp"
-#include "bench/speed/record.hpp"
+#include "bench/speed/data_set.hpp"
 #include "scenarios/report/document.hpp"
 
 namespace lrb::bench {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/speed/record.hpp"
+#include "bench/speed/data_set.hpp"
 #include "bench/workers/workers.hpp"
 
 namespace lrb::bench {

@@ -10,8 +10,8 @@
 #include <poll.h>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/workers/child.hpp"
 #include "bench/workers/worker_json.hpp"
+#include "bench/workers/workers.hpp"
 #include "scenarios/io/poses.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>

@@ -2,23 +2,31 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <optional>
+#include <sstream>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
+#include <sys/utsname.h>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/stability/minimise.hpp"
 #include "bench/stability/rational_oracles.hpp"
+#include "bench/stability/worst_case.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"
+#include <lrbscope/contact.hpp>
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/render/image.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::stability {
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -166,6 +174,271 @@ SavedCase load_case(const std::string& folder) {
     throw fail("a family without difficulty, case and seed");
   }
   return out;
+}
+
+// Counterexamples.
+
+namespace {
+
+using Eigen::Vector3d;
+
+const CaseMeshes& meshes(const Counterexample& c) {
+  return c.found.meshes;
+}
+
+bool flat(const Counterexample& c) {
+  return meshes(c).a.dim == 2;
+}
+
+std::string simplices(const Counterexample& c, std::size_t n) {
+  return render::counted(n, flat(c) ? "segment" : "triangle", flat(c) ? "segments" : "triangles");
+}
+
+std::string mesh_text(const Mesh& mesh) {
+  std::ostringstream out;
+  for (const Vector3d& v : mesh.vertices)
+    out << "v " << io::exact_text(v.x()) << " " << io::exact_text(v.y()) << " " << io::exact_text(v.z())
+        << "\n";
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    out << (mesh.dim == 2 ? "l" : "f");
+    for (const VertexId v : mesh.face(f)) out << " " << v + 1;
+    out << "\n";
+  }
+  return out.str();
+}
+
+std::string pose_text(const Pose& pose) {
+  std::string out;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) out += io::exact_text(pose.r(i, j)) + " ";
+    out += io::exact_text(pose.t[i]) + "\n";
+  }
+  return out;
+}
+
+bool fits_float(const CaseMeshes& c) {
+  const auto fits = [](const Mesh& m) {
+    return std::all_of(m.vertices.begin(), m.vertices.end(),
+                       [](const Vector3d& v) { return v.cast<float>().cast<double>() == v; });
+  };
+  return fits(c.a) && fits(c.b);
+}
+
+/// Returns how a pair intersects: "cross in a segment".
+std::string meet_text(const cases::Case& c, const SimplexPair& pair) {
+  Vector3d x[2][3];
+  const double* p[2][3] = {};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const LrbRep& rep = side == 0 ? *c.a : *c.b;
+    VertexId v[3] = {};
+    rep.simplex(side == 0 ? pair.a : pair.b, v);
+    for (int k = 0; k < rep.dim(); ++k) {
+      x[side][k] = (side == 0 ? c.pose_a : c.pose_b).apply(rep.vertices()[v[k]]);
+      p[side][k] = x[side][k].data();
+    }
+  }
+  const exact::PairContact contact =
+      c.a->dim() == 3 ? exact::contact_of_triangles(p[0], p[1]) : exact::contact_of_segments(p[0], p[1]);
+  static constexpr const char* kShapes[] = {"nowhere", "a point", "a segment", "a polygon"};
+  return std::string(contact.meet == exact::Meet::cross ? "cross" : "touch") + " in " +
+         kShapes[std::min<std::size_t>(contact.corner_count, 3)] +
+         (contact.coplanar ? (c.a->dim() == 3 ? " of their common plane" : " of their common line") : "");
+}
+
+/// Returns a point as "(1, -1/3, 0)".
+std::string point_text(const nlohmann::ordered_json& point) {
+  return "(" + point.at(0).get<std::string>() + ", " + point.at(1).get<std::string>() + ", " +
+         point.at(2).get<std::string>() + ")";
+}
+
+/// Returns why the expected answer is right.
+std::string proof_text(const Counterexample& c) {
+  const cases::Case built = case_of(meshes(c));
+  const std::optional<SimplexPair> pair = deciding_pair(built, {c.found.answer});
+  if (!pair) return "No pair of triangles decides: only the relation of the bodies is wrong.\n";
+  const char* what = flat(c) ? "Segment " : "Triangle ";
+  const char* other = flat(c) ? " of A and segment " : " of A and triangle ";
+  const std::string names =
+      what + std::to_string(pair->a) + other + std::to_string(pair->b) + " of B (numbered from 0) ";
+  const auto proof = pair_proof(built, *pair);
+  if (proof.at("intersect").get<bool>())
+    return names + meet_text(built, *pair) + ". Both contain the point " +
+           point_text(proof.at("common_point")) + ", exactly.\n";
+  return names + "are disjoint. For all points x of the first, n . x <= " +
+         proof.at("largest_of_a").get<std::string>() +
+         ", and for all points of the second, n . x >= " + proof.at("least_of_b").get<std::string>() +
+         ", with n = " + point_text(proof.at("direction")) + ", exactly. Their distance is " +
+         proof.at("distance").get<std::string>() + ".\n";
+}
+
+std::string answer_of(const Counterexample& c) {
+  const Replay& answer = c.found.answer;
+  const Record& r = answer.record;
+  switch (c.found.kind) {
+    case FailureKind::crashes:
+      return "The process ended: " + r.message + ".\n";
+    case FailureKind::times_out:
+      return "There was " + r.message + ".\n";
+    case FailureKind::relation:
+      return "Relation: " + r.relation + " instead of " + r.expected_relation + ".\n";
+    default:
+      break;
+  }
+  if (!answer.answered) return std::string("Contact: ") + (r.extra > 0 ? "yes" : "no") + ".\n";
+  if (answer.answered->empty()) return "No pair.\n";
+  std::string out = "Pairs (of A, of B):";
+  for (const SimplexPair& p : *answer.answered) out += " " + std::to_string(p.a) + "-" + std::to_string(p.b);
+  return out + ".\n";
+}
+
+/// Returns a remark on failures that the definition of contact decides.
+std::string remark_of(const Counterexample& c) {
+  if (c.found.kind == FailureKind::misses_touching)
+    return "The expected answer counts sets that share a single point as intersecting. If this engine is documented not to "
+           "count such contacts, its answer is right.\n\n";
+  if (c.found.kind == FailureKind::adds)
+    return "The expected answer has no tolerance. If this engine is documented to have one, and the distance above is "
+           "within it, its answer is right.\n\n";
+  return "";
+}
+
+std::string versions(const Counterexample& c) {
+  utsname machine{};
+  uname(&machine);
+  return c.method.info.title + "; called by lrbscope " + trace::lrbscope_version() + ", compiled with " +
+#ifdef __clang__
+         "clang " __clang_version__
+#else
+         "gcc " __VERSION__
+#endif
+         + ", " + machine.sysname + " " + machine.machine + "\n";
+}
+
+}  // namespace
+
+std::string failure_text(const Counterexample& c) {
+  const std::string what = flat(c) ? "segments" : "triangles";
+  const bool lists = c.found.answer.answered.has_value();
+  switch (c.found.kind) {
+    case FailureKind::misses_crossing:
+      return lists ? "misses a pair of " + what + " that cross" : "reports no contact of bodies that cross";
+    case FailureKind::misses_touching:
+      return lists ? "misses a pair of " + what + " that touch" : "reports no contact of bodies that touch";
+    case FailureKind::adds:
+      return lists ? "returns a pair of " + what + " that do not intersect"
+                   : "reports a contact of bodies that do not intersect";
+    case FailureKind::relation:
+      return "reports a wrong relation of two bodies";
+    case FailureKind::crashes:
+      return "ends the process";
+    case FailureKind::times_out:
+      return "does not answer";
+    case FailureKind::none:
+      break;
+  }
+  return "does not fail";
+}
+
+std::string tracker_text(const Counterexample& c) {
+  std::ostringstream out;
+  out << "# " << c.method.info.title << " " << failure_text(c) << "\n\n";
+  out << "A has " << simplices(c, meshes(c).a.face_count()) << ", B "
+      << simplices(c, meshes(c).b.face_count());
+  out << (fits_float(meshes(c)) ? ". All coordinates are floats.\n\n" : ". Coordinates are doubles.\n\n");
+  out << "![The meshes](picture.png)\n\n";
+  out << "## Meshes\n\nA:\n\n```\n"
+      << mesh_text(meshes(c).a) << "```\n\nB:\n\n```\n"
+      << mesh_text(meshes(c).b) << "```\n\n";
+  if (is_identity(meshes(c).pose_a) && is_identity(meshes(c).pose_b))
+    out << "Both poses are the identity.\n\n";
+  else
+    out << "Poses of A and of B (3x4, row by row):\n\n```\n"
+        << pose_text(meshes(c).pose_a) << "\n"
+        << pose_text(meshes(c).pose_b) << "```\n\n";
+  out << "## Called\n\n" << c.method.info.remark << "\n\n";
+  const std::string program = program_text(c);
+  if (!program.empty()) out << "```cpp\n" << program << "```\n\n";
+  out << "## Expected\n\n" << proof_text(c) << "\n";
+  out << "## Found\n\n" << answer_of(c) << "\n" << remark_of(c);
+  out << "## Versions\n\n" << versions(c);
+  return out.str();
+}
+
+std::string program_text(const Counterexample& c) {
+  const std::string& name = c.method.info.name;
+  const bool lists = c.found.kind != FailureKind::crashes && c.found.kind != FailureKind::times_out;
+  if ((name != "fcl" && name != "fcl-float") || !lists || !is_identity(meshes(c).pose_a) ||
+      !is_identity(meshes(c).pose_b))
+    return "";
+  const std::string real = name == "fcl" ? "double" : "float";
+  const auto model = [&](const char* body, const Mesh& m) {
+    std::string points, triangles;
+    for (const Vector3d& v : m.vertices)
+      points += (points.empty() ? "{" : ", {") + io::exact_text(v.x()) + ", " + io::exact_text(v.y()) + ", " +
+                io::exact_text(v.z()) + "}";
+    for (FaceId f = 0; f < m.face_count(); ++f)
+      triangles += (triangles.empty() ? "{" : ", {") + std::to_string(m.face(f)[0]) + ", " +
+                   std::to_string(m.face(f)[1]) + ", " + std::to_string(m.face(f)[2]) + "}";
+    return std::string("  fill(") + body + ", {" + points + "},\n       {" + triangles + "});\n";
+  };
+  return "// g++ -std=c++17 -I/usr/include/eigen3 fcl.cpp -lfcl -lccd && ./a.out\n"
+         "// Expected: " +
+         std::to_string(c.found.answer.expected.size()) +
+         " contacts.\n"
+         "#include <cstdio>\n"
+         "#include <vector>\n\n"
+         "#include <fcl/geometry/bvh/BVH_model.h>\n"
+         "#include <fcl/narrowphase/collision.h>\n\n"
+         "using Real = " +
+         real +
+         ";\n"
+         "using Model = fcl::BVHModel<fcl::OBBRSS<Real>>;\n\n"
+         "void fill(Model& m, const std::vector<fcl::Vector3<Real>>& x, const std::vector<fcl::Triangle>& t) {\n"
+         "  m.beginModel();\n"
+         "  m.addSubModel(x, t);\n"
+         "  m.endModel();\n"
+         "}\n\n"
+         "int main() {\n"
+         "  Model a, b;\n" +
+         model("a", meshes(c).a) + model("b", meshes(c).b) +
+         "  const fcl::CollisionRequest<Real> request(1000000, false);\n"
+         "  fcl::CollisionResult<Real> result;\n"
+         "  const fcl::Transform3<Real> identity = fcl::Transform3<Real>::Identity();\n"
+         "  fcl::collide(&a, identity, &b, identity, request, result);\n"
+         "  std::printf(\"%zu contacts\\n\", result.numContacts());\n"
+         "}\n";
+}
+
+std::vector<std::string> save_counterexample(const Counterexample& c, const std::string& folder) {
+  const cases::Case built = case_of(meshes(c));
+  const Minimised& m = c.found;
+  const auto size = [](const CaseSize& s) {
+    return nlohmann::ordered_json{{"simplices", s.simplices}, {"vertices", s.vertices}, {"bits", s.bits}};
+  };
+  const nlohmann::ordered_json facts = {{"failure", name_of(m.kind)},
+                                        {"before", size(m.before)},
+                                        {"after", size(m.after)},
+                                        {"calls", m.calls},
+                                        {"complete", m.complete}};
+  WorstCaseText text;
+  text.title = c.method.info.title;
+  text.answer = failure_text(c);
+  render::Rasterizer rasterizer;
+  const render::Image picture =
+      worst_case_picture(built, m.answer.expected, m.answer.answered, text, rasterizer);
+  std::vector<std::string> files = save_case(built, {m.answer}, folder, facts);
+  render::PngOptions png;
+  png.text = {{"Title", text.title}, {"Description", text.answer}};
+  render::write_png(picture, folder + "/picture.png", png);
+  files.emplace_back("picture.png");
+  const std::string program = program_text(c);
+  if (!program.empty()) {
+    io::write_text(folder + "/fcl.cpp", program);
+    files.emplace_back("fcl.cpp");
+  }
+  io::write_text(folder + "/report.md", tracker_text(c) + "\nMade by `" + c.command + "`.\n");
+  files.emplace_back("report.md");
+  return files;
 }
 
 }  // namespace lrb::stability

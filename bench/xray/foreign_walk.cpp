@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/workers/child.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/io/files.hpp"

@@ -10,7 +10,7 @@
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
-#include "python/src/bind.hpp"
+#include "python/src/objects.hpp"
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>

@@ -2,7 +2,6 @@
 #include <filesystem>
 
 #include "python/src/answers.hpp"
-#include "python/src/bind.hpp"
 #include "python/src/objects.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include <lrbscope/lrb_rep.hpp>

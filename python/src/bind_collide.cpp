@@ -2,7 +2,7 @@
 #include <mutex>
 
 #include "python/src/answers.hpp"
-#include "python/src/bind.hpp"
+#include "python/src/objects.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/workspace.hpp>

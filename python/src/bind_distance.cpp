@@ -1,5 +1,5 @@
 #include "python/src/answers.hpp"
-#include "python/src/bind.hpp"
+#include "python/src/objects.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/workspace.hpp>

@@ -1,5 +1,5 @@
 #include "python/src/answers.hpp"
-#include "python/src/bind.hpp"
+#include "python/src/objects.hpp"
 #include "scenarios/run/explanation_text.hpp"
 #include <lrbscope/explain.hpp>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "python/src/answers.hpp"
-#include "python/src/bind.hpp"
+#include "python/src/objects.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/point_distance.hpp>

@@ -3,7 +3,6 @@
 #include <unordered_map>
 
 #include "python/src/answers.hpp"
-#include "python/src/bind.hpp"
 #include "python/src/objects.hpp"
 #include <lrbscope/broad_phase.hpp>
 #include <lrbscope/scene.hpp>

@@ -1,5 +1,4 @@
 #include "python/src/answers.hpp"
-#include "python/src/bind.hpp"
 #include "python/src/objects.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "python/src/arguments.hpp"
-#include "python/src/bind.hpp"
+#include "python/src/objects.hpp"
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb::python {

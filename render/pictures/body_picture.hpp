@@ -1,10 +1,15 @@
 #pragma once
+/// Pictures of a body: its wrappers, regions of it, and the faults of its mesh.
 
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "render/pictures/panel.hpp"
 #include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/mesh_repair.hpp>
 
 namespace lrb::run {
 
@@ -34,5 +39,22 @@ Eigen::Vector3d outlook(const LrbRep& rep, RegionId r);
 /// Describes regions: a single one by its layer, lids, floor, parent and neighbours, several by their
 /// numbers. `owner`: text after a region's number, such as " of A".
 std::string region_text(const LrbRep& rep, std::span<const RegionId> regions, const std::string& owner);
+
+// Findings.
+
+/// A mesh and its faults.
+struct FaultyMesh {
+  const Mesh& mesh;
+  const MeshReport& report;
+  const std::vector<BoundaryLoop>& loops;
+};
+
+/// Draws a mesh's findings: the whole mesh in panel (a), from the look's first view, then a close-up of the
+/// first finding of each kind. All open edges are drawn; the close-up shows the longest loop. `look`: in
+/// pixels of the file; height 0: as required. Returns nullopt if no finding has a position.
+std::optional<render::Image> picture_of(const FaultyMesh& faulty, const render::Look& look);
+
+/// The width of the picture unless one is requested.
+inline constexpr int kFindingsSheetWidth = 1600;
 
 }  // namespace lrb::run

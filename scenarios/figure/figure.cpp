@@ -7,7 +7,7 @@
 #include <set>
 
 #include "render/canvas.hpp"
-#include "render/occlusion.hpp"
+#include "render/face_look.hpp"
 #include "render/paint_list.hpp"
 #include "render/pictures/panel.hpp"
 #include "render/vector_faces.hpp"

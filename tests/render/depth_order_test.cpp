@@ -1,11 +1,11 @@
-#include "render/depth_order.hpp"
-
 #include <map>
 #include <optional>
 #include <random>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
+
+#include "render/screen_mesh.hpp"
 
 using namespace lrb;
 using Eigen::Vector3d;

@@ -1,5 +1,3 @@
-#include "render/edge_spacing.hpp"
-
 #include <algorithm>
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Outlines without the parts that run along a line and back.
-#include "render/hairs.hpp"
-
 #include <doctest/doctest.h>
+
+#include "render/scene_parts.hpp"
 
 namespace lrb::render {
 namespace {

@@ -16,7 +16,6 @@
 #include "bench/speed/make_sets.hpp"
 #include "bench/speed/metrics.hpp"
 #include "bench/speed/peer_table.hpp"
-#include "bench/speed/record.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/report/gnuplot.hpp"
 #include "tests/support/program.hpp"

@@ -9,7 +9,6 @@
 #include <doctest/doctest.h>
 
 #include "bench/cases/families.hpp"
-#include "bench/stability/counterexample.hpp"
 #include "bench/stability/rational_oracles.hpp"
 #include "bench/stability/saved_case.hpp"
 #include "scenarios/bodies/shapes.hpp"

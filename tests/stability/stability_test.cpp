@@ -10,7 +10,6 @@
 
 #include "bench/cases/families.hpp"
 #include "bench/methods/triangles.hpp"
-#include "bench/stability/judge.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/rational_oracles.hpp"
 #include "bench/stability/saved_case.hpp"

@@ -15,7 +15,6 @@
 #include "bench/tails/engine.hpp"
 #include "bench/tails/pose_space.hpp"
 #include "bench/tails/worst.hpp"
-#include "bench/tails/wrong_poses.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/io/poses.hpp"

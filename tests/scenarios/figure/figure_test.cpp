@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "render/occlusion.hpp"
+#include "render/face_look.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/figure/callouts.hpp"
 #include "scenarios/figure/figure_layout.hpp"

@@ -1,26 +1,43 @@
-/// The cost of recording and writing, per event.
-
+// The cost of keeping what a query does: recording and writing traces, capturing from another engine, and
+// drawing frames of a recorded run.
 #include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <random>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
+#define LRBCAP_ENABLE
+#define LRBCAP_IMPLEMENTATION
+#include <lrbscope_capture.h>
+
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "scenarios/frames/frames.hpp"
+#include "scenarios/record/recorded_run.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/replay.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 
-namespace {
-
 using namespace lrb;
 using namespace lrb::trace;
+
+namespace {
+
+/// A file or folder that only this process uses.
+std::string scratch() {
+  return std::filesystem::temp_directory_path() / ("record_bench." + std::to_string(getpid()));
+}
+
+// Recording, writing, reading and replaying traces, per event.
+namespace traces {
 
 /// A call of the probe.
 struct Call {
@@ -178,9 +195,8 @@ BENCHMARK(write_json)->ArgName("wall")->Arg(0)->Arg(1)->Unit(benchmark::kMillise
 
 void save_file(benchmark::State& state) {
   const Trace trace = recorded(Clock::event);
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("trace_bench." + std::to_string(getpid()) + (state.range(0) ? ".json.gz" : ".json"));
-  for (auto _ : state) save_trace(trace, path.string());
+  const std::string path = scratch() + (state.range(0) ? ".json.gz" : ".json");
+  for (auto _ : state) save_trace(trace, path);
   report(state);
   state.counters["bytes_per_event"] = static_cast<double>(std::filesystem::file_size(path)) / kEvents;
   std::filesystem::remove(path);
@@ -204,6 +220,107 @@ void replay(benchmark::State& state) {
   report(state);
 }
 BENCHMARK(replay)->Unit(benchmark::kMillisecond);
+
+}  // namespace traces
+
+// lrbscope_capture.h in a bare loop, per event: without it, dormant, and recording.
+namespace captures {
+
+constexpr std::uint32_t kEvents = 1'000'000;
+
+/// The loop of an engine that only counts its tests; `event` reports a test.
+template <class Event>
+void run(benchmark::State& state, const Event& event) {
+  for (auto _ : state) {
+    LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, 0, nullptr, 0, nullptr);
+    for (std::uint32_t i = 0; i < kEvents; ++i) {
+      event(i);
+      benchmark::DoNotOptimize(i);
+    }
+    LRBCAP_END(LRBCAP_UNREPORTED, 0);
+  }
+  state.counters["event"] = benchmark::Counter(
+      kEvents, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+/// Ids that go up and down as in a traversal; every second event has an axis.
+void report(std::uint32_t i) {
+  LRBCAP_NODE(i * 2, i * 3, i & 1, i % 2 == 0 ? i % 15 : 255u);
+}
+
+void nothing(benchmark::State& state) {
+  run(state, [](std::uint32_t) {});
+}
+void dormant(benchmark::State& state) {
+  run(state, report);
+}
+
+void recording(benchmark::State& state) {
+  for (const char* name : {"LRBCAP_EVENTS", "LRBCAP_QUERIES", "LRBCAP_SLOWER_US"}) unsetenv(name);
+  setenv("LRBCAP_MAX_MB", "0", 1);
+  LRBCAP_OPEN("bare loop", scratch().c_str());
+  run(state, report);
+  LRBCAP_CLOSE();
+  std::filesystem::remove(scratch());
+}
+
+void queries_only(benchmark::State& state) {
+  setenv("LRBCAP_EVENTS", "0", 1);
+  LRBCAP_OPEN("bare loop", scratch().c_str());
+  run(state, report);
+  LRBCAP_CLOSE();
+  unsetenv("LRBCAP_EVENTS");
+  std::filesystem::remove(scratch());
+}
+
+BENCHMARK(nothing);
+BENCHMARK(dormant);
+BENCHMARK(queries_only);
+BENCHMARK(recording)->Iterations(50);
+
+}  // namespace captures
+
+// Encoding and writing frames: a sequence drawn and discarded, and the same frames drawn, encoded and
+// written, as `lrbscope run` does it. The target is at most 1.25 times the time of drawing.
+namespace frames {
+
+/// A rock rotates beside a ball.
+const spec::Scenario& scenario() {
+  static const spec::Scenario scenario = spec::parse_scenario(
+      R"({"name": "rate", "purpose": "A rock turns beside a ball.", "bodies": {"a": {"generator": "ball"}, "b": {"generator": "rock",
+          "parameters": {"frequency": 50}, "pose": {"position": [2.5, 0, 0]}}},
+          "motion": {"kind": "spin", "axis": [0, 0, 1], "degrees": 90, "steps": 40},
+          "frames": {"at": "step", "size": [1280, 720]}})",
+      "record_bench");
+  return scenario;
+}
+
+const run::RecordedRun& recorded() {
+  static const run::Recording recording = run::record(scenario(), run::kSilent);
+  static const run::RecordedRun recorded = [] {
+    run::RecordedRun r;
+    r.title = scenario().name;
+    for (const bodies::LoadedBody& body : recording.bodies) r.reps.push_back(&body.rep);
+    r.trace = &recording.trace;
+    r.results = &recording.results;
+    return r;
+  }();
+  return recorded;
+}
+
+void draw(benchmark::State& state) {
+  for (auto _ : state) run::paint_frames(recorded(), scenario().frames, run::kSilent, nullptr);
+}
+BENCHMARK(draw)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void draw_encode_write(benchmark::State& state) {
+  for (auto _ : state)
+    run::draw_frames(recorded(), scenario().frames, scratch() + "/sequence", {}, run::kSilent);
+  std::filesystem::remove_all(scratch());
+}
+BENCHMARK(draw_encode_write)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace frames
 
 }  // namespace
 
