@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/pictures/answer_picture.hpp"
-#include "scenarios/report/gnuplot.hpp"
+#include "scenarios/report/chart.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include <lrbscope/distance.hpp>

@@ -18,7 +18,7 @@
 #include "bench/speed/peer_table.hpp"
 #include "bench/speed/record.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/report/gnuplot.hpp"
+#include "scenarios/report/chart.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
