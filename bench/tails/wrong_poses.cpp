@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scenarios/io/columns.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/core/file.hpp>
@@ -266,7 +265,7 @@ std::vector<std::vector<std::string>> rows_of(const WrongSearch& search) {
 std::string table_of(const WrongSearch& search) {
   std::vector<std::vector<std::string>> rows = rows_of(search);
   rows.insert(rows.begin(), kKindColumns);
-  return io::in_columns(rows);
+  return report::in_columns(rows);
 }
 
 std::vector<nlohmann::ordered_json> json_of(const WrongSearch& search) {
