@@ -14,7 +14,7 @@
 #include "scenarios/export/model.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>

@@ -13,7 +13,7 @@
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tests/support/pixels.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
