@@ -1,7 +1,7 @@
 #include <iostream>
 #include <memory>
 
-#include "scenarios/crowd/crowd_pair.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
