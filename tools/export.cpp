@@ -5,7 +5,6 @@
 
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/export/body_parts.hpp"
 #include "scenarios/export/model.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/record/moments.hpp"

@@ -17,7 +17,6 @@
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/bodies/region_figures.hpp"
 #include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/frames/framing.hpp"

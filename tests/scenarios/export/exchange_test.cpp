@@ -10,7 +10,6 @@
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/export/body_parts.hpp"
 #include "scenarios/export/model.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"

@@ -9,7 +9,6 @@
 
 #include "render/occlusion.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/figure/callouts.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/run/run_scenario.hpp"
