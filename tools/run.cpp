@@ -1,8 +1,8 @@
 #include <iostream>
 #include <memory>
 
-#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/run_scenario.hpp"
