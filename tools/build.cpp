@@ -8,7 +8,6 @@
 
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/bodies/region_figures.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"

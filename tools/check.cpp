@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "scenarios/profile/captured.hpp"
+#include "scenarios/profile/captured_run.hpp"
 #include "tools/commands.hpp"
 #include "tools/import.hpp"
 #include "tools/options.hpp"

@@ -8,8 +8,7 @@
 
 #include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/io/columns.hpp"
-#include "tools/bounds_chart.hpp"
+#include "scenarios/report/document.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/pose_lines.hpp"
@@ -139,7 +138,7 @@ int run_clash(ClashOptions o, const Globals& globals) {
                    picture_name(o.draw.chart, i, list.poses.size()));
     progress.set(i + 1);
   }
-  if (o.table) print(io::in_columns(rows, rows[0].size()));
+  if (o.table) print(report::in_columns(rows, rows[0].size()));
   return kOk;
 }
 

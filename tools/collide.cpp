@@ -8,7 +8,6 @@
 #include "scenarios/frames/animation.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/poses.hpp"
-#include "scenarios/run/live_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tools/commands.hpp"

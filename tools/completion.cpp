@@ -12,7 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "scenarios/io/files.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tools/commands.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>

@@ -4,7 +4,6 @@
 
 #include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "tools/bounds_chart.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/pose_lines.hpp"

@@ -10,7 +10,7 @@
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/frames/animation.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/report/gnuplot.hpp"
+#include "scenarios/report/chart.hpp"
 #include "tools/commands.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>

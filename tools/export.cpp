@@ -5,12 +5,11 @@
 
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/export/body_parts.hpp"
 #include "scenarios/export/model.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"

@@ -17,7 +17,6 @@
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
-#include "scenarios/spec/shipped.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"

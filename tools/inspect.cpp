@@ -16,12 +16,11 @@
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/bodies/region_figures.hpp"
 #include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/frames/framing.hpp"
-#include "scenarios/io/columns.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/report/document.hpp"
 #include "scenarios/run/answer_page.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
@@ -74,7 +73,7 @@ std::string regions_text(const Json& regions) {
   std::vector<std::vector<std::string>> rows = {
       {"region", "layer", "lids", "floor", "volume", "distance", "parent", "waste"}};
   for (std::size_t i = 0; i < std::min(regions.size(), kMaxRows); ++i) rows.push_back(cells_of(regions[i]));
-  return "regions:\n" + io::in_columns(rows, 0) +
+  return "regions:\n" + report::in_columns(rows, 0) +
          (regions.size() > kMaxRows
               ? "  and " + std::to_string(regions.size() - kMaxRows) + " more: --json lists all\n"
               : "") +
@@ -100,7 +99,7 @@ std::string trials_text(const Json& trials) {
   std::vector<std::vector<std::string>> rows = {
       {"setting", "faces per real face", "outermost faces", "wrapper/convex hull", "waste", "seconds"}};
   for (const Json& t : trials) rows.push_back(cells_of(t));
-  return "tried:\n" + io::in_columns(rows);
+  return "tried:\n" + report::in_columns(rows);
 }
 
 /// Returns the caption of a region's picture.

@@ -5,7 +5,7 @@
 #include "bench/levels/level_report.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/io/columns.hpp"
+#include "scenarios/report/document.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
@@ -33,7 +33,7 @@ std::string as_table(const std::vector<bodies::LevelFigures>& levels, const LrbR
   for (const bodies::LevelFigures& l : levels)
     rows.push_back({io::number_text(l.share, kDigits), io::number_text(l.tolerance, kDigits),
                     std::to_string(l.faces), io::number_text(l.bound, kDigits)});
-  return head + io::in_columns(rows, 0);
+  return head + report::in_columns(rows, 0);
 }
 
 int run_levels(const LevelsOptions& o, const Globals& globals) {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/bodies/generators.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tools/commands.hpp"
 
 namespace lrb::cli {

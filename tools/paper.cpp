@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/io/files.hpp"
-#include "scenarios/io/unfinished.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/paper/paper_report.hpp"
 #include "scenarios/paper/protocol.hpp"

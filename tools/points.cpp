@@ -8,7 +8,6 @@
 #include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/run/answer_page.hpp"
-#include "tools/bounds_chart.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/pose_lines.hpp"

@@ -1,4 +1,6 @@
 #pragma once
+/// What commands that answer a query for each pose of B share: files and poses, parts of their lines,
+/// pictures, and charts of the convergence of bounds.
 
 #include <algorithm>
 #include <array>
@@ -8,13 +10,17 @@
 #include <utility>
 #include <vector>
 
+#include "render/pictures/answer_picture.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/poses.hpp"
+#include "scenarios/report/chart.hpp"
 #include "tools/commands.hpp"
+#include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/first_contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/trace/json_write.hpp>
 
@@ -99,5 +105,31 @@ void for_each_pose(const PosedFiles& files, const PoseLines& list, const char* w
 /// Returns a picture's file: `path`, or with the number of the pose before its extension if there are several
 /// poses.
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses);
+
+// Pictures of answers; charts of the convergence of bounds during a query, for `--chart` of distance, sweep
+// and clash.
+
+/// Returns the chart of lower and upper bounds against work. `what`: name of the number; `work`: unit of the
+/// work.
+report::Gnuplot bounds_chart(const std::vector<Bounds>& history, const std::string& what,
+                             const std::string& work);
+/// Returns the chart of t0 and t1, and of the distance at t0, against work.
+report::Gnuplot contact_chart(const std::vector<ContactBounds>& history);
+
+/// Options for the pictures of a command's answers.
+struct DrawOptions {
+  std::string picture, chart;
+  PictureOptions look;   ///< of the picture: --size and --up
+  bool history = false;  ///< add the bound history to the line
+
+  bool is_watched() const { return history || !chart.empty(); }
+};
+/// Returns the style of the pictures. Throws InputError for an unsupported size.
+render::Look look_of(const DrawOptions& options);
+/// Adds --draw, --size and --up. `picture`: content of the picture that --draw writes.
+void add_picture_options(CLI::App& app, DrawOptions& options, const std::string& picture);
+/// Adds these, --chart and, if `with_history`, --convergence.
+void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture,
+                      bool with_history = true);
 
 }  // namespace lrb::cli

@@ -1,12 +1,12 @@
 #include <iostream>
 #include <memory>
 
-#include "scenarios/crowd/crowd_pair.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"

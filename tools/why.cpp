@@ -9,7 +9,7 @@
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/record/recorded_run.hpp"
-#include "scenarios/run/explanation_text.hpp"
+#include "scenarios/run/explanations.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"

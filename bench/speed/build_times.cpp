@@ -15,7 +15,6 @@
 #include "bench/speed/peer_table.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/io/columns.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -355,7 +354,7 @@ std::string build_text(const BuildResults& r) {
   for (const BuiltBody& body : r.bodies) {
     std::vector<std::vector<std::string>> rows = {columns()};
     for (const Cell& c : cells_of(r, body)) rows.push_back(row_of(c));
-    out += "\n" + head_of(body) + "\n" + io::in_columns(rows);
+    out += "\n" + head_of(body) + "\n" + report::in_columns(rows);
   }
   return out;
 }

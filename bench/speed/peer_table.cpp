@@ -9,7 +9,6 @@
 #include <tuple>
 
 #include "bench/speed/metrics.hpp"
-#include "scenarios/io/columns.hpp"
 
 namespace lrb::bench {
 
@@ -173,7 +172,7 @@ std::string means_of(const PeerTable& t) {
                              : m.pairs          ? "exact here"
                                                 : "right here (yes or no)");
   }
-  return "GEOMETRIC MEANS of the ratios over bodies and classes of poses\n" + io::in_columns(rows) + "\n";
+  return "GEOMETRIC MEANS of the ratios over bodies and classes of poses\n" + report::in_columns(rows) + "\n";
 }
 
 /// Lists, by class of poses and mode, all other engines that are faster somewhere, with the maximum factor:

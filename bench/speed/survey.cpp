@@ -9,7 +9,6 @@
 
 #include "bench/workers/workers.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/io/unfinished.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 

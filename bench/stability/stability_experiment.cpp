@@ -19,7 +19,7 @@
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "bench/workers/workers.hpp"
-#include "scenarios/io/unfinished.hpp"
+#include "scenarios/io/files.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>

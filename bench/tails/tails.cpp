@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/speed/metrics.hpp"
-#include "scenarios/io/columns.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/core/file.hpp>
@@ -240,7 +239,7 @@ std::string table_of(const std::vector<Tail>& tails) {
         rows.back().push_back(p.what == "us" ? io::number_text(x, 4) : io::fixed_text(x, 0));
       rows.back().push_back(std::to_string(p.count));
     }
-  return io::in_columns(rows, 2);
+  return report::in_columns(rows, 2);
 }
 
 std::vector<nlohmann::ordered_json> json_of(const std::vector<Tail>& tails) {

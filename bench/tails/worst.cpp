@@ -9,7 +9,6 @@
 #include "bench/speed/data_set.hpp"
 #include "bench/tails/tails.hpp"
 #include "bench/workers/worker_json.hpp"
-#include "scenarios/io/columns.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/report/document.hpp"
 #include <lrbscope/core/file.hpp>
@@ -137,7 +136,7 @@ std::string table_of(const Worst& worst) {
                     kinds ? std::to_string(kinds->boxes) : "-", kinds ? std::to_string(kinds->faces) : "-",
                     std::to_string(t.answer.pairs), std::to_string(t.trial.number)});
   }
-  std::string out = io::in_columns(rows, 0);
+  std::string out = report::in_columns(rows, 0);
   if (worst.at_random)
     out += "At random, " + std::to_string(worst.options.budget) + " queries find " +
            cost_text(worst.at_random->highest(worst.options.budget)) + ".\n";
@@ -589,7 +588,7 @@ std::vector<std::vector<std::string>> rows_of(const WrongSearch& search) {
 std::string table_of(const WrongSearch& search) {
   std::vector<std::vector<std::string>> rows = rows_of(search);
   rows.insert(rows.begin(), kKindColumns);
-  return io::in_columns(rows);
+  return report::in_columns(rows);
 }
 
 std::vector<nlohmann::ordered_json> json_of(const WrongSearch& search) {

@@ -1,6 +1,6 @@
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
-#include "scenarios/run/explanation_text.hpp"
+#include "scenarios/run/explanations.hpp"
 #include <lrbscope/explain.hpp>
 
 namespace lrb::python {

@@ -2,7 +2,7 @@
 #include "python/src/objects.hpp"
 #include "scenarios/run/run_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include <lrbscope/observe.hpp>
 #include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/trace.hpp>

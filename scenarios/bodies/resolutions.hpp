@@ -32,7 +32,7 @@ struct ResolutionOptions {
 /// Returns the numbers of triangles of the resolutions, the finest one first.
 std::vector<std::uint32_t> resolution_sizes(const Mesh& mesh, const ResolutionOptions& options);
 
-/// Returns the finest one first; each has half of the faces of the previous one (decimate.cpp). A polygon
+/// Returns the finest one first; each has half of the faces of the previous one. A polygon
 /// mesh is triangulated. Throws InputError for a mesh that no LRB-rep can be built from.
 std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options);
 

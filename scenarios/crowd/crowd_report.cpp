@@ -11,7 +11,6 @@
 
 #include "render/pictures/marks.hpp"
 #include "scenarios/crowd/crowd_frames.hpp"
-#include "scenarios/crowd/crowd_scene.hpp"
 #include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/document.hpp"

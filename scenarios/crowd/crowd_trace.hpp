@@ -1,5 +1,5 @@
 #pragma once
-/// Reads a crowd's trace: all data needed to draw its steps again.
+/// Writes and reads a crowd's trace, which has all data needed to draw its steps again.
 
 #include <array>
 #include <cstdint>
@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "scenarios/crowd/crowd_run.hpp"
+#include "scenarios/record/recorded_run.hpp"
+#include "scenarios/spec/scenario.hpp"
+#include <lrbscope/broad_phase.hpp>
 #include <lrbscope/trace/json_write.hpp>
 
 namespace lrb::crowd {
@@ -92,5 +95,17 @@ CrowdTrace read_crowd_trace(std::string_view text, const std::string& file);
 /// bodies. Throws InputError if they are others, or if answers differ.
 CrowdRun replay_crowd(const CrowdTrace& trace, std::vector<bodies::LoadedBody> kinds, std::uint32_t threads,
                       const run::ProgressReport& progress);
+
+// Two bodies of a recorded crowd as a run of their own, which every command for runs of two bodies takes.
+
+/// Returns the bodies with these names, separated by a comma: "gear 3,rock 5". Throws InputError.
+BodyPair find_pair(const CrowdTrace& trace, const std::string& names);
+
+/// Returns the scenario of two bodies at all complete steps of a trace, which lies at `path`. A is the one
+/// with the lower number, as in the crowd's queries.
+spec::Scenario scenario_of_pair(const CrowdTrace& trace, const BodyPair& pair, const std::string& path);
+
+/// Throws InputError unless the scenario's run has the answers recorded in the trace.
+void check_answers(const CrowdTrace& trace, const BodyPair& pair, const run::Recording& recording);
 
 }  // namespace lrb::crowd

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/figure/callouts.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_panels.hpp"
 #include "scenarios/frames/frames.hpp"

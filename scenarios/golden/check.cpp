@@ -11,8 +11,8 @@
 
 #include "render/flip.hpp"
 #include "render/gl.hpp"
-#include "scenarios/golden/crowd_difference.hpp"
 #include "scenarios/golden/golden.hpp"
+#include "scenarios/golden/golden_run.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/zip.hpp"
 #include <lrbscope/core/file.hpp>

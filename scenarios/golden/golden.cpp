@@ -11,7 +11,7 @@
 
 #include "scenarios/io/files.hpp"
 #include "scenarios/profile/captured_run.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>

@@ -10,7 +10,7 @@
 #include "render/gl.hpp"
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/framing.hpp"
-#include "scenarios/golden/crowd_difference.hpp"
+#include "scenarios/golden/golden_run.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"

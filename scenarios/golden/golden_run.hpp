@@ -1,5 +1,7 @@
 #pragma once
+/// Runs of goldens, and their differences from the approved runs.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,9 +9,11 @@
 #include <vector>
 
 #include "scenarios/crowd/crowd_run.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/record/recorded_run.hpp"
+#include <lrbscope/trace/divergence.hpp>
 
 namespace lrb::golden {
 
@@ -88,5 +92,20 @@ std::vector<Effect> find_more_work(const Golden& golden, const GoldenRun& run);
 /// Returns the total length of the contact curves of each step, in the scenario's unit. Returns an empty list
 /// if the run did not request contacts.
 std::vector<double> contact_lengths(const run::Recording& recording);
+
+// Differences of two runs of a crowd, by their traces.
+
+/// Returns the number of queries in all steps.
+std::size_t query_count(const crowd::CrowdTrace& trace);
+
+/// Returns the first difference: bodies and request, then per step poses, answers and counters. Returns
+/// nullopt if the runs are equal.
+std::optional<trace::Divergence> first_divergence(const crowd::CrowdTrace& expected,
+                                                  const crowd::CrowdTrace& found);
+
+/// Return a line about changed kinds or numbers of bodies, and about the first pose that differs. Empty: they
+/// are equal.
+std::string kinds_cause(const crowd::CrowdTrace& expected, const crowd::CrowdTrace& found);
+std::string crowd_pose_cause(const crowd::CrowdTrace& expected, const crowd::CrowdTrace& found);
 
 }  // namespace lrb::golden

@@ -5,7 +5,6 @@
 
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/spec/scenario.hpp"
-#include "scenarios/spec/shipped.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/error.hpp>
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "scenarios/paper/experiment.hpp"
-#include "scenarios/paper/series_report.hpp"
+#include "scenarios/paper/series.hpp"
 #include "scenarios/paper/tables.hpp"
 #include "scenarios/report/document.hpp"
 

@@ -1,21 +1,28 @@
 #include "scenarios/paper/series.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <iomanip>
+#include <limits>
 #include <map>
 #include <set>
+#include <sstream>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/mesh/io/formats.hpp"
 #include "scenarios/bodies/generators.hpp"
+#include "scenarios/paper/tables.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::resolutions {
 
@@ -206,6 +213,246 @@ std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject
         ", which is not in the series; give the same --meshes, --resolutions and --subdivide as for the "
         "shards");
   return rows;
+}
+
+namespace {
+
+constexpr std::array<const char*, 3> kRecursionNames = {"the paper's recursion",
+                                                        "the paper's recursion, strict", "complete"};
+
+const char* against(SeriesPartner p) {
+  return p == SeriesPartner::a ? "A" : "itself";
+}
+
+/// The chart of one recursion against one partner: a series for each body, with its fitted power.
+report::Chart chart(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, SeriesPartner partner,
+                    std::size_t recursion, bool time) {
+  report::Chart c{std::string(time ? "Time" : "Comparisons") + " against " + against(partner) + ", " +
+                      kRecursionNames[recursion],
+                  {"real and pseudo faces", true},
+                  {time ? "median of a query, µs" : "face comparisons", true}};
+  std::vector<report::Series> powers;
+  for (const SeriesFit& fit : fits) {
+    if (fit.partner != partner || fit.recursion != recursion) continue;
+    const std::optional<resolutions::PowerFit>& power = time ? fit.microseconds : fit.comparisons;
+    report::Series s{fit.body + (power ? ": " + power_text(*power) : ""), {}, {}, {report::Line::none}};
+    s.style.colour = report::series_colour(c.series.size());
+    // Rows begin with the finest resolution, charts with the coarsest.
+    for (std::size_t i = rows.size(); i-- > 0;) {
+      const SeriesRow& row = rows[i];
+      const Spread& n = row.counts.recursions[recursion].comparisons;
+      const double y = time ? row.microseconds[recursion] : n.average;
+      if (row.body != fit.body || row.partner != partner || !(y > 0)) continue;
+      s.x.push_back(row.counts.total_faces);
+      s.y.push_back(y);
+      if (time) continue;
+      s.low.push_back(n.min);
+      s.high.push_back(n.max);
+    }
+    if (s.x.empty()) continue;
+    if (power) {
+      const auto value = [&](double x) { return power->factor * std::pow(x, power->exponent); };
+      powers.push_back({"",
+                        {s.x.front(), s.x.back()},
+                        {value(s.x.front()), value(s.x.back())},
+                        {report::Line::dashed, s.style.colour, "none"}});
+    }
+    c.series.push_back(std::move(s));
+  }
+  c.series.insert(c.series.end(), powers.begin(), powers.end());
+  return c;
+}
+
+/// Reserves space for each panel's key above its points.
+report::Gnuplot panels(std::vector<report::Chart> charts) {
+  constexpr double kHeight = 40, kKeyLine = 3.4;  // millimetres
+  const report::PrintLayout layout{static_cast<int>(kRecursions.size()), 55, kHeight, 7, "top left"};
+  for (report::Chart& c : charts) {
+    double lowest = std::numeric_limits<double>::infinity(), highest = 0, lines = 1;
+    for (const report::Series& s : c.series) {
+      for (const std::vector<double>* values : {&s.y, &s.low, &s.high})
+        for (const double y : *values) {
+          lowest = std::min(lowest, y);
+          highest = std::max(highest, y);
+        }
+      lines += s.label.empty() ? 0 : 1;
+    }
+    const double share = std::min(0.8, lines * kKeyLine / kHeight);
+    c.y.min = lowest / 1.3;
+    c.y.max = 1.2 * highest * std::pow(highest / lowest, share / (1 - share));
+  }
+  return report::gnuplot(charts, layout);
+}
+
+}  // namespace
+
+std::string power_text(const resolutions::PowerFit& fit) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(2) << "n^" << fit.exponent;
+  if (fit.error > 0) out << " ± " << fit.error;
+  return out.str();
+}
+
+namespace {
+
+std::string text_of(const std::optional<resolutions::PowerFit>& fit) {
+  return fit ? power_text(*fit) : "–";
+}
+
+report::Table table(std::span<const SeriesRow> rows, SeriesPartner partner, std::size_t recursion) {
+  report::Table t{std::string("Resolutions against ") + against(partner) + ", " + kRecursionNames[recursion],
+                  {"body", "real faces", "total faces", "outermost", "steps", "minimum", "average", "maximum",
+                   "refinements (avg)", "pairs missed", "time (median, µs)"}};
+  const bool complete = kRecursions[recursion] == Recursion::complete;
+  if (complete) t.columns.insert(t.columns.begin() + 9, "bound tests (avg)");
+  for (const SeriesRow& row : rows) {
+    if (row.partner != partner) continue;
+    const RecursionRow& x = row.counts.recursions[recursion];
+    const auto all = static_cast<double>(x.pairs + x.missed);
+    t.rows.push_back({row.body, render::group_digits(row.counts.real_faces),
+                      render::group_digits(row.counts.total_faces), render::group_digits(row.outer_faces),
+                      render::group_digits(row.counts.steps), whole(x.comparisons.min),
+                      whole(x.comparisons.average), whole(x.comparisons.max),
+                      fixed(x.refinements.average, 1)});
+    if (complete) t.rows.back().push_back(whole(x.bound_tests));
+    t.rows.back().push_back(all > 0 ? fixed(100 * static_cast<double>(x.missed) / all, 2) + " %" : "–");
+    t.rows.back().push_back(fixed(row.microseconds[recursion], 0));
+  }
+  return t;
+}
+
+report::Table fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs) {
+  report::Table t{
+      "Growth with the resolution",
+      {"body", "against", "recursion", "comparisons", "refinements", "time"},
+      {},
+      "Powers of n, the body's real and pseudo faces, fitted by least squares in both logarithms to the "
+      "averages (time: medians) of all resolutions, with the exponent's standard error. Against A one "
+      "body grows, against itself both do. For n log n, which the paper sets beside its counts, the power "
+      "would be above 1. Times are of one query each, on this machine" +
+          (jobs > 1 ? ", while " + std::to_string(jobs) + " threads worked" : std::string()) + "."};
+  for (const SeriesFit& f : fits)
+    t.rows.push_back({f.body, against(f.partner), kRecursionNames[f.recursion], text_of(f.comparisons),
+                      text_of(f.refinements), text_of(f.microseconds)});
+  return t;
+}
+
+nlohmann::ordered_json to_json(const std::optional<resolutions::PowerFit>& fit) {
+  if (!fit) return nullptr;
+  return {{"exponent", fit->exponent}, {"standard_error", fit->error}, {"factor", fit->factor}};
+}
+
+std::string series_json(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits) {
+  nlohmann::ordered_json j;
+  j["rows"] = nlohmann::ordered_json::array();
+  for (const SeriesRow& row : rows) {
+    nlohmann::ordered_json r = {{"body", row.body},
+                                {"against", against(row.partner)},
+                                {"real_faces", row.counts.real_faces},
+                                {"total_faces", row.counts.total_faces},
+                                {"outer_faces", row.outer_faces},
+                                {"steps", row.counts.steps}};
+    for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+      const RecursionRow& x = row.counts.recursions[i];
+      r[std::string(trace::name_of(kRecursions[i]))] = {{"comparisons_min", x.comparisons.min},
+                                                        {"comparisons_avg", x.comparisons.average},
+                                                        {"comparisons_max", x.comparisons.max},
+                                                        {"refinements_avg", x.refinements.average},
+                                                        {"bound_tests_avg", x.bound_tests},
+                                                        {"pairs", x.pairs},
+                                                        {"missed", x.missed}};
+    }
+    j["rows"].push_back(std::move(r));
+  }
+  j["powers_of_total_faces"] = nlohmann::ordered_json::array();
+  for (const SeriesFit& f : fits)
+    j["powers_of_total_faces"].push_back({{"body", f.body},
+                                          {"against", against(f.partner)},
+                                          {"recursion", trace::name_of(kRecursions[f.recursion])},
+                                          {"comparisons", to_json(f.comparisons)},
+                                          {"refinements", to_json(f.refinements)}});
+  return j.dump(2) + "\n";
+}
+
+template <class Measure>
+std::optional<resolutions::PowerFit> fit(std::span<const SeriesRow> rows, const SeriesFit& of,
+                                         Measure measure) {
+  std::vector<double> x, y;
+  for (const SeriesRow& row : rows) {
+    if (row.body != of.body || row.partner != of.partner) continue;
+    const double value = measure(row);
+    if (!(value > 0)) continue;
+    x.push_back(row.counts.total_faces);
+    y.push_back(value);
+  }
+  if (x.size() < 2) return std::nullopt;
+  return resolutions::fit_power(x, y);
+}
+
+}  // namespace
+
+std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows) {
+  std::vector<SeriesFit> fits;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (r > 0 && rows[r].body == rows[r - 1].body && rows[r].partner == rows[r - 1].partner) continue;
+    for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+      SeriesFit f{rows[r].body, rows[r].partner, i, {}, {}, {}};
+      f.comparisons =
+          fit(rows, f, [&](const SeriesRow& x) { return x.counts.recursions[i].comparisons.average; });
+      f.refinements =
+          fit(rows, f, [&](const SeriesRow& x) { return x.counts.recursions[i].refinements.average; });
+      f.microseconds = fit(rows, f, [&](const SeriesRow& x) { return x.microseconds[i]; });
+      fits.push_back(std::move(f));
+    }
+  }
+  return fits;
+}
+
+std::string growth_text(const SeriesReport& report) {
+  const std::vector<SeriesRow> rows = series_rows(report.a, report.objects, report.steps);
+  std::string out;
+  for (const SeriesFit& f : series_fits(rows)) {
+    if (f.partner != SeriesPartner::itself || !f.comparisons ||
+        kRecursions[f.recursion] == Recursion::paper_strict)
+      continue;
+    // Rows begin with the finest resolution.
+    const auto finest = std::find_if(rows.begin(), rows.end(), [&](const SeriesRow& row) {
+      return row.partner == f.partner && row.body == f.body;
+    });
+    const std::string text = power_text(*f.comparisons) + ", to " +
+                             whole(finest->counts.recursions[f.recursion].comparisons.average);
+    out += f.recursion == kPaper ? (out.empty() ? "" : "; ") + f.body + " " + text +
+                                       " at n = " + whole(finest->counts.total_faces)
+                                 : " (complete: " + text + ")";
+  }
+  return out.empty()
+             ? out
+             : "Meshes of n faces against themselves: the average number of comparisons by the paper's recursion "
+               "grows as " +
+                   out + ".";
+}
+
+std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc) {
+  const std::vector<SeriesRow> rows = series_rows(report.a, report.objects, report.steps);
+  const std::vector<SeriesFit> fits = series_fits(rows);
+  for (const bool time : {false, true}) {
+    std::vector<report::Chart> charts;
+    for (const SeriesPartner partner : kSeriesPartners)
+      for (std::size_t i = 0; i < kRecursions.size(); ++i)
+        charts.push_back(chart(rows, fits, partner, i, time));
+    std::erase_if(charts, [](const report::Chart& c) { return c.series.empty(); });
+    doc.each(charts, &report::Document::chart);
+    if (!charts.empty())
+      doc.print(time ? "series-time" : "series-comparisons", time ? "time by size" : "comparisons by size",
+                panels(charts));
+  }
+  doc.file("series.jsonl", to_json_lines(report.steps), "time steps of the resolutions");
+  doc.file("series_times.jsonl", times_to_json_lines(report.steps), "times of the queries");
+  doc.file("series.json", series_json(rows, fits), "tables and fitted exponents as data");
+  std::vector<report::Table> tables = {fit_table(fits, report.jobs)};
+  for (const SeriesPartner partner : kSeriesPartners)
+    for (std::size_t i = 0; i < kRecursions.size(); ++i) tables.push_back(table(rows, partner, i));
+  return tables;
 }
 
 }  // namespace lrb::paper

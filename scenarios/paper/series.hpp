@@ -4,16 +4,18 @@
 ///
 /// Every resolution collides twice: with the paper's object A, as the paper's other objects do, so that one
 /// side grows; and with itself, so that both grow. All resolutions of a body get the same directions and
-/// rotations.
+/// rotations. The report has tables, fitted exponents and charts of the series.
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "scenarios/bodies/resolutions.hpp"
 #include "scenarios/paper/tables.hpp"
+#include "scenarios/report/document.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/mesh.hpp>
 
@@ -81,5 +83,32 @@ struct SeriesRow {
 /// Returns the rows, by partner, then by object. Throws InputError for steps of other objects.
 std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject> objects,
                                    std::span<const ContactStep> steps);
+
+struct SeriesReport {
+  const LrbRep& a;
+  std::span<const SeriesObject> objects;
+  std::span<const ContactStep> steps;
+  std::uint32_t jobs = 1;  ///< number of threads during the measurement of times
+};
+
+/// The growth of one recursion's work with a body's faces, real and pseudo, against one partner. Empty if
+/// fewer than two resolutions have contacts.
+struct SeriesFit {
+  std::string body;
+  SeriesPartner partner;
+  std::size_t recursion;  ///< index into kRecursions
+  std::optional<resolutions::PowerFit> comparisons, refinements, microseconds;
+};
+std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows);
+
+/// Returns a sentence on the growth of comparisons for bodies that collide with themselves.
+std::string growth_text(const SeriesReport& report);
+
+/// Adds charts, on the page and for print (series-comparisons, series-time), series.jsonl (records),
+/// series_times.jsonl and series.json (rows and fits, without times). Returns the tables.
+std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc);
+
+/// Returns a fitted power as text, such as "n^0.52 ± 0.01".
+std::string power_text(const resolutions::PowerFit& fit);
 
 }  // namespace lrb::paper

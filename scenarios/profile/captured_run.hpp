@@ -1,6 +1,7 @@
 #pragma once
 /// Converts the queries of a capture to recorded runs, so that all pictures and statistics of runs apply to
-/// another engine's traversals.
+/// another engine's traversals; and a recorded run of lrbscope to a capture, so that it is checked and priced
+/// as other engines are.
 
 #include <array>
 #include <cstddef>
@@ -15,6 +16,19 @@
 #include <lrbscope/trace/work.hpp>
 
 namespace lrb::profile {
+
+/// Returns a recording of two 3D bodies at EventLevel::nodes or above as a capture, a query for each step.
+///
+/// - Meshes: the real faces as triangles, under the numbers of their simplices.
+/// - Volumes: the nodes' own OBBs. A query first compares the boxes of children in their parents'
+///   frames, which are other boxes; where it did, the comparison is taken as recorded.
+/// - Events: a visit of two wide nodes is one test of nodes, with its number of compared boxes. It was
+///   visited because the boxes of both in their parents overlap. At a pair of leaves the boxes of triangles
+///   are compared. Pairs of triangles that a plane separates are not among the tests of triangles.
+/// - Only the traversal of the bodies themselves is converted; traversals of levels of detail are not.
+///
+/// Throws InputError for a recording of one body, of 2D bodies, or without pairs of nodes.
+capture::Capture captured(const run::Recording& recording);
 
 /// The queries of a capture between two trees. A tree that was refitted is another tree.
 struct TreePair {
@@ -33,12 +47,6 @@ TreePairs tree_pairs(const capture::Capture& capture);
 /// same numbers, whatever the mesh: it may be open, degenerate or self-intersecting. Throws InputError for a
 /// mesh without triangles, or with coordinates that are not finite.
 bodies::LoadedBody captured_body(const capture::Mesh& mesh);
-
-/// Returns the shape of a captured tree, with each volume's own box (Volumes::box). A broken tree keeps what
-/// holds: see TreeShape::finish(); triangles that do not exist are left out. Adds a line to `notes` for each
-/// kind of fault.
-trace::TreeShape captured_shape(const capture::Tree& tree, std::uint32_t triangles, const std::string& name,
-                                std::vector<std::string>& notes);
 
 struct CapturedRunSettings {
   std::string name;        ///< of the run

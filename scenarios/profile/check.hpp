@@ -10,12 +10,18 @@
 
 #include "scenarios/profile/prices.hpp"
 #include "scenarios/profile/verdicts.hpp"
-#include "scenarios/profile/waste_picture.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/report/document.hpp"
+#include <lrbscope/render/image.hpp>
 #include <lrbscope/trace/capture.hpp>
 
 namespace lrb::profile {
+
+/// Where on a mesh the visits of an engine's traversal are wasted.
+struct WasteMap {
+  capture::Mesh mesh;
+  std::vector<double> waste;  ///< (|triangles|) wasted visits: PriceBook::waste_by_triangle()
+};
 
 /// Captures with at most this many visits are split into volumes and order unless CheckSettings::split
 /// decides otherwise. The split takes about 1 to 5 microseconds for each visit and for each pair that it

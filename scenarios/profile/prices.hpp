@@ -44,6 +44,21 @@
 
 namespace lrb::profile {
 
+/// Returns the least number of visits that any order of descent needs with the volumes of these trees;
+/// nullopt for more than 50 million pairs of nodes or 4000 levels.
+///
+/// A descent begins where the recorded one did, usually with both roots. At a pair whose volumes overlap it
+/// opens A's node, or B's, or both if the recorded engine ever did so. It then visits all pairs of children
+/// (QueryWalk::wide(): those whose volumes overlap, because they were compared before). The order in which
+/// pairs are visited makes no difference: it visits until nothing is left, so this is not for queries that
+/// may end early.
+///
+/// Recorded tests are taken as they are. Other volumes are compared by overlap().
+///
+/// Dynamic programming over pairs of nodes: the least number beneath a pair is 1, plus that of the pairs of
+/// children for the best choice. Parts of a choice that cannot become the best are skipped.
+std::optional<std::uint64_t> least_visits(CapturedBodies& bodies, const QueryWalk& walk);
+
 /// Sizes of larger leaves that Prices::saved_by_leaves is about.
 inline constexpr std::array<std::uint32_t, 3> kLargerLeaves{2, 4, 8};
 

@@ -7,16 +7,108 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/profile/pair_map.hpp"
 #include "scenarios/profile/volumes.hpp"
-#include "scenarios/profile/walk.hpp"
+#include <lrbscope/ids.hpp>
 #include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/observe.hpp>
 #include <lrbscope/trace/capture.hpp>
 
 namespace lrb::profile {
+
+/// Maps pairs of 32-bit numbers to 32-bit numbers: open addressing with linear probing, without removal. The
+/// pair (kNull, kNull) is reserved.
+class PairMap {
+ public:
+  PairMap() { clear(); }
+
+  void clear() {
+    slots_.assign(kFirst, {});
+    size_ = 0;
+  }
+  std::size_t size() const { return size_; }
+
+  /// Returns the value of a pair, or nullptr without one. Valid until the next insertion.
+  std::uint32_t* find(std::uint32_t a, std::uint32_t b) {
+    Slot& slot = slots_[place_of(key_of(a, b))];
+    return slot.key == kFree ? nullptr : &slot.value;
+  }
+  const std::uint32_t* find(std::uint32_t a, std::uint32_t b) const {
+    const Slot& slot = slots_[place_of(key_of(a, b))];
+    return slot.key == kFree ? nullptr : &slot.value;
+  }
+  /// Inserts a pair unless it exists. Returns its value.
+  std::uint32_t& insert(std::uint32_t a, std::uint32_t b, std::uint32_t value) {
+    if (2 * (size_ + 1) > slots_.size()) grow();
+    Slot& slot = slots_[place_of(key_of(a, b))];
+    if (slot.key == kFree) {
+      slot = {key_of(a, b), value};
+      ++size_;
+    }
+    return slot.value;
+  }
+
+ private:
+  static constexpr std::size_t kFirst = 64;  ///< a power of two
+  static constexpr std::uint64_t kFree = ~std::uint64_t{0};
+  struct Slot {
+    std::uint64_t key = kFree;
+    std::uint32_t value = 0;
+  };
+
+  static std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
+
+  /// Returns the slot of a key, or the free one where it belongs.
+  std::size_t place_of(std::uint64_t key) const {
+    const std::size_t mask = slots_.size() - 1;
+    // Fibonacci hashing (Knuth, The Art of Computer Programming, volume 3, section 6.4), upper bits.
+    std::size_t i = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 32) & mask;
+    while (slots_[i].key != kFree && slots_[i].key != key) i = (i + 1) & mask;
+    return i;
+  }
+  void grow() {
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& slot : old)
+      if (slot.key != kFree) slots_[place_of(slot.key)] = slot;
+  }
+
+  std::vector<Slot> slots_;
+  std::size_t size_ = 0;
+};
+
+/// The parents of a captured tree's nodes and the leaves of its triangles. Also valid for broken trees:
+/// the first of several parents or leaves counts, and nodes that the root does not reach have no depth.
+struct TreeIndex {
+  std::vector<std::uint32_t> parent;           ///< by node; kNull: the root, or no parent
+  std::vector<std::uint32_t> depth;            ///< by node; kNull: not below the root
+  std::vector<std::uint32_t> from_root;        ///< the nodes below the root, breadth first, each once
+  std::vector<std::uint32_t> leaf;             ///< by triangle; kNull: in no leaf
+  std::vector<std::uint32_t> triangles_below;  ///< by node; 0 for nodes not below the root
+
+  /// `triangles`: number of triangles of the tree's mesh.
+  TreeIndex(const capture::Tree& tree, std::size_t triangles);
+
+  bool is_leaf(std::uint32_t node) const { return !has_children[node]; }
+  std::vector<char> has_children;
+};
+
+/// A test of bounding volumes with the one that led to it.
+struct Visit {
+  static constexpr std::size_t kNone = ~std::size_t{0};
+  std::size_t parent = kNone;    ///< index of an event; kNone: the first pair, or unknown
+  std::optional<NodeStep> step;  ///< the nodes that the engine descended from here; nullopt: none
+  std::uint8_t children = 0;     ///< number of pairs visited from here; saturates at 255
+};
+
+/// Returns a visit for each event of a query of two trees: finds the predecessor of each test, which is the
+/// test of the parents, or of one parent and the other node. The visit of a triangle test has the test of its
+/// leaves as parent; visits of counters and phases are unused.
+std::vector<Visit> visits_of(const TreeIndex& tree_a, const TreeIndex& tree_b,
+                             std::span<const capture::Event> events);
 
 /// Triangles of two meshes by the capture's numbers, or of one: then a < b.
 struct TrianglePair {

@@ -10,7 +10,6 @@
 
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"
-#include "scenarios/record/approach.hpp"
 #include "scenarios/record/engine_run.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/coherent.hpp>
@@ -183,10 +182,10 @@ trace::RecorderSettings recorder_settings(const spec::Scenario& s) {
   return settings;
 }
 
-std::string note_of(const Approach& approach) {
-  const std::string step = contact_step(approach.search);
+std::string note_of(const spec::Approach& approach) {
+  const std::string step = spec::contact_step(approach.search);
   if (!step.empty())
-    return "first contact at " + step + ", " + contact_way(approach.search) +
+    return "first contact at " + step + ", " + spec::contact_way(approach.search) +
            "; the first step in contact is step " + std::to_string(approach.first_contact);
   return approach.met ? "first contact at step " + std::to_string(approach.first_contact)
                       : "the bodies do not touch along the path";
@@ -194,8 +193,8 @@ std::string note_of(const Approach& approach) {
 
 std::vector<Pose> poses_of_b(const spec::Scenario& s, Recording& r) {
   if (s.motion.kind != spec::Motion::Kind::approach) return spec::poses_of(s.motion, s.bodies[1].pose);
-  Approach approach = find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep, s.bodies[1].pose,
-                                    s.motion, s.more.distance);
+  spec::Approach approach = spec::find_approach(r.bodies[0].rep, s.bodies[0].pose, r.bodies[1].rep,
+                                                s.bodies[1].pose, s.motion, s.more.distance);
   r.notes.push_back(note_of(approach));
   r.trace.header.first_contact = std::move(approach.search);
   return std::move(approach.poses);

@@ -39,7 +39,10 @@ struct Table {
 /// Returns columns and rows of a table as CSV (RFC 4180), for other programs. Cells with a comma, a quote or
 /// a line break are quoted.
 std::string csv(const Table& table);
-/// Returns columns and rows of a table as aligned text; see io::in_columns().
+/// Returns rows as lines of columns that are two spaces apart: the first `left` aligned left, the others
+/// right. The last cell of a row with more or fewer cells than the first row may exceed its column.
+std::string in_columns(const std::vector<std::vector<std::string>>& rows, std::size_t left = 1);
+/// Returns columns and rows of a table in this form.
 std::string in_columns(const Table& table, std::size_t left = 1);
 
 /// Returns a table as a LaTeX tabular with the rules of the package booktabs. Columns of numbers are aligned

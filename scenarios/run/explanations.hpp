@@ -1,17 +1,35 @@
 #pragma once
-/// Explains a run's pairs of faces, and its steps without pairs, for its page (report/web/scene_panels.js).
+/// Explanations as text and as JSON, which `lrbscope why` prints; and those of a run's pairs of faces, and of
+/// its steps without pairs, for its page (report/web/scene_panels.js).
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
+#include <nlohmann/json.hpp>
 #include <nlohmann/json_fwd.hpp>
 
 #include "scenarios/frames/frames.hpp"
+#include <lrbscope/explain.hpp>
 
 namespace lrb::run {
+
+/// Explain why two faces are or are not in an answer, as lines of text and as a JSON object.
+std::string explanation_text(const PairExplanation& e, const LrbRep& a, const LrbRep& b);
+nlohmann::ordered_json explanation_json(const PairExplanation& e, const LrbRep& a, const LrbRep& b);
+
+/// Explain the result of a query, including the proof that two bodies are separate.
+std::string explanation_text(const WalkExplanation& e);
+nlohmann::ordered_json explanation_json(const WalkExplanation& e);
+
+// Phrases of explanations, common to the program and the pages.
+
+/// Names the test that decided about two faces of bodies of `dim` dimensions, as a phrase that follows
+/// "decided by".
+std::string_view to_text(DecidedBy by, int dim);
 
 /// The frame of a page's view: x_page = (x - origin) / unit, in floats.
 struct SceneFrame {

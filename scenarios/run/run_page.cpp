@@ -8,10 +8,10 @@
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/record/approach.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/run/run_charts.hpp"
 #include "scenarios/run/scene_json.hpp"
+#include "scenarios/spec/motion.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/counters.hpp>
@@ -109,8 +109,8 @@ std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace:
   }
   add_measured(r, at, out);
   if (const auto& search = p.trace->header.first_contact; search && search->step)
-    out.push_back({"First contact", contact_step(*search),
-                   contact_way(*search) + "; proven collision-free until then"});
+    out.push_back({"First contact", spec::contact_step(*search),
+                   spec::contact_way(*search) + "; proven collision-free until then"});
   out.push_back({"Face tests", render::group_digits(r.counters.face_tests),
                  at + "; brute force: " +
                      render::group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
@@ -178,7 +178,7 @@ std::string sentence_of(const RecordedRun& p) {
       return "For " + both + ", " + p.trace->header.engine + " " + engine_sentence(p);
     std::string out = both;
     if (const auto& search = p.trace->header.first_contact; search && search->step)
-      out += ", first touch at " + contact_step(*search);
+      out += ", first touch at " + spec::contact_step(*search);
     else if (const trace::EventId at = first_contact(*p.trace); at != kNull)
       out += ", intersect from step " + std::to_string(p.trace->steps[p.trace->step_of(at)].index);
     else

@@ -1,12 +1,17 @@
 #pragma once
+/// Runs scenarios and writes their folders.
 
 #include <string>
 #include <vector>
 
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/record/recorded_run.hpp"
+#include "scenarios/spec/scenario.hpp"
 
 namespace lrb::run {
+
+/// Throws EnvironmentError if the program was built without the engine for pages, which live.html needs.
+void check_live_page();
 
 struct RunOutcome {
   std::vector<std::string> mismatches;  ///< failed expectations
@@ -21,7 +26,7 @@ RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& rec
 RecordedRun recorded_run_of(const std::string& title, const std::string& purpose, const Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
-/// montage.png}, and with `live` also live.html (live_page.hpp).
+/// montage.png}, and with `live` also live.html.
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
                         const ProgressReport& progress, bool live = false);
 /// Writes the same files for a run that has been recorded.

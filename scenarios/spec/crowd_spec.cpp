@@ -5,7 +5,6 @@
 
 #include "scenarios/io/poses.hpp"
 #include "scenarios/spec/scenario.hpp"
-#include "scenarios/spec/shipped.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>

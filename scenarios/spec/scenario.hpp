@@ -8,10 +8,12 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/pictures/frame_spec.hpp"
 #include "scenarios/bodies/generators.hpp"
+#include "scenarios/spec/motion.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
@@ -20,9 +22,6 @@
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb::spec {
-
-/// Maximum number of steps of a scenario or a crowd.
-inline constexpr std::uint32_t kMaxSteps = 100'000;
 
 /// Content kind of a scenario.
 enum class Show : std::uint8_t {
@@ -44,42 +43,6 @@ struct BodySpec {
   BuildOptions build;
   Pose pose;  ///< initial pose, and the constant one if it does not move
 };
-
-/// Motion of B while A is at rest. Each kind uses some of the fields.
-struct Motion {
-  enum class Kind : std::uint8_t { poses, keyframes, sweep, approach, spin };
-  struct Keyframe {
-    std::uint32_t step = 0;
-    Eigen::Vector3d position{0, 0, 0};
-    Eigen::Vector3d axis{0, 0, 1};
-    double degrees = 0;
-  };
-  Kind kind = Kind::poses;
-  std::vector<Pose> poses;  ///< poses: one for each step, applied to B unchanged
-  std::vector<Pose> of_a;   ///< poses: one for each step, applied to A unchanged; empty: A does not move
-  /// Keyframes: positions interpolated linearly, rotations along the shortest arc.
-  std::vector<Keyframe> keyframes;
-  /// Sweep: position of B; approach: initial position of B, relative to the target.
-  Eigen::Vector3d from{0, 0, 0};
-  Eigen::Vector3d to{0, 0, 0};      ///< sweep
-  Eigen::Vector3d target{0, 0, 0};  ///< approach: the point that B's origin moves towards
-  Eigen::Vector3d axis{0, 0, 1};    ///< sweep, approach, spin: rotation axis of B
-  double degrees = 0;               ///< sweep, spin: over all steps; approach: per step
-  std::uint32_t steps = 1;          ///< sweep, spin: number of steps; approach: maximum number tried
-  double step_length = 0.01;        ///< approach: as a share of the sum of the bodies' diagonals
-  std::uint32_t before = 10;        ///< approach: steps shown before the first contact
-  std::uint32_t into = 5;           ///< approach: steps shown after it
-  bool exact = false;  ///< approach: a step is at the first contact itself, not at the first colliding one of
-                       ///< equal steps
-};
-constexpr auto enum_names(Motion::Kind) {
-  using Kind = Motion::Kind;
-  return std::to_array<EnumName<Kind>>({{Kind::poses, "poses"},
-                                        {Kind::keyframes, "keyframes"},
-                                        {Kind::sweep, "sweep"},
-                                        {Kind::approach, "approach"},
-                                        {Kind::spin, "spin"}});
-}
 
 using render::FrameSpec;
 
@@ -152,17 +115,26 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback);
 std::string pictures_text(const FrameSpec& frames);
 FrameSpec read_pictures(const std::string& text, const std::string& name, const FrameSpec& fallback = {});
 
-// Reads poses and motions of a scenario, and computes the poses of motions that need no query.
+// Shipped files, and those that users give by their paths.
 
-/// Reads a pose: 12 numbers (3x4, row by row), or {position, axis, degrees}.
-Pose read_pose(const io::JsonNode& node);
-Motion read_motion(const io::JsonNode& node);
+/// Returns the names NAME of the shipped files "NAME<ending>", in alphabetical order.
+std::vector<std::string> shipped_names(std::string_view ending);
 
-/// Returns the poses of B, one for each step, for every kind of motion except approach (approach.hpp).
-/// `start` is the body's own pose, applied first.
-std::vector<Pose> poses_of(const Motion& motion, const Pose& start);
+/// Returns the "purpose" that the shipped file "NAME<ending>" states.
+std::string shipped_purpose(const std::string& name, std::string_view ending);
 
-/// Returns the pose that applies `first`, then `second`.
-Pose then(const Pose& first, const Pose& second);
+struct NamedText {
+  std::string text, file;  ///< `file` is for messages
+};
+
+/// Returns the text of a shipped file "NAME<ending>", or of a file by its path. `what` is the kind of file,
+/// for messages. Throws InputError; for a word that is neither, it suggests the closest shipped name.
+NamedText open_named(const std::string& name_or_path, std::string_view ending, std::string_view what);
+
+inline constexpr std::string_view kScenarioEnding = ".scenario.json", kCrowdEnding = ".crowd.json",
+                                  kExperimentEnding = ".experiment.json";
+
+/// Reads a shipped scenario by name, or a scenario from a file. Throws InputError.
+Scenario open_scenario(const std::string& name_or_path);
 
 }  // namespace lrb::spec

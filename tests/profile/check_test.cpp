@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/profile/captured.hpp"
+#include "scenarios/profile/captured_run.hpp"
 #include "tests/support/capture_file.hpp"
 #include "tests/support/faulty_engine.hpp"
 #include "tests/support/program.hpp"

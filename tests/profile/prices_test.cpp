@@ -7,9 +7,8 @@
 
 #include <doctest/doctest.h>
 
-#include "scenarios/profile/captured.hpp"
+#include "scenarios/profile/captured_run.hpp"
 #include "scenarios/profile/check.hpp"
-#include "scenarios/profile/least_visits.hpp"
 #include "tests/support/faulty_engine.hpp"
 #include "tests/support/simplex_distance.hpp"
 #include <lrbscope/error.hpp>

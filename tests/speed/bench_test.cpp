@@ -17,7 +17,7 @@
 #include "bench/speed/metrics.hpp"
 #include "bench/speed/peer_table.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/report/gnuplot.hpp"
+#include "scenarios/report/chart.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>

@@ -14,7 +14,7 @@
 #include "bench/stability/worst_case.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/report/gnuplot.hpp"
+#include "scenarios/report/chart.hpp"
 #include "tests/stability/made_up_grid.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/text.hpp"

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "scenarios/report/gnuplot.hpp"
+#include "scenarios/report/chart.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/pixels.hpp"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/pictures/body_picture.hpp"
-#include "scenarios/bodies/region_figures.hpp"
+#include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
 #include "tests/support/pixels.hpp"

@@ -492,7 +492,7 @@ function fail(text) {
   byId("failed").hidden = false;
 }
 
-/** Returns bytes packed by live_page.cpp. */
+/** Returns bytes packed by live_page(). */
 async function inflated(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0)),
     stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));

@@ -10,11 +10,10 @@
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/export/body_parts.hpp"
 #include "scenarios/export/model.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>

@@ -9,11 +9,10 @@
 
 #include "render/face_look.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/figure/callouts.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/spec/shipped.hpp"
+#include "scenarios/spec/scenario.hpp"
 #include "tests/support/pixels.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"

@@ -1,5 +1,5 @@
 // Files of results that an interrupted computation leaves.
-#include "scenarios/io/unfinished.hpp"
+#include "scenarios/io/files.hpp"
 
 #include <doctest/doctest.h>
 

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/bodies/generators.hpp"
-#include "scenarios/paper/series_report.hpp"
+#include "scenarios/paper/series.hpp"
 #include "scenarios/paper/tables.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>

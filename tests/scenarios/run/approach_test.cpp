@@ -1,9 +1,8 @@
 // Approaches: the step of first contact, and that nothing is passed through between two steps.
-#include "scenarios/record/approach.hpp"
-
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "scenarios/spec/motion.hpp"
 #include <lrbscope/collide.hpp>
 
 using namespace lrb;
@@ -33,7 +32,7 @@ Relation relation_at(const LrbRep& a, const Pose& pose) {
 }  // namespace
 
 TEST_CASE("approach: whole steps, the first in contact") {
-  const run::Approach found = run::find_approach(box(), {}, box(), {}, coming(0.05));
+  const spec::Approach found = spec::find_approach(box(), {}, box(), {}, coming(0.05));
   REQUIRE(found.met);
   REQUIRE(found.poses.size() == 6);
   CHECK(found.first_contact == 3);
@@ -52,7 +51,7 @@ TEST_CASE("approach: a step at the first contact itself") {
   spec::Motion motion = coming(0.05);
   motion.exact = true;
   motion.degrees = 3;
-  const run::Approach found = run::find_approach(box(), {}, box(), {}, motion);
+  const spec::Approach found = spec::find_approach(box(), {}, box(), {}, motion);
   REQUIRE(found.met);
   REQUIRE(found.poses.size() == 6);
   CHECK(found.first_contact == 3);
@@ -73,19 +72,19 @@ TEST_CASE("approach: a sheet between two steps is detected") {
   spec::Motion motion = coming(0.1);
   motion.from = {0, 0, 7};
   // Steps of 2.7 and a box of 1: one step ends 1.5 before the sheet, and the next 0.2 behind it.
-  const run::Approach found = run::find_approach(sheet, {}, box(), {}, motion);
+  const spec::Approach found = spec::find_approach(sheet, {}, box(), {}, motion);
   REQUIRE(found.met);
   CHECK(relation_at(sheet, found.poses[found.first_contact]) != Relation::undefined);
 }
 
 TEST_CASE("approach: nested bodies collide at once; bodies that miss do not") {
   const LrbRep large = LrbRep::without_regions(shapes::box({-9, -9, -9}, {9, 9, 9}), true, false);
-  const run::Approach inside = run::find_approach(large, {}, box(), {}, coming(0.05));
+  const spec::Approach inside = spec::find_approach(large, {}, box(), {}, coming(0.05));
   CHECK(inside.met);
   CHECK(inside.first_contact == 0);
   spec::Motion past = coming(0.05);
   past.target = {5, 0, 0};
-  const run::Approach missed = run::find_approach(box(), {}, box(), {}, past);
+  const spec::Approach missed = spec::find_approach(box(), {}, box(), {}, past);
   CHECK(!missed.met);
   CHECK(!missed.search.step.has_value());
   CHECK(missed.poses.size() > 5);
@@ -93,16 +92,16 @@ TEST_CASE("approach: nested bodies collide at once; bodies that miss do not") {
 
 // It was counted from the start of the approach, of which a run records the end alone.
 TEST_CASE("approach: the first contact is a recorded step") {
-  const run::Approach found = run::find_approach(box(), {}, box(), {}, coming(0.05));
+  const spec::Approach found = spec::find_approach(box(), {}, box(), {}, coming(0.05));
   REQUIRE(found.search.step.has_value());
   CHECK(found.search.step->at(0) > found.first_contact - 1);
   CHECK(found.search.step->at(1) <= found.first_contact);
-  CHECK(run::contact_step(found.search) == "step 2.28");
-  CHECK(run::contact_way(found.search) == "after B has moved 0.3947441 from step 0");
+  CHECK(spec::contact_step(found.search) == "step 2.28");
+  CHECK(spec::contact_way(found.search) == "after B has moved 0.3947441 from step 0");
   spec::Motion late = coming(0.05);
   late.before = 0;
-  const run::Approach after = run::find_approach(box(), {}, box(), {}, late);
+  const spec::Approach after = spec::find_approach(box(), {}, box(), {}, late);
   CHECK(after.search.step->at(1) == doctest::Approx(found.search.step->at(1) - 3));
-  CHECK(run::contact_step(after.search) == "0.72 steps before step 0");
-  CHECK(run::contact_way(after.search) == "B moves 0.1248711 from there until step 0");
+  CHECK(spec::contact_step(after.search) == "0.72 steps before step 0");
+  CHECK(spec::contact_way(after.search) == "B moves 0.1248711 from there until step 0");
 }

@@ -11,7 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/compare/regions.hpp"
+#include "scenarios/compare/compare.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/trace/counters.hpp>
 #include <lrbscope/trace/recorder.hpp>

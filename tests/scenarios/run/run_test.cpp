@@ -8,12 +8,10 @@
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/frames/frame_state.hpp"
-#include "scenarios/record/approach.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
-#include "scenarios/spec/shipped.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/validate.hpp>

@@ -8,7 +8,6 @@
 
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/spec/shipped.hpp"
 #include "tests/support/json_schema.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/record_fields.hpp>
