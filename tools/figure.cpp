@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/mesh/io/formats.hpp"
 #include "render/gl.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
@@ -23,6 +22,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
 #include <lrbscope/render/svg.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 

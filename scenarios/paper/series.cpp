@@ -13,7 +13,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/mesh/io/formats.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/paper/tables.hpp"
 #include <lrbscope/core/file.hpp>

@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "engine/mesh/io/formats.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/profile/query_walk.hpp"

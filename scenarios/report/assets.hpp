@@ -1,6 +1,6 @@
 #pragma once
-/// Parts of pages: scripts, pictures, texts filled into HTML, and number arrays as text for scene_run.js: a prefix
-/// for the type and size of an element ("u1:", "u2:", "u4:" or "f4:"), then the elements in base64,
+/// Parts of pages: scripts, pictures, texts filled into HTML, and number arrays as text for scene_run.js: a
+/// prefix for the type and size of an element ("u1:", "u2:", "u4:" or "f4:"), then the elements in base64,
 /// little-endian.
 
 #include <cstddef>
@@ -45,9 +45,9 @@ std::string fill(std::string_view pattern, std::initializer_list<std::string_vie
 std::string filled(std::string_view shape,
                    std::initializer_list<std::pair<std::string_view, std::string_view>> texts);
 
-/// Returns the script of a page that needs the given ES modules: the embedded files MODULE.js. Browsers load no
-/// modules for a page from disk, so the script contains each of them, and all that they import, once, after what
-/// it imports: `const MODULE_js = (() => { ... return { exports }; })();`.
+/// Returns the script of a page that needs the given ES modules: the embedded files MODULE.js. Browsers load
+/// no modules for a page from disk, so the script contains each of them, and all that they import, once,
+/// after what it imports: `const MODULE_js = (() => { ... return { exports }; })();`.
 std::string script_of(std::span<const std::string> modules);
 
 /// Packs the numbers at the smallest element size that fits the largest. The maximum value of that size

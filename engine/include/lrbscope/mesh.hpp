@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -50,6 +51,9 @@ Mesh read_mesh(const std::string& path);
 /// Reads a mesh from memory. `name` replaces the path in messages; its extension is used where the content is
 /// ambiguous.
 Mesh read_mesh(const std::string& bytes, const std::string& name);
+
+/// Returns true for the usual extension of a format that read_mesh() reads, in any case.
+bool has_mesh_extension(std::string_view path);
 
 using FaceColour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 

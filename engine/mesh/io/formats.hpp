@@ -42,9 +42,6 @@ Mesh read_stl_binary(std::string_view bytes, std::string_view name);
 Mesh read_ply(std::string_view bytes, std::string_view name);
 Mesh read_off(std::string_view bytes, std::string_view name);
 
-/// Returns true for the usual extension of one of the formats, in any case.
-bool has_mesh_extension(std::string_view path);
-
 /// Returns true if the size fits a binary STL file: 84 bytes, plus 50 for each triangle in its header.
 bool has_size_of_binary_stl(std::string_view bytes);
 

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/crowd/crowd_frames.hpp"
-#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/crowd/crowd_report.hpp"
+#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"
 #include "tests/support/folder.hpp"

@@ -1,8 +1,7 @@
 // Files of results that an interrupted computation leaves.
-#include "scenarios/io/files.hpp"
-
 #include <doctest/doctest.h>
 
+#include "scenarios/io/files.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
 
