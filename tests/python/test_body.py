@@ -112,13 +112,6 @@ def test_an_open_surface_is_a_body_but_no_solid():
     assert lrbscope.collide(body, Body(*cube_arrays(0.25, 0.25))).relation == "undefined"
 
 
-def test_answers_do_not_depend_on_regions(ball):
-    plain = Body(*ball_arrays(3), regions=False)
-    assert plain.region_count == 0 and ball.region_count > 0
-    pose = shifted(1.1, 0.3, 0.2)
-    assert lrbscope.collide(ball, plain, pose).fingerprint == lrbscope.collide(plain, ball, pose).fingerprint
-
-
 @pytest.mark.parametrize("ending", ["lrb", "ply", "obj"])
 def test_files(ball, tmp_path, ending):
     path = tmp_path / f"ball.{ending}"

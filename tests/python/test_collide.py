@@ -38,16 +38,6 @@ def test_pairs_are_those_of_brute_force(rng):
     assert 10 < found.hits.sum() < 60
 
 
-def test_random_triangles_are_those_of_brute_force(rng):
-    def soup(n):
-        return rng.uniform(-1, 1, (3 * n, 3)), np.arange(3 * n).reshape(n, 3)
-
-    for _ in range(10):
-        (va, fa), (vb, fb) = soup(40), soup(30)
-        r = collide(Body(va, fa), Body(vb, fb))
-        assert np.array_equal(r.pairs, brute_pairs(va, fa, vb, fb)) and len(r.pairs) > 0
-
-
 def test_one_query_on_several_threads():
     big = Body(*ball_arrays(5))
     alone, *others = (collide(big, big, threads=n) for n in (1, 2, 5, 0))
@@ -156,26 +146,6 @@ def test_an_error_in_a_batch_is_that_of_the_first_pose(cube):
     poses[40, 0, 3] = np.nan
     with pytest.raises(InputError, match="finite numbers"):
         collide(cube, cube, poses)
-
-
-def test_modes(ball):
-    pose = shifted(1.1, 0.3, 0.2)
-    every = collide(ball, ball, pose)
-    for mode in ("first", "any"):
-        one = collide(ball, ball, pose, mode=mode)
-        assert one.pairs.shape == (1, 2) and one.pairs[0].tolist() in every.pairs.tolist()
-        assert one.relation == "crossing"
-
-
-def test_coarse_answers():
-    ball = Body(*ball_arrays(4))
-    pose = shifted(1.5, 0.4, 0.3)
-    coarse = collide(ball, ball, pose, tolerance=0.1)
-    exact = collide(ball, ball, pose)
-    assert coarse.relation == exact.relation and coarse.finished
-    assert exact.error_bound == 0 and 0 < coarse.error_bound <= 0.2 * 1.001
-    limited = collide(ball, ball, pose, max_tests=1)
-    assert limited.relation in ("unresolved", exact.relation)
 
 
 def test_separation(ball):

@@ -94,52 +94,6 @@ def cube():
     return Mesh(vertices - 0.5, faces)
 
 
-def test_managers_of_trimesh(cube):
-    right, left = shifted(5, 0, 0), shifted(-5, 0, 0)
-    m = lrbscope.collision.CollisionManager()
-    m.add_object("cube0", cube)
-    m.add_object("cube1", cube, right)
-    assert m.in_collision_single(cube) is True
-    ret, names, data = m.in_collision_single(cube, right, return_names=True, return_data=True)
-    assert ret is True and "cube1" in names and len(data) > 0
-    ret, names, data = m.in_collision_single(cube, left, return_names=True, return_data=True)
-    assert ret is False and len(names) == 0 and len(data) == 0
-    assert m.in_collision_internal() is False
-    m.add_object("cube2", cube, right)
-    ret, names = m.in_collision_internal(return_names=True)
-    assert ret is True and names == {("cube1", "cube2")}
-    m.set_transform("cube2", left)
-    assert m.in_collision_internal() is False
-    m.set_transform("cube2", right)
-    assert m.in_collision_internal() is True
-    m.remove_object("cube2")
-    assert m.in_collision_internal() is False
-    n = lrbscope.collision.CollisionManager()
-    n.add_object("cube0", cube, left)
-    assert m.in_collision_other(n) is False
-    n.add_object("cube3", cube, right)
-    assert m.in_collision_other(n, return_names=True) == (True, {("cube1", "cube3")})
-
-
-def test_distances_of_trimesh(cube):
-    m = lrbscope.collision.CollisionManager()
-    m.add_object("cube1", cube, shifted(5, 0, 0))
-    assert np.isclose(m.min_distance_single(cube), 4.0)
-    m.add_object("cube2", cube, shifted(-5, 0, 0))
-    for x, name in ((2, "cube1"), (-2, "cube2")):
-        dist, found = m.min_distance_single(cube, shifted(x, 0, 0), return_name=True)
-        assert np.isclose(dist, 2.0) and found == name
-    assert np.isclose(m.min_distance_internal(), 9.0)
-    m.add_object("cube3", cube, shifted(2, 0, 0))
-    dist, names = m.min_distance_internal(return_names=True)
-    assert np.isclose(dist, 2.0) and names == ("cube1", "cube3")
-    n = lrbscope.collision.CollisionManager()
-    n.add_object("cube4", cube, shifted(-1, 0, 0))
-    dist, names, data = m.min_distance_other(n, return_names=True, return_data=True)
-    assert np.isclose(dist, 2.0) and names == ("cube3", "cube4")
-    assert np.isclose(np.linalg.norm(data.point(names[0]) - data.point(names[1])), dist)
-
-
 class Graph(dict):
     """The part of trimesh.Scene.graph that managers are made of."""
 
