@@ -108,7 +108,7 @@ TEST_CASE("metadata of events is compared") {
   CHECK(difference(x, y).starts_with("step 2: fingerprint: expected "));
   y = x;
   y.steps[0].result.counters.box_tests += 1;
-  CHECK(difference(x, y) == "step 0: counter box_tests: expected 0, found 1");
+  CHECK(difference(x, y).starts_with("step 0: counter box_tests: expected "));
   y = x;
   y.header.request.tolerance = 0.5;
   CHECK(difference(x, y) == "run: request: tolerance: expected 0, found 0.5");

@@ -1,13 +1,12 @@
 #pragma once
 /// Recorded runs that the trace tests share, with the wrappers that were really there after each event.
 
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "engine/collide/collide_into.hpp"
 #include "tests/support/lrb_shapes.hpp"
-#include "tests/support/toy_query.hpp"
 #include <lrbscope/trace/recorder.hpp>
 
 namespace lrb::trace::runs {
@@ -30,30 +29,51 @@ struct Run {
   std::vector<Snapshot> after;  ///< (|events seen|)
 };
 
-/// One time step for each translation of B; B is turned a little, so that its numbers have all their digits.
+/// Records a query, and keeps its wrappers after each event.
+struct Watch : NullProbe {
+  static constexpr bool kEnabled = true;
+  Recorder& recorder;
+  QueryContext& context;
+  std::vector<Snapshot>& after;
+
+  Watch(Recorder& r, QueryContext& c, std::vector<Snapshot>& a) : recorder(r), context(c), after(a) {}
+  void keep() {
+    after.push_back({context[Side::a].wrapper->boundary(), context[Side::b].wrapper->boundary()});
+  }
+  void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a, std::uint32_t depth_b) {
+    recorder.face_test(a, b, meet, depth_a, depth_b);
+    keep();
+  }
+  void refine(Side side, RegionId region, std::uint32_t added) {
+    recorder.refine(side, region, added);
+    keep();
+  }
+  void contact(SimplexId a, SimplexId b, exact::Meet meet) {
+    recorder.contact(a, b, meet);
+    keep();
+  }
+};
+
+/// One time step for each translation of B, with the paper's recursion, whose refinements follow tests; B is
+/// turned a little, so that its numbers have all their digits.
 inline Run record(const LrbRep& a, const LrbRep& b, const std::vector<Eigen::Vector3d>& translations,
                   RecorderSettings settings = {}) {
   settings.scenario = settings.scenario.empty() ? "a \"test\"\n run, äöü" : settings.scenario;
-  if (settings.request.recursion == Recursion::complete)  // the toy query's refinements follow tests
-    settings.request.recursion = Recursion::paper;
+  if (settings.request.recursion == Recursion::complete) settings.request.recursion = Recursion::paper;
   settings.scenario_hash = 0xfedcba9876543210u;
   settings.sources = {"shapes/a.obj", "shapes/b.obj"};
-  const WrapperMode mode = settings.request.wrapper;
+  const CollideRequest request = settings.request;
   Recorder recorder(a, b, std::move(settings));
   Run run;
+  QueryContext context;
+  Watch watch(recorder, context, run.after);
   std::uint32_t index = 0;
   for (const Eigen::Vector3d& t : translations) {
     const Pose pose_b = Pose::rotation({0, 0, 1}, 0.1, t);
     recorder.begin_step(index++, {}, pose_b);
-    const Wrapper fresh_a(a, mode), fresh_b(b, mode);
-    run.after.push_back({fresh_a.boundary(), fresh_b.boundary()});
-    const toy::Query<Recorder, std::function<void()>>* running = nullptr;
-    toy::Query<Recorder, std::function<void()>> query(a, {}, b, pose_b, mode, recorder, [&] {
-      run.after.push_back({running->wrapper(0).boundary(), running->wrapper(1).boundary()});
-    });
-    running = &query;
-    recorder.end_step(query.run());
-    run.after.push_back({query.wrapper(0).boundary(), query.wrapper(1).boundary()});
+    run.after.push_back({Wrapper(a, request.wrapper).boundary(), Wrapper(b, request.wrapper).boundary()});
+    recorder.end_step(collide(a, {}, b, pose_b, request, context, watch));
+    watch.keep();
   }
   run.trace = recorder.take();
   return run;
