@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/torture/tally.hpp"
 
 namespace lrb::torture {
 

@@ -21,20 +21,6 @@ constexpr std::uint64_t kMeasuredEvery = 16;
 struct CoarseTally {
   std::uint64_t queries = 0, meeting = 0, alone_apart = 0, unresolved = 0, with_lids = 0, measured = 0;
   std::uint64_t wrong_relations = 0, wrong_separate = 0, wrong_bounds = 0, crashes = 0;
-
-  CoarseTally& operator+=(const CoarseTally& t) {
-    queries += t.queries;
-    meeting += t.meeting;
-    alone_apart += t.alone_apart;
-    unresolved += t.unresolved;
-    with_lids += t.with_lids;
-    measured += t.measured;
-    wrong_relations += t.wrong_relations;
-    wrong_separate += t.wrong_separate;
-    wrong_bounds += t.wrong_bounds;
-    crashes += t.crashes;
-    return *this;
-  }
   std::uint64_t differences() const { return wrong_relations + wrong_separate + wrong_bounds + crashes; }
 };
 

@@ -278,24 +278,6 @@ class Comparison {
 
 }  // namespace
 
-Tally& Tally::operator+=(const Tally& t) {
-  poses += t.poses;
-  in_contact += t.in_contact;
-  inside += t.inside;
-  with_regions += t.with_regions;
-  false_negatives += t.false_negatives;
-  false_positives += t.false_positives;
-  wrong_lists += t.wrong_lists;
-  wrong_relations += t.wrong_relations;
-  undecided += t.undecided;
-  rejections += t.rejections;
-  crashes += t.crashes;
-  oracle_pairs += t.oracle_pairs;
-  cgal_pairs += t.cgal_pairs;
-  parity_checks += t.parity_checks;
-  return *this;
-}
-
 Tally check(const cases::Case& c, RandomEngine& random, const Effort& effort, std::string& trouble) {
   return Comparison(c, random, effort, trouble).run();
 }

@@ -5,12 +5,13 @@
 #include <string>
 
 #include "bench/cases/families.hpp"
+#include "tests/torture/tally.hpp"
 
 namespace lrb::torture {
 
 using namespace cases;
 
-/// Sums over the cases of a class. Plain, so that a child process can send it through a pipe.
+/// Sums over the cases of a class.
 struct Tally {
   std::uint64_t poses = 0;
   std::uint64_t in_contact = 0, inside = 0;
@@ -23,7 +24,6 @@ struct Tally {
   std::uint64_t rejections = 0, crashes = 0;
   std::uint64_t oracle_pairs = 0, cgal_pairs = 0, parity_checks = 0;
 
-  Tally& operator+=(const Tally& t);
   std::uint64_t differences() const {
     return false_negatives + false_positives + wrong_lists + wrong_relations + undecided + crashes;
   }

@@ -20,15 +20,6 @@ constexpr std::uint64_t kPairBatch = 20000;
 
 struct PairTally {
   std::uint64_t pairs = 0, meet[3] = {}, wrong = 0, cgal_pairs = 0, cgal_wrong = 0, crashes = 0;
-  PairTally& operator+=(const PairTally& t) {
-    pairs += t.pairs;
-    for (int i = 0; i < 3; ++i) meet[i] += t.meet[i];
-    wrong += t.wrong;
-    cgal_pairs += t.cgal_pairs;
-    cgal_wrong += t.cgal_wrong;
-    crashes += t.crashes;
-    return *this;
-  }
   std::uint64_t differences() const { return wrong + cgal_wrong + crashes; }
 };
 

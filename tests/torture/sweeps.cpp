@@ -21,23 +21,6 @@ struct SweepTally {
   std::uint64_t motions = 0, contacts = 0, at_start = 0, never = 0, undecided = 0, grazing = 0, passed = 0,
                 samples = 0;
   std::uint64_t misses = 0, no_contact = 0, wide = 0, crashes = 0, steps = 0;
-
-  SweepTally& operator+=(const SweepTally& t) {
-    motions += t.motions;
-    contacts += t.contacts;
-    at_start += t.at_start;
-    never += t.never;
-    undecided += t.undecided;
-    grazing += t.grazing;
-    passed += t.passed;
-    samples += t.samples;
-    misses += t.misses;
-    no_contact += t.no_contact;
-    wide += t.wide;
-    crashes += t.crashes;
-    steps += t.steps;
-    return *this;
-  }
   std::uint64_t differences() const { return misses + no_contact + wide + crashes; }
 };
 

@@ -152,7 +152,7 @@ int usage(const std::string& complaint) {
   std::fprintf(stderr, "torture: %s\n", complaint.c_str());
   std::fprintf(
       stderr,
-      "usage: torture [--poses N] [--jobs N] [--class NAME] [--seed S] [--only POSE] [--oracle PAIRS]\n"
+      "usage: torture [--poses N] [--jobs N] [--class NAME] [--seed S] [--only POSE]\n"
       "               [--models FOLDER]   N poses of a class (slow ones: N / 4), compared with every oracle\n"
       "       torture --pairs N [--jobs N] [--seed S]   N pairs of degenerate simplices\n"
       "       torture --coarse N [--jobs N] [--seed S]   N coarse queries near contact\n"
@@ -184,8 +184,6 @@ bool take(Options& o, const std::string& key, const char* value) {
     o.seed = number(value);
   else if (key == "--only")
     o.only = static_cast<std::int64_t>(number(value));
-  else if (key == "--oracle")
-    o.effort.oracle_pairs = number(value);
   else if (key == "--models")
     o.models = value;
   else
