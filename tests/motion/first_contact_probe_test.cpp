@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/answer_content.hpp"
 #include <lrbscope/first_contact.hpp>
 
 using namespace lrb;
@@ -17,11 +18,7 @@ std::vector<ContactBounds> history_of(const LrbRep& a, const LrbRep& b, const Mo
   FirstContactHistory reported;
   watched = first_contact(a, Motion::still({}), b, motion, request, reported);
   const FirstContactResult plain = first_contact(a, Motion::still({}), b, motion, request);
-  CHECK(watched.outcome == plain.outcome);
-  CHECK(watched.t0 == plain.t0);
-  CHECK(watched.t1 == plain.t1);
-  CHECK(watched.pair == plain.pair);
-  CHECK(watched.counters == plain.counters);
+  CHECK((test::content(watched) == test::content(plain)));
   ContactBounds before;
   for (const ContactBounds& now : reported.history) {
     CAPTURE(now.t0);
