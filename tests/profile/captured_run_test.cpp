@@ -145,7 +145,7 @@ TEST_CASE(
         engine.query(tree_a, tree_b, place);
         for (std::uint32_t s = 0; s < a.triangles.size(); ++s)
           for (std::uint32_t t = 0; t < b.triangles.size(); ++t)
-            expected += ToyEngine::meet(a, s, b, t, place);
+            expected += triangles_meet(a, s, {}, b, t, Pose::translation(place));
       }
       const run::Recording run = recorded(engine.capture);
       const profile::CapturedTotals totals = profile::totals_of(run);
@@ -162,18 +162,19 @@ TEST_CASE(
 TEST_CASE("a captured walk becomes a trace: which pair led to which, and what met") {
   ToyEngine engine;
   const std::uint32_t tree = engine.add(captured(shapes::tetrahedron()), 1);
-  REQUIRE(engine.capture.trees[tree].size() == 7);  // nodes 1 and 4 below the root, leaves 2, 3, 5, 6
+  REQUIRE(engine.capture.trees[tree].size() == 7);  // nodes 1 and 2 below the root, leaves 3 to 6
   capture::Query q;
   q.number = 7;
   q.trees = {tree, tree};
   q.poses[1] = Pose::translation({0.125, 0.125, 0.125});
   q.ended = true;
   using capture::EventKind;
+  const std::uint32_t leaf = engine.capture.trees[tree].triangles(3)[0];
   // Both roots; A's first node; B's first node; two leaves of these, tested; the rest apart.
   q.events = {{0, 0, EventKind::nodes, 1}, {1, 0, EventKind::nodes, 1}, {1, 1, EventKind::nodes, 1},
-              {2, 1, EventKind::nodes, 1}, {2, 2, EventKind::nodes, 1}, {0, 0, EventKind::triangles, 1},
-              {2, 3, EventKind::nodes, 0}, {3, 1, EventKind::nodes, 0}, {1, 4, EventKind::nodes, 0},
-              {4, 0, EventKind::nodes, 0}};
+              {3, 1, EventKind::nodes, 1}, {3, 3, EventKind::nodes, 1}, {leaf, leaf, EventKind::triangles, 1},
+              {3, 4, EventKind::nodes, 0}, {4, 1, EventKind::nodes, 0}, {1, 2, EventKind::nodes, 0},
+              {2, 0, EventKind::nodes, 0}};
   q.events_seen = q.events.size();
   q.parts = {{0, 0, q.events.size()}};
   engine.capture.queries = {q};
@@ -187,12 +188,12 @@ TEST_CASE("a captured walk becomes a trace: which pair led to which, and what me
   CHECK(found == std::vector<std::array<std::uint32_t, 5>>{{0, 0, 99, 99, 2},
                                                            {1, 0, 0, 0, 2},
                                                            {1, 1, 1, 0, 2},
-                                                           {2, 1, 1, 1, 2},
-                                                           {2, 2, 2, 1, 1},
-                                                           {2, 3, 2, 1, 0},
-                                                           {3, 1, 1, 1, 0},
-                                                           {1, 4, 1, 0, 0},
-                                                           {4, 0, 0, 0, 0}});
+                                                           {3, 1, 1, 1, 2},
+                                                           {3, 3, 3, 1, 1},
+                                                           {3, 4, 3, 1, 0},
+                                                           {4, 1, 1, 1, 0},
+                                                           {1, 2, 1, 0, 0},
+                                                           {2, 0, 0, 0, 0}});
   const trace::Step& step = run.trace.steps.at(0);
   CHECK(step.index == 7);
   CHECK(step.result.counters.box_tests == 9);
@@ -201,7 +202,7 @@ TEST_CASE("a captured walk becomes a trace: which pair led to which, and what me
   CHECK(run.trace.header.engine == "Toy 1.0");
   CHECK(trace::trace_from_json(trace::trace_to_json(run.trace), "t.json") == run.trace);
   const trace::NodeCounts counts = trace::count_nodes(run.trees[0], Side::a, run.trace.events);
-  CHECK(counts.visits == std::vector<std::uint32_t>{1, 3, 3, 1, 1, 0, 0});
+  CHECK(counts.visits == std::vector<std::uint32_t>{1, 3, 1, 3, 1, 0, 0});
 }
 
 TEST_CASE("tests of triangles without a test of their volumes get a path from the root") {
@@ -212,9 +213,9 @@ TEST_CASE("tests of triangles without a test of their volumes get a path from th
   q.number = 1;
   q.trees = {tree, tree};
   using capture::EventKind;
-  const std::uint32_t s = t.triangles(2)[0], left = t.triangles(2)[0], right = t.triangles(3)[0];
+  const std::uint32_t s = t.triangles(3)[0], left = t.triangles(3)[0], right = t.triangles(4)[0];
   q.events = {
-      {2, 1, EventKind::nodes, 1}, {s, left, EventKind::triangles, 0}, {s, right, EventKind::triangles, 1}};
+      {3, 1, EventKind::nodes, 1}, {s, left, EventKind::triangles, 0}, {s, right, EventKind::triangles, 1}};
   engine.capture.queries = {q};
   const run::Recording run = recorded(engine.capture);
   const auto pair = std::find_if(run.trace.events.begin(), run.trace.events.end(),
@@ -230,7 +231,7 @@ TEST_CASE("boxes, axes, wide tests, counters and phases of a capture are those o
   capture::Query& q = engine.capture.queries[0];
   q.events.insert(q.events.begin(), {1, 0, capture::EventKind::phase});
   q.events.push_back({0, 77, capture::EventKind::count});
-  q.events[1].tests = 4, q.events[1].met = 1;
+  q.events[1].tests = 4, q.events[1].met = 1, q.events[1].axis = 2;
   q.events_seen = q.parts[0].count = q.events.size();
   const run::Recording run = recorded(engine.capture);
   const trace::EngineReport& report = run.trace.steps[0].result.engine.value();
