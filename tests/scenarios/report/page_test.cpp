@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <regex>
+#include <sstream>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -113,6 +114,24 @@ TEST_CASE("a page has each module of its view once, after those that it imports"
   }
   CHECK(count(html, "\nimport ") == 0);
   CHECK(count(html, "\nexport ") == 0);
+}
+
+TEST_CASE("modules import what others export") {
+  const std::regex import("import \\{ (.*) \\} from \"\\./(.*)\";"), name("\\w+");
+  int imports = 0;
+  for (const io::EmbeddedFile& file : io::embedded_files()) {
+    std::istringstream text{file.name.ends_with(".js") ? std::string(file.text) : ""};
+    std::smatch parts;
+    for (std::string line; std::getline(text, line);) {
+      if (!line.starts_with("import ") || !std::regex_match(line, parts, import)) continue;
+      const std::string names = parts[1], other(io::embedded_file(parts[2].str()));
+      for (std::sregex_iterator i(names.begin(), names.end(), name), end; i != end; ++i, ++imports)
+        CHECK_MESSAGE(std::regex_search(
+                          other, std::regex("\nexport (async )?(class|function|const) " + i->str() + "\\b")),
+                      file.name, " ", i->str());
+    }
+  }
+  CHECK(imports > 100);
 }
 
 TEST_CASE("missing parts of a page leave no markup") {
