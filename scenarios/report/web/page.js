@@ -33,6 +33,7 @@ let go = (key, value) => {
   const frame = nearestFrame(key, value);
   if (frame >= 0) show(frame);
 };
+/** Replaces what seek() does: on pages of runs it selects an event or a step. */
 export function seekBy(action) { go = action; }
 
 function startPlayer() {
