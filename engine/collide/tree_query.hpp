@@ -195,7 +195,8 @@ bool shares_corners(const Candidate& c, World& a, World& b) {
 }
 
 /// Returns the Meet of a candidate. The kernel has decided most: then no corner is transformed to the world.
-/// `exactly`: 3D, and floats may not decide alone.
+/// `exactly`: 3D, and floats may not decide alone. Inlined in each caller: as a call it makes queries in
+/// contact 6 % slower (instructions; tests/guard).
 template <class World>
 [[gnu::always_inline]] inline exact::Meet meet_of(const Candidate& c, World& a, World& b, int dim,
                                                   bool exactly) {

@@ -45,6 +45,17 @@ struct Bundle {
 
 }  // namespace
 
+std::string script_safe(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text)
+    if (c == '<')
+      out += "\\u003c";
+    else
+      out += c;
+  return out;
+}
+
 std::string script_of(std::span<const std::string> modules) {
   Bundle bundle;
   for (const std::string& module : modules) bundle.add(module);

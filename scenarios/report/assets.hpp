@@ -45,6 +45,9 @@ std::string fill(std::string_view pattern, std::initializer_list<std::string_vie
 std::string filled(std::string_view shape,
                    std::initializer_list<std::pair<std::string_view, std::string_view>> texts);
 
+/// Returns JSON that is safe inside a script element: it cannot close the element.
+std::string script_safe(std::string_view text);
+
 /// Returns the script of a page that needs the given ES modules: the embedded files MODULE.js. Browsers load
 /// no modules for a page from disk, so the script contains each of them, and all that they import, once,
 /// after what it imports: `const MODULE_js = (() => { ... return { exports }; })();`.

@@ -40,18 +40,6 @@ std::string tab_html(const std::string& name, const std::string& html) {
   return html.empty() ? "" : fill("<div class=\"tab\" data-tab=\"{}\">\n{!}</div>\n", {name, html});
 }
 
-/// Returns JSON that is safe inside a script element: it cannot close the element.
-std::string script_safe(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text)
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  return out;
-}
-
 PngBytes read_png_bytes(const std::string& path) {
   const std::string bytes = io::read_text(path);
   return {bytes.begin(), bytes.end()};

@@ -55,10 +55,10 @@ std::string live_page(const RecordedRun& recorded, const std::string& folder, co
   // Equal bodies are stored once.
   const std::string a = io::read_text(folder + "/a.lrb"), b = io::read_text(folder + "/b.lrb");
   data["files"] = {compressed(a), a == b ? std::string() : compressed(b)};
-  std::string library, text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string library;
   for (const char* name : {"three.min.js", "OrbitControls.js"})
     library += "\n" + std::string(io::embedded_file(name));
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   return report::filled(
       io::embedded_file("drag.html"),
       {{"title", render::escape_markup(recorded.title)},
@@ -67,7 +67,7 @@ std::string live_page(const RecordedRun& recorded, const std::string& folder, co
         render::page_root_css() + render::scene_root_css() + std::string(io::embedded_file("page.css")) +
             std::string(io::embedded_file("scene.css")) + std::string(io::embedded_file("drag.css"))},
        {"version", trace::lrbscope_version()},
-       {"data", text},
+       {"data", report::script_safe(text)},
        {"library", library},
        {"engine", io::embedded_file(kEngine)},
        {"script", report::script_of(std::array<std::string, 1>{"drag"})}});
