@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
-# layers.sh [TREE]: checks every project #include in the tree's sources against modules.txt. Fails on an include that its
-# module may not depend on, on a folder or public header that is not listed, and on a cyclic list.
+# layers.sh [TREE]: checks every project #include in the tree's sources, and the number of lines of every module, against
+# modules.txt. Fails on an include that its module may not depend on, on a folder or public header that is not listed, on a cyclic
+# list, and on a module with more lines than its budget.
+# layers.sh --lower: sets each number of modules.txt to the present number of lines if that is lower.
 # layers.sh --self-test: reverses an include of each module, one at a time in a copy, and fails unless each is detected.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
 tops=(engine trace render scenarios bench tools python wasm)
 
 check() { # the tree's root
@@ -35,8 +38,9 @@ check() { # the tree's root
             for (i = 1; i <= count; i++) owner["engine/include/lrbscope/" listed[i] ".hpp"] = part[1]
             continue
           }
-          split(line, part, /: */)
+          if (split(line, part, /: */) < 2) continue  # a folder that is no module
           known[part[1]] = 1
+          sub(/^[0-9]+ */, "", part[2])  # the number of lines
           seen[part[1]] = part[2]
         }
         for (module in known) {
@@ -67,6 +71,48 @@ check() { # the tree's root
       END { if (!bad) print includes " includes between modules, all allowed by tests/layers/modules.txt"; exit bad }'
 }
 
+# Counts the lines of each module's tracked files in the tree $1: source files, scripts, pages and documents, but no data. Prints
+# modules.txt with the lower numbers to $2. Prints modules with more lines than their number, and fails if there are any.
+count_lines() {
+  (cd "$1" && git ls-files -z | tr '\0' '\n' | grep -E '\.(cpp|hpp|inl|h|cc|py|pyi|sh|js|css|html|md|cmake|txt|sql|in)$|^(run|check|\.ci/run)$' |
+    while read -r file; do [ ! -f "$file" ] || echo "$file"; done | xargs -d '\n' awk 'FNR == 1 { names[++count] = FILENAME } { lines[FILENAME]++ } END { for (i = 1; i <= count; i++) print lines[names[i]], names[i] }') |
+    awk -v modules="$here/modules.txt" -v lowered="$2" '
+      BEGIN {
+        while ((getline line < modules) > 0) {
+          text[++rows] = line
+          if (line ~ /^ *(#|$)/) continue
+          if (split(line, part, / has +/) == 2) {
+            count = split(part[2], listed, " ")
+            for (i = 1; i <= count; i++) owner["engine/include/lrbscope/" listed[i] ".hpp"] = part[1]
+          } else if (split(line, part, /: *| +lines +/) == 2) {
+            name[rows] = part[1]
+            budget[part[1]] = part[2] + 0
+          }
+        }
+      }
+      # The listed folder that holds the file; for a public header, the module that implements it.
+      function room_of(path) {
+        if (path in owner) return owner[path]
+        while (sub(/\/[^\/]*$/, "", path)) if (path in budget) return path
+        return "."
+      }
+      { path = $0; sub(/^[0-9]+ /, "", path); used[room_of(path)] += $1; used["all"] += $1 }
+      END {
+        for (i = 1; i <= rows; i++) {
+          if (!(i in name)) { print text[i] > lowered; continue }
+          if (used[name[i]] > budget[name[i]]) {
+            print "modules.txt: " name[i] " may have " budget[name[i]] " lines and has " used[name[i]] + 0 ": remove some, here or elsewhere, before you add"
+            over = 1
+          } else if (match(text[i], / +[0-9]+/)) {
+            text[i] = substr(text[i], 1, RSTART - 1) sprintf("%" RLENGTH "d", used[name[i]]) substr(text[i], RSTART + RLENGTH)
+          }
+          print text[i] > lowered
+        }
+        if (!over) print used["all"] " lines, of " budget["all"] " in the budget" (used["all"] < budget["all"] ? ": lower it by tests/layers/layers.sh --lower" : "")
+        exit over
+      }'
+}
+
 # Prints the module of a file; for a public header of the engine, the module that implements it.
 room_of() {
   case "$1" in
@@ -77,8 +123,7 @@ room_of() {
 }
 
 self_test() {
-  local root turned=0
-  root=$(cd "$here/../.." && pwd)
+  local turned=0
   copy=$(mktemp -d)
   trap 'rm -rf "$copy"' EXIT # not local: the trap outlives this function
   (cd "$root" && find "${tops[@]}" -name '*.[chi]pp' -o -name '*.inl' | tar -cf - -T -) | tar -xf - -C "$copy"
@@ -106,10 +151,21 @@ self_test() {
   rm -r "$copy/engine/attic"
   : >"$copy/engine/include/lrbscope/attic.hpp"
   ! (check "$copy") >"$copy/said" && grep -q 'attic.hpp: a new public header' "$copy/said" || { echo "layers.sh: did not detect a new public header" >&2; return 1; }
-  echo "$turned reversed includes, a new folder and a new public header: all detected"
+  rm "$copy/engine/include/lrbscope/attic.hpp"
+  (cd "$copy" && git init -q && git add . && here=$copy && sed 's/^all  *lines .*/all lines 1/' "$root/tests/layers/modules.txt" >modules.txt &&
+    ! count_lines "$copy" /dev/null >said && grep -q '^modules.txt: all may have 1 lines' said) || { echo "layers.sh: did not detect too many lines" >&2; return 1; }
+  echo "$turned reversed includes, a new folder, a new public header and too many lines: all detected"
 }
 
 case "${1:-}" in
   --self-test) self_test ;;
-  *) check "${1:-$here/../..}" ;;
+  --lower)
+    lower=$(mktemp)
+    count_lines "$root" "$lower" && cat "$lower" >"$here/modules.txt"
+    rm "$lower"
+    ;;
+  *)
+    check "${1:-$root}"
+    if [ -e "${1:-$root}/.git" ]; then count_lines "${1:-$root}" /dev/null; else echo "lines not counted: no git repository"; fi
+    ;;
 esac
