@@ -1,12 +1,10 @@
 #!/usr/bin/env bash
-# tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--until STEP] [--minutes M] [--wheel FILE] [--no-cache] [--keep]: tests the README's two
+# tests/fresh_install/fresh_install.sh [--suite S] [--commit C] [--wheel FILE] [--no-cache] [--keep] [STEP...]: tests the README's two
 # commands on a minimal Debian: bookworm (12, the default of S), trixie (13) or forky (testing). Makes a root file system with debootstrap, from the
-# package sources of this machine, clones commit C (HEAD) into it, and runs ./run and ./check there in a clean environment, as root;
-# then again as a user without root; then the rest of ./check --full, the last parts with other engines installed. Debian packages
-# are made there, and installed in another minimal root, which runs the program and builds an external project. Prints the time of
-# every step.
-# Steps: root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy; --until: the last one.
-# --minutes: steps after `user` end after M minutes, and the table lists those left out.
+# package sources of this machine, clones commit C (HEAD) into it, and takes the steps there in a clean environment, as root.
+# STEP: stranger (a user without root and packages: both commands name the packages), run (./run), check (./check), user (both commands
+# of a user without root, after these), debs (makes the Debian packages, and installs them in another minimal root, which runs the program
+# and builds an external project), or a part of ./check. Without STEP: stranger run check user. Prints the time of every step.
 # --wheel: instead of all this, installs a wheel for the Python of S in the root, in which there is no compiler and no library but those of
 # Python and NumPy, and runs the program and the tests of the package; then again with Mesa (steps: root clone wheel drawn).
 # Cached in ${XDG_CACHE_HOME:-~/.cache}/lrbscope-bare/S: the minimal root and downloaded packages; this machine's compiler cache is
@@ -19,7 +17,7 @@ here=$(dirname "$script")
 repository=$(cd "$here/../.." && pwd)
 home=/root/lrbscope # the clone, inside the root
 
-usage() { sed -n '2,15s/^# //p' "$script" >&2 && exit 2; }
+usage() { sed -n '2,14s/^# //p' "$script" >&2 && exit 2; }
 refuse() { echo "fresh_install.sh: $1" >&2 && exit 3; }
 
 # ---- the package sources of this machine
@@ -108,7 +106,6 @@ try() { [ "$mounts" = 1 ] && "$@"; }
 
 # Runs a command in the root, as root in a clean environment, with the compiler cache if available.
 inside() { as root /root "$@"; }
-limit=() # timeout and its arguments, in steps with a time limit
 # as USER HOME WORD...
 as() {
   local user=$1 home_of=$2 clean=(TERM=dumb PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
@@ -116,33 +113,28 @@ as() {
   if [ "$user" = root ] && [ -x "$root/usr/bin/ccache" ]; then
     clean+=(CCACHE_DIR=/var/cache/ccache "CCACHE_BASEDIR=$home")
   fi
-  "${limit[@]}" env -i HOME="$home_of" USER="$user" LOGNAME="$user" "${clean[@]}" chroot --userspec="$user" "$root" \
+  env -i HOME="$home_of" USER="$user" LOGNAME="$user" "${clean[@]}" chroot --userspec="$user" "$root" \
     /bin/bash -c 'cd "$1" && shift && exec "$@"' bash "$home" "$@" </dev/null
 }
 
 # ---- steps
 
-all=(root clone stranger run check user api browser again peers python debs site sanitizers clang fuzz tidy)
-names=() seconds=() busy=() failed=() left_out=()
-# step NAME FUNCTION: runs it, prints its output, and records its time and whether it failed. Exits after the last requested
-# step.
+names=() seconds=() busy=() failed=()
+# step NAME FUNCTION WORD...: runs it, prints its output, and records its time and whether it failed.
 step() {
   local name=$1 code TIMEFORMAT='%R %U %S'
   echo "== fresh_install: $name"
   set +e # in a condition, a function would not stop at its first failure
-  { time { (set -e && "$2") 2>&1 | tee "$work/$name.log"; code=${PIPESTATUS[0]}; }; } 2>"$work/$name.time"
+  { time { (set -e && "${@:2}") 2>&1 | tee "$work/$name.log"; code=${PIPESTATUS[0]}; }; } 2>"$work/$name.time"
   set -e
   names+=("$name")
   seconds+=("$(awk '{ printf "%.0f", $1 }' "$work/$name.time")")
   busy+=("$(awk '{ printf "%.0f", $2 + $3 }' "$work/$name.time")")
-  if [ "$code" = 124 ] && [ ${#limit[@]} -gt 0 ]; then
-    left_out+=("$name")
-  elif [ "$code" != 0 ]; then
+  if [ "$code" != 0 ]; then
     echo "fresh_install.sh: $name FAILED"
     failed+=("$name")
     case $name in root | clone | stranger | run | check) finish ;; esac # the others are independent
   fi
-  [ "$name" != "$until" ] || finish
 }
 table() {
   local i all=0 all_busy=0
@@ -152,18 +144,17 @@ table() {
     all=$((all + seconds[i])) all_busy=$((all_busy + busy[i]))
   done
   printf '%-12s %8d %18d\n' all $all $all_busy
-  [ ${#left_out[@]} = 0 ] || echo "left out or cut short by the time limit: ${left_out[*]}"
   echo "$suite, on $(nproc) processors, load $(cut -d' ' -f1-3 /proc/loadavg), caches $([ "$cached" = 1 ] && echo kept || echo off)"
 }
 finish() {
   table
   if [ "$cached" = 1 ] && [ "$mounts" = 0 ]; then cp -n "$root"/var/cache/apt/archives/*.deb "$cache/debs/" 2>/dev/null || true; fi
-  # The summary lines of every ctest, the main one last.
+  # The summary lines of every ctest, and skipped tests; the main one last.
   local name
-  for name in user sanitizers clang again python peers check; do
+  for name in "${names[@]}" check; do
     if [ -f "$work/$name.log" ] && grep -q 'tests passed' "$work/$name.log"; then
       printf '\n%s:\n' "$name"
-      grep -E '% tests passed|^Total Test time' "$work/$name.log"
+      grep -E '^skipped: |% tests passed|^Total Test time' "$work/$name.log"
     fi
   done
   if [ ${#failed[@]} -gt 0 ]; then
@@ -186,6 +177,7 @@ step_clone() {
   mkdir -p "$root/home/stranger"
   cp -a "$root$home" "$root/home/stranger/lrbscope"
   chown -R 1000:1000 "$root/home/stranger"
+  [ "$cached" = 0 ] || [ -n "$wheel" ] || add_compiler_cache
 }
 # Without root and without packages: the commands must print the packages for root to install.
 step_stranger() {
@@ -199,7 +191,6 @@ step_stranger() {
   done
 }
 step_run() {
-  [ "$cached" = 0 ] || add_compiler_cache
   inside ./run
   local picture
   for picture in out/collision/index.html out/figure2/montage.png; do
@@ -251,16 +242,6 @@ step_debs() {
     [ -s "$root/root/contact.png" ] || { echo "Python drew no picture" && return 1; }
   fi
 }
-step_api() { inside ./check api; }
-step_browser() { inside ./check browser; }
-step_again() { inside ./check again; }
-step_python() { inside ./check python; }
-step_site() { inside ./check site; }
-step_peers() { inside ./check peers; }
-step_clang() { inside ./check clang; }
-step_sanitizers() { inside ./check sanitizers; }
-step_fuzz() { inside ./check fuzz; }
-step_tidy() { inside ./check tidy; }
 
 # Only Python, NumPy and pytest: the rest is in the wheel.
 step_wheel() {
@@ -279,40 +260,31 @@ step_drawn() {
 }
 
 all_steps() {
-  local name left needed=1
-  for name in "${all[@]}"; do
-    if [ $needed = 0 ] && [ "$minutes" -gt 0 ]; then
-      left=$((60 * minutes - SECONDS))
-      if [ $left -lt 10 ]; then left_out+=("$name") && continue; fi
-      limit=(timeout --kill-after=5 "$left")
-    fi
-    step "$name" "step_$name"
-    [ "$name" != user ] || needed=0
+  local name
+  for name in root clone "${steps[@]}"; do
+    if declare -F "step_$name" >/dev/null; then step "$name" "step_$name"; else step "$name" inside ./check "$name"; fi
   done
   finish
 }
 
 # ---- from here on: this machine
 
-suite=bookworm commit=HEAD until=tidy minutes=0 cached=1 keep=0 wheel=
+suite=bookworm commit=HEAD cached=1 keep=0 wheel= steps=()
 if [ "${1:-}" != --inside ]; then
   while [ $# -gt 0 ]; do
     case "$1" in
       --suite) suite=${2:?bookworm, trixie or forky} && shift ;;
       --commit) commit=${2:?a commit} && shift ;;
-      --until) until=${2:?a step} && shift ;;
-      --minutes) minutes=${2:?a number of minutes} && shift ;;
-      --wheel) wheel=$(readlink -f "${2:?a file}") && [ -f "$wheel" ] && until=drawn && shift || usage ;;
+      --wheel) wheel=$(readlink -f "${2:?a file}") && [ -f "$wheel" ] && steps=(wheel drawn) && shift || usage ;;
       --no-cache) cached=0 ;;
       --keep) keep=1 ;;
-      *) usage ;;
+      -*) usage ;;
+      *) steps+=("$1") ;;
     esac
     shift
   done
+  [ ${#steps[@]} -gt 0 ] || steps=(stranger run check user)
   case $suite in bookworm | trixie | forky) ;; *) usage ;; esac
-  [ -z "$wheel" ] || all=(root clone wheel drawn)
-  case " ${all[*]} " in *" $until "*) ;; *) usage ;; esac
-  [[ $minutes =~ ^[0-9]+$ ]] || usage
   [ "$(id -u)" = 0 ] || refuse "needs root, to make a root file system"
   command -v debootstrap >/dev/null || refuse "needs debootstrap (apt-get install debootstrap)"
   commit=$(git -C "$repository" rev-parse --verify -q "$commit^{commit}") || { echo "fresh_install.sh: no such commit" >&2 && exit 2; }
@@ -338,15 +310,14 @@ if [ "${1:-}" != --inside ]; then
   if [ $mounts = 0 ]; then
     mknod "$work/null" c 1 3 2>/dev/null && : >"$work/null" || refuse "may neither mount nor make devices here"
   fi
-  "${apart[@]}" bash "$script" --inside "$commit" "$until" "$minutes" "$cached" "$mounts" "$cache" "$work" "$suite" "$wheel" &
+  "${apart[@]}" bash "$script" --inside "$commit" "$cached" "$mounts" "$cache" "$work" "$suite" "$wheel" "${steps[@]}" &
   child=$!
   code=0
   wait "$child" || code=$?
   child=""
   exit $code
 fi
-commit=$2 until=$3 minutes=$4 cached=$5 mounts=$6 cache=$7 work=$8 suite=$9 wheel=${10}
-[ -z "$wheel" ] || all=(root clone wheel drawn)
+commit=$2 cached=$3 mounts=$4 cache=$5 work=$6 suite=$7 wheel=$8 steps=("${@:9}")
 objects=${CCACHE_DIR:-${XDG_CACHE_HOME:-$HOME/.cache}/ccache} # this machine's cache: objects do not depend on the root
 root=$work/root
 all_steps
