@@ -44,6 +44,8 @@ void begin(QueryContext& ctx, const LrbRep& a, const Pose& pose_a, const LrbRep&
   ctx[Side::b].begin(b, pose_b, WrapperMode::regularised);
 }
 
+}  // namespace
+
 /// Runs the dual traversal of two trees one pair of nodes at a time.
 class Stepper {
  public:
@@ -81,6 +83,8 @@ class Stepper {
   TreeKernel k_;
   std::array<NodePair, 1> rejected_nodes_;
 };
+
+namespace {
 
 using Corners = std::array<const double*, 3>;
 
@@ -172,8 +176,6 @@ void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out, int dim) 
   }
 }
 
-namespace {
-
 /// The leaf and the index of each simplex in a tree.
 struct Places {
   std::vector<std::uint32_t> parent;  ///< (nodes) the node above
@@ -196,6 +198,8 @@ struct Places {
       }
   }
 };
+
+namespace {
 
 /// The path to a simplex in a tree.
 struct Path {

@@ -29,10 +29,10 @@ namespace lrb {
 namespace {
 
 using Eigen::Vector3d;
-using Corners = std::array<Vector3d, 3>;
+using RelativeCorners = std::array<Vector3d, 3>;
 
-Corners relative_to(const double* origin, const double* const x[3], int dim) {
-  Corners c;
+RelativeCorners relative_to(const double* origin, const double* const x[3], int dim) {
+  RelativeCorners c;
   for (int k = 0; k < 3; ++k) {
     const double* p = x[dim == 2 && k == 2 ? 1 : k];
     c[k] = {p[0] - origin[0], p[1] - origin[1], dim == 3 ? p[2] - origin[2] : 0};
@@ -43,7 +43,7 @@ Corners relative_to(const double* origin, const double* const x[3], int dim) {
 /// Searches for a slab that separates two simplices. Directions need not be accurate: each is verified.
 class SlabSearch {
  public:
-  SlabSearch(int dim, const Corners& a, const Corners& b, double margin)
+  SlabSearch(int dim, const RelativeCorners& a, const RelativeCorners& b, double margin)
       : dim_(dim), a_(a), b_(b), margin_(margin) {}
 
   int directions() const { return dim_ == 3 ? 21 : 7; }
@@ -66,8 +66,8 @@ class SlabSearch {
   }
 
  private:
-  static Vector3d edge(const Corners& c, int k) { return c[(k + 1) % 3] - c[k]; }
-  static Vector3d normal(const Corners& c) { return edge(c, 0).cross(edge(c, 1)); }
+  static Vector3d edge(const RelativeCorners& c, int k) { return c[(k + 1) % 3] - c[k]; }
+  static Vector3d normal(const RelativeCorners& c) { return edge(c, 0).cross(edge(c, 1)); }
   Vector3d between_centroids() const { return (b_[0] + b_[1] + b_[2]) - (a_[0] + a_[1] + a_[2]); }
 
   /// Returns a direction to try: 0 the line between the centroids, 1-2 normals, 3-11 edge x edge, 12-17 the
@@ -91,7 +91,7 @@ class SlabSearch {
   }
 
   int dim_;
-  const Corners &a_, &b_;
+  const RelativeCorners &a_, &b_;
   double margin_;
 };
 
@@ -99,7 +99,7 @@ class SlabSearch {
 
 bool separated_by(double margin, int dim, const double* const a[3], const double* const b[3]) {
   // Differences of nearby coordinates lose few digits, even far from the origin.
-  const Corners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
+  const RelativeCorners x = relative_to(a[0], a, dim), y = relative_to(a[0], b, dim);
   const SlabSearch search(dim, x, y, margin);
   // One direction suffices. The margin is far larger than the rounding of the projections.
   for (int i = 0; i < search.directions(); ++i)

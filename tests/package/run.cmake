@@ -18,8 +18,7 @@ endfunction()
 
 set(toolchain -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
 # Not optimised, because the test only covers finding and linking.
-set(ours "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_UNITY_BUILD=ON -DCMAKE_BUILD_TYPE=Debug
-    -DCMAKE_CXX_FLAGS_DEBUG=-O0)
+set(ours "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
 if(HOW STREQUAL "fetched")
   run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${place}/user" ${toolchain} ${ours} -DLRB_FROM=fetched "-DLRB_TREE=${tree}")
   run(${CMAKE_COMMAND} --build "${place}/user" --target user)

@@ -41,7 +41,7 @@ make_root() {
 # Options of the preset release, but for hardening.
 configure() { # SOURCE OPTION...
   cmake -S "$1" -B "$build" -G Ninja --toolchain "$PWD/tests/portability/$name.cmake" -DLRB_ROOT="$root" -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_CXX_FLAGS_RELEASE=-O3 -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=32 "${@:2}" >"$build.log" 2>&1 ||
+    -DCMAKE_CXX_FLAGS_RELEASE=-O3 "${@:2}" >"$build.log" 2>&1 ||
     { tail -20 "$build.log" >&2; exit 1; }
 }
 build() { # TARGET...
