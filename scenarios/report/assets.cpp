@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <vector>
@@ -18,6 +17,16 @@ void put(std::vector<std::uint8_t>& bytes, std::uint32_t number, int size) {
   for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
 }
 
+/// Returns the name that a line declares: "f" for "async function f(x) {".
+std::string declared_name(const std::string& line) {
+  std::istringstream words(line);
+  std::string kind, name;
+  words >> kind;
+  if (kind == "async") words >> kind;
+  words >> name;
+  return name.substr(0, name.find_first_of("(;={"));
+}
+
 /// Modules in one script; see script_of().
 struct Bundle {
   std::string script = "\"use strict\";\n";
@@ -25,18 +34,20 @@ struct Bundle {
 
   void add(const std::string& module) {
     if (!modules.insert(module).second) return;
-    static const std::regex import(R"(import (\{[^}]*\}) from "\./(\w+)\.js";)");
-    static const std::regex exported(R"(export ((?:async )?(?:class|function|const) (\w+).*))");
+    constexpr std::string_view kImport = "import ", kFrom = " from \"./", kEnd = ".js\";",
+                               kExport = "export ";
     std::istringstream text{std::string(io::embedded_file(module + ".js"))};
     std::string code, exports;
-    std::smatch parts;
     for (std::string line; std::getline(text, line); code += line + '\n') {
-      if (std::regex_match(line, parts, import)) {
-        add(parts[2]);
-        line = "const " + parts[1].str() + " = " + parts[2].str() + "_js;";
-      } else if (std::regex_match(line, parts, exported)) {
-        exports += parts[2].str() + ", ";
-        line = parts[1].str();
+      const std::size_t from = line.find(kFrom);
+      if (line.starts_with(kImport) && from != std::string::npos && line.ends_with(kEnd)) {
+        const std::size_t begin = from + kFrom.size();
+        const std::string other = line.substr(begin, line.size() - kEnd.size() - begin);
+        add(other);
+        line = "const " + line.substr(kImport.size(), from - kImport.size()) + " = " + other + "_js;";
+      } else if (line.starts_with(kExport)) {
+        line.erase(0, kExport.size());
+        exports += declared_name(line) + ", ";
       }
     }
     script += "const " + module + "_js = (() => {\n" + code + "return { " + exports + "};\n})();\n";
