@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <nlohmann/json.hpp>
+
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
 #include "scenarios/bodies/body_figures.hpp"

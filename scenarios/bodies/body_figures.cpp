@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <lrbscope/build.hpp>
 #include <lrbscope/enum_names.hpp>

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "trace/json_read.hpp"
 #include <lrbscope/core/random.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/workspace.hpp>

@@ -7,11 +7,14 @@
 
 #include <Eigen/Core>
 
-#include "trace/json_read.hpp"
 #include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
-#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/measured.hpp>
+
+namespace lrb::io {
+class JsonNode;
+}
 
 namespace lrb::spec {
 

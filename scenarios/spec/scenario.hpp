@@ -14,12 +14,15 @@
 #include "render/pictures/frame_spec.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/spec/motion.hpp"
-#include "trace/json_read.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/enum_names.hpp>
 #include <lrbscope/pose.hpp>
-#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/event.hpp>
+
+namespace lrb::io {
+class JsonNode;
+}
 
 namespace lrb::spec {
 
