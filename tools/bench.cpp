@@ -110,22 +110,21 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_bench(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
+Command add_bench(App& root, const Globals& globals) {
+  App* app =
       root.add_subcommand("bench", "Compare query times with other engines on the same bodies and poses");
   const auto o = std::make_shared<BenchOptions>();
   add_measure_options(*app, *o);
-  app->add_option("--faces", o->faces,
+  app->add_option("--faces", o->faces, "N",
                   "Face counts of the generated bodies: every kind at the first count, only rocks at the "
                   "others; 0: none [20000 100000]")
-      ->check(CLI::Range(0, 2000000))
-      ->type_name("N");
+      ->in_range(0, 2000000);
   add_tex_option(*app, o->tex, "the tables");
   app->add_flag("--build", o->build,
                 "Compare the time to build, the first answer and memory instead of queries");
-  app->add_option("--rounds", o->rounds, "With --build: number of times that each structure is built [5]")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N");
+  app->add_option("--rounds", o->rounds, "N",
+                  "With --build: number of times that each structure is built [5]")
+      ->in_range(1, 1000);
   return {app, [o, &globals] { return run_bench(*o, globals); }};
 }
 

@@ -96,11 +96,11 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_build(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("build", "Build the LRB-rep of a mesh, validate it and save it");
+Command add_build(App& root, const Globals& globals) {
+  App* app = root.add_subcommand("build", "Build the LRB-rep of a mesh, validate it and save it");
   const auto o = std::make_shared<BuildCommandOptions>();
   app->add_option("MESH", o->mesh, "Mesh: OBJ, STL, PLY or OFF")->required();
-  app->add_option("-o,--output", o->out, "LRB-rep to write")->type_name("FILE.lrb");
+  app->add_option("-o,--output", o->out, "FILE.lrb", "LRB-rep to write");
   o->build.threads = 0;
   add_build_options(*app, o->build);
   app->add_flag("--json", o->json, "Print the figures as one JSON object");

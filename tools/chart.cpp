@@ -130,37 +130,33 @@ int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals)
 
 }  // namespace
 
-Command add_chart(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_chart(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "chart", "Chart speed versus accuracy of every method at every setting, exact and approximate");
   const auto o = std::make_shared<ChartOptions>();
   app->require_subcommand(0, 1);
-  CLI::App* measures =
+  App* measures =
       app->add_subcommand("measure", "Measure only: append raw records to the folder")->fallthrough();
-  CLI::App* draws =
+  App* draws =
       app->add_subcommand("draw", "Draw only: compute errors, charts and the page from existing records")
           ->fallthrough();
   add_measure_options(*app, *o);
   add_quantity_option(*app, o->set.quantity);
   app->get_option("--quantity")
       ->description("Quantity to compute: pairs, near_pairs, distance, first_contact or depth [pairs]");
-  app->add_option("--faces", o->faces, "Face count of the generated bodies; 0: none [2000]")
-      ->check(CLI::Range(0, 200000))
-      ->type_name("N");
+  app->add_option("--faces", o->faces, "N", "Face count of the generated bodies; 0: none [2000]")
+      ->in_range(0, 200000);
   app->add_option(
-         "--rounds", o->rounds,
+         "--rounds", o->rounds, "N",
          "Number of times that each method is timed, after all others; points on the frontier differ "
          "by more than the span of rounds [3]")
-      ->check(CLI::Range(1, 100))
-      ->type_name("N");
-  app->add_option("--width", o->width,
+      ->in_range(1, 100);
+  app->add_option("--width", o->width, "LENGTH",
                   "Also write figure.pdf and figure.svg, this wide on paper, in mm, cm, in or pt; text is 8 "
-                  "points high [85mm with --panel]")
-      ->type_name("LENGTH");
-  app->add_option("--panel", o->print.panels,
+                  "points high [85mm with --panel]");
+  app->add_option("--panel", o->print.panels, "NAME,NAME,...",
                   "Panels of the figure: pairs of bodies, classes of poses, or BODIES/CLASS [all]")
-      ->delimiter(',')
-      ->type_name("NAME,NAME,...");
+      ->delimiter(',');
   add_tex_option(*app, o->tex, "settings.tex, the table of settings,");
   app->add_flag("!--no-scenes", o->scenes, "Do not run the scenarios that the chart's points link to");
   return {app, [o, &globals, measures, draws] {

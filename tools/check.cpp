@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "scenarios/profile/captured_run.hpp"
 #include "tools/commands.hpp"
 #include "tools/import.hpp"
@@ -180,8 +182,8 @@ int run_check(const CheckOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_check(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_check(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "check", "Check another engine's captured answers, and price its visits of tree nodes");
   const auto o = std::make_shared<CheckOptions>();
   app->add_option(
@@ -189,8 +191,8 @@ Command add_check(CLI::App& root, const Globals& globals) {
          "Captures, written by lrbscope_capture.h, or runs of lrbscope recorded with --events nodes; "
          "several are compared")
       ->required();
-  app->add_option("--queries", o->queries, "Only these queries, by number from 1: 40-60, 40- or 40")
-      ->type_name("FIRST-LAST");
+  app->add_option("--queries", o->queries, "FIRST-LAST",
+                  "Only these queries, by number from 1: 40-60, 40- or 40");
   add_choice<profile::Precision>(*app, "--precision", o->precision,
                                  "Number format of the engine, which decides how close to contact its tests "
                                  "may err [float if all volumes are floats, else double]");
@@ -198,7 +200,7 @@ Command add_check(CLI::App& root, const Globals& globals) {
                 "Split waste into volumes and order even for captures of more than " +
                     std::to_string(profile::kMaxVisitsToSplit) + " visits, which takes long");
   app->add_flag("--json", o->json, "Print JSON, a line for each query and one for the sums");
-  app->add_option("-o,--output", o->folder, "Also write a page to this folder")->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "DIR", "Also write a page to this folder");
   return {app, [o, &globals] { return run_check(*o, globals); }};
 }
 

@@ -144,21 +144,19 @@ int run_clash(ClashOptions o, const Globals& globals) {
 
 }  // namespace
 
-Command add_clash(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_clash(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "clash",
       "Classify the contact between two solids and compute its penetration depth, for each pose of B");
   const auto o = std::make_shared<ClashOptions>();
   add_posed_files(*app, *o);
-  app->add_option("--clearance", o->request.clearance,
-                  "Distance up to which disjoint bodies are reported as \"within_clearance\"")
-      ->type_name("D");
+  app->add_option("--clearance", o->request.clearance, "D",
+                  "Distance up to which disjoint bodies are reported as \"within_clearance\"");
   app->add_option(
-         "--along", o->along,
+         "--along", o->along, "X,Y,Z",
          "Also compute the directional penetration depth: how far B must move this way to separate from A")
       ->delimiter(',')
-      ->expected(3)
-      ->type_name("X,Y,Z");
+      ->expected(3);
   app->add_flag("--table", o->table, "Print a human-readable table instead of JSON");
   add_draw_options(*app, o->draw, "Draw the solids with the separation vector");
   add_repeat_option(*app, o->repeat, "pose");

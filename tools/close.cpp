@@ -120,15 +120,15 @@ int run_close(const CloseOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_close(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_close(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "close",
       "Close the holes of a mesh with faces proven not to intersect anything; exit code 1 if holes remain");
   const auto o = std::make_shared<CloseOptions>();
   app->add_option("MESH", o->mesh, "Mesh: OBJ, STL, PLY or OFF")->required();
-  app->add_option("-o,--output", o->out, "Mesh to write; existing vertices and faces keep their numbers")
-      ->required()
-      ->type_name("FILE.obj|ply");
+  app->add_option("-o,--output", o->out, "FILE.obj|ply",
+                  "Mesh to write; existing vertices and faces keep their numbers")
+      ->required();
   app->add_flag("--json", o->json, "Print one JSON object");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_close(*o, globals); }};

@@ -143,36 +143,31 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_collide(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_collide(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "collide", "Move your own mesh B into mesh A and write an interactive page of the collision");
   const auto o = std::make_shared<CollideOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
-  app->add_option("-o,--output", o->folder, "Output folder [out/A-B]")->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/A-B]");
   auto* poses =
-      app->add_option("--poses", o->poses,
+      app->add_option("--poses", o->poses, "FILE",
                       "File with the pose of B at each step: lines of 12 numbers (3x4, row by row), "
-                      ".csv or .json")
-          ->type_name("FILE");
-  app->add_option("--approach", o->approach, "Direction from A to the start position of B")
-      ->type_name("X,Y,Z")
+                      ".csv or .json");
+  app->add_option("--approach", o->approach, "X,Y,Z", "Direction from A to the start position of B")
       ->excludes(poses);
   add_request_options(*app, o->request);
   app->add_flag("--distance", o->more.distance, "Also compute the distance between the bodies at each step");
   app->add_flag("--clash", o->more.clash,
                 "Also classify the contact and compute its penetration depth at each step");
-  app->add_option("--near", o->more.near,
-                  "Also list the pairs of triangles at most this far apart at each step, in mesh units")
-      ->type_name("D");
-  app->add_option("--manifold", o->more.manifold,
+  app->add_option("--near", o->more.near, "D",
+                  "Also list the pairs of triangles at most this far apart at each step, in mesh units");
+  app->add_option("--manifold", o->more.manifold, "D",
                   "Also find the contact manifolds at each step, with speculative contacts up to this "
-                  "distance, in mesh units")
-      ->type_name("D");
-  app->add_option("--points", o->more.points,
+                  "distance, in mesh units");
+  app->add_option("--points", o->more.points, "FILE",
                   "Also compute the signed distances of points to A at each step: lines of 3 numbers, x y z, "
-                  "in B's frame")
-      ->type_name("FILE");
+                  "in B's frame");
   add_events_option(*app, o->events);
   add_clock_option(*app, o->clock);
   add_picture_options(*app, o->picture, UpOption::auto_by_default);

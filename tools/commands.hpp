@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
+#include "tools/command_line.hpp"
 #include <lrbscope/core/strings.hpp>
 
 namespace lrb::cli {
@@ -22,12 +22,12 @@ struct Globals {
 };
 
 struct Command {
-  CLI::App* app;
+  App* app;
   std::function<int()> run;
 };
 
 /// Adds all commands to the program, in their order in --help. They are listed in commands.cpp.
-std::vector<Command> add_commands(CLI::App& root, const Globals& globals);
+std::vector<Command> add_commands(App& root, const Globals& globals);
 
 /// Runs another command, given by its words without `lrbscope`. Returns its exit code.
 int run_command(const std::vector<std::string>& words, const Globals& globals);

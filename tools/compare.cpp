@@ -61,15 +61,15 @@ int run_compare(const CompareOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_compare(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_compare(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "compare",
       "Show two recorded runs side by side, with their first difference; exit code 1 if they differ");
   const auto o = std::make_shared<CompareOptions>();
   app->add_option("RUN1", o->first, "Folder or trace of a run, as written by run, collide, import or xray")
       ->required();
   app->add_option("RUN2", o->second, "Folder or trace of the run to compare with")->required();
-  app->add_option("-o,--output", o->folder, "Output folder [out/compare]")->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/compare]");
   add_up_option(*app, o->up);
   return {app, [o, &globals] { return run_compare(*o, globals); }};
 }

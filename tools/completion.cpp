@@ -567,27 +567,23 @@ int print_manual(const CLI::App& root, const ManualOptions& o) {
 
 }  // namespace
 
-Command add_completion(CLI::App& root, const Globals&) {
-  CLI::App* app = root.add_subcommand("completion", "Print a shell completion script");
+Command add_completion(App& root, const Globals&) {
+  App* app = root.add_subcommand("completion", "Print a shell completion script");
   const auto o = std::make_shared<CompletionOptions>();
-  app->add_option("SHELL", o->shell, "Shell: bash, zsh or fish")
+  app->add_option("SHELL", o->shell, "bash|zsh|fish", "Shell: bash, zsh or fish")
       ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""))
-      ->type_name("bash|zsh|fish");
-  app->add_option("-o,--output", o->file, "File to write [stdout]")->type_name("FILE");
-  return {app, [&root, o] { return print_completion(root, *o); }};
+      ->one_of({"bash", "zsh", "fish"});
+  app->add_option("-o,--output", o->file, "FILE", "File to write [stdout]");
+  return {app, [&root, o] { return print_completion(root.definition(), *o); }};
 }
 
-Command add_manual(CLI::App& root, const Globals&) {
-  CLI::App* app =
-      root.add_subcommand("manual", "Print a manual page (read it with: lrbscope manual | man -l -)");
+Command add_manual(App& root, const Globals&) {
+  App* app = root.add_subcommand("manual", "Print a manual page (read it with: lrbscope manual | man -l -)");
   const auto o = std::make_shared<ManualOptions>();
-  auto* command = app->add_option("COMMAND", o->command, "Command to print the page of [the program]")
-                      ->type_name("COMMAND");
-  app->add_option("-o,--output", o->folder, "Write all pages to this folder")
-      ->excludes(command)
-      ->type_name("DIR");
-  return {app, [&root, o] { return print_manual(root, *o); }};
+  auto* command =
+      app->add_option("COMMAND", o->command, "COMMAND", "Command to print the page of [the program]");
+  app->add_option("-o,--output", o->folder, "DIR", "Write all pages to this folder")->excludes(command);
+  return {app, [&root, o] { return print_manual(root.definition(), *o); }};
 }
 
 }  // namespace lrb::cli

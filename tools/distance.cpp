@@ -77,24 +77,20 @@ int run_distance(const DistanceOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_distance(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_distance(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "distance",
       "Compute the distance between two bodies, as a proven interval, for each pose of B; one JSON line "
       "per pose");
   const auto o = std::make_shared<DistanceOptions>();
   add_posed_files(*app, *o);
-  app->add_option("--within", o->request.within, "Only test whether the distance is at most D")
-      ->type_name("D");
-  app->add_option("--tolerance", o->request.tolerance,
-                  "Stop once the interval is at most this wide, in mesh units")
-      ->type_name("E");
-  app->add_option("--relative-tolerance", o->request.relative_tolerance,
-                  "Stop once the interval is at most this wide, relative to the distance")
-      ->type_name("E");
-  app->add_option("--budget", o->request.max_steps, "Stop after expanding N pairs of boxes")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
-      ->type_name("N");
+  app->add_option("--within", o->request.within, "D", "Only test whether the distance is at most D");
+  app->add_option("--tolerance", o->request.tolerance, "E",
+                  "Stop once the interval is at most this wide, in mesh units");
+  app->add_option("--relative-tolerance", o->request.relative_tolerance, "E",
+                  "Stop once the interval is at most this wide, relative to the distance");
+  app->add_option("--budget", o->request.max_steps, "N", "Stop after expanding N pairs of boxes")
+      ->in_hidden_range(std::uint64_t{1}, std::uint64_t{1} << 62);
   app->add_flag("--features", o->features, "Add the closest features (vertex, edge or face) of the bodies");
   add_draw_options(*app, o->draw, "Draw the bodies with the segment between their closest points");
   add_repeat_option(*app, o->repeat, "pose");

@@ -131,8 +131,8 @@ int run_doctor(bool json) {
 
 }  // namespace
 
-Command add_doctor(CLI::App& root, const Globals&) {
-  CLI::App* app = root.add_subcommand(
+Command add_doctor(App& root, const Globals&) {
+  App* app = root.add_subcommand(
       "doctor",
       "Check this machine for everything lrbscope needs, and list the optional programs and engines; exit code "
       "3 if something required is missing");

@@ -10,21 +10,18 @@
 
 namespace lrb::cli {
 
-void add_engine_options(CLI::App& app, EngineOptions& o) {
-  app.add_option("--method", o.methods,
+void add_engine_options(App& app, EngineOptions& o) {
+  app.add_option("--method", o.methods, "NAME,...",
                  "Engines, separated by commas: ours, or others that were installed when lrbscope was built; "
                  "see `lrbscope doctor` [ours]")
-      ->delimiter(',')
-      ->type_name("NAME,...");
+      ->delimiter(',');
   app.add_option(
-         "--command", o.command,
-         "Program of another engine: started as PROGRAM A B POSES, it answers a query for each line of "
-         "POSES and records them with lrbscope_capture.h")
-      ->type_name("PROGRAM");
-  app.add_option("--timeout", o.timeout,
+      "--command", o.command, "PROGRAM",
+      "Program of another engine: started as PROGRAM A B POSES, it answers a query for each line of "
+      "POSES and records them with lrbscope_capture.h");
+  app.add_option("--timeout", o.timeout, "S",
                  "Time limit in seconds, per pose of a method, and per start of a --command [60]")
-      ->check(CLI::Range(0.1, 36000.0))
-      ->type_name("S");
+      ->in_range(0.1, 36000.0);
   add_join_option(app, o.corners);
 }
 

@@ -24,7 +24,7 @@ struct EngineOptions {
 };
 
 /// Adds --method, --command, --timeout and --no-join.
-void add_engine_options(CLI::App& app, EngineOptions& options);
+void add_engine_options(App& app, EngineOptions& options);
 
 /// Two bodies, and the engines that were named.
 struct Contest {

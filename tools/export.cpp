@@ -231,50 +231,42 @@ int run_export(const ExportOptions& given, const Globals& globals) {
 
 }  // namespace
 
-Command add_export(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_export(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "export", "Export bodies, wrappers, contacts or poses to PLY, VTP, GLB, OBJ, STL, CSV or JSON");
   const auto o = std::make_shared<ExportOptions>();
   app->add_option(
          "INPUT", o->input,
          "Mesh or .lrb file; a run's folder or trace; a scenario; with --what poses also a file of poses")
       ->required();
-  app->add_option("-o,--output", o->out,
+  app->add_option("-o,--output", o->out, "FILE",
                   "File to write: .ply, .vtp, .glb, .obj or .stl (faces only); poses: .csv, .json or .txt")
-      ->required()
-      ->type_name("FILE");
-  app->add_option("--what", o->what,
+      ->required();
+  app->add_option("--what", o->what, "body|wrapper|contacts|poses",
                   "Contents of the file [body file: body, or wrapper if one is selected; run: "
                   "wrapper,contacts; .stl: wrapper]")
       ->delimiter(',')
-      ->check(CLI::IsMember({"body", "wrapper", "contacts", "poses"}).description(""))
-      ->type_name("body|wrapper|contacts|poses");
-  auto* step =
-      app->add_option("--step", o->step, "Run: state after this time step [the last]")->type_name("N");
-  app->add_option("--event", o->event, "Run: state after this event")->excludes(step)->type_name("N");
-  auto* faces = app->add_option("--faces", o->faces, "Body: export the finest wrapper with at most N faces")
-                    ->type_name("N");
-  auto* layer = app->add_option("--layer", o->layer, "Body: export the wrapper after N build passes")
-                    ->excludes(faces)
-                    ->type_name("N");
-  app->add_option("--tolerance", o->tolerance,
+      ->one_of({"body", "wrapper", "contacts", "poses"});
+  auto* step = app->add_option("--step", o->step, "N", "Run: state after this time step [the last]");
+  app->add_option("--event", o->event, "N", "Run: state after this event")->excludes(step);
+  auto* faces =
+      app->add_option("--faces", o->faces, "N", "Body: export the finest wrapper with at most N faces");
+  auto* layer = app->add_option("--layer", o->layer, "N", "Body: export the wrapper after N build passes")
+                    ->excludes(faces);
+  app->add_option("--tolerance", o->tolerance, "LENGTH",
                   "Body: export the coarsest wrapper within this maximum deviation")
       ->excludes(faces)
       ->excludes(layer)
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("LENGTH");
-  app->add_option("--of", o->of, "Export only this body of the two [both; poses: b]")
-      ->check(CLI::IsMember({"a", "b"}).description(""))
-      ->type_name("a|b");
-  app->add_option("--bodies", o->bodies, "Bodies of the trace [a.lrb and b.lrb next to it]")
-      ->type_name("FILE")
+      ->not_negative();
+  app->add_option("--of", o->of, "a|b", "Export only this body of the two [both; poses: b]")
+      ->one_of({"a", "b"});
+  app->add_option("--bodies", o->bodies, "FILE", "Bodies of the trace [a.lrb and b.lrb next to it]")
       ->expected(1, 2);
   app->add_flag("--regions", o->file.regions, "One object per region (.glb, .obj)");
   app->add_flag("--ascii", o->file.ascii, "Write numbers as text (.ply, .vtp, .stl)");
-  app->add_option("--up", o->up, "Axis of the bodies that points up (.glb)")
-      ->check(CLI::IsMember({"x", "y", "z"}).description(""))
-      ->capture_default_str()
-      ->type_name("x|y|z");
+  app->add_option("--up", o->up, "x|y|z", "Axis of the bodies that points up (.glb)")
+      ->one_of({"x", "y", "z"})
+      ->capture_default_str();
   add_choice<render::FrameSpec::ColourBy>(*app, "--colour-by", o->picture.colour_by,
                                           "Quantity that faces are coloured by");
   add_choice<render::FrameSpec::ColourPer>(

@@ -206,29 +206,28 @@ std::string with_own_bodies(const std::string& path, std::vector<io::ZipEntry>& 
 }
 
 /// Returns the options of a call as words for a shell, without those that name files.
-std::string shell_options(const CLI::App& app) {
+std::string shell_options(const App& app) {
   std::string out;
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() == 0 || option->get_positional() || name == "--output" || name == "--artifact" ||
+  for (const Option& option : app.options()) {
+    const std::string name = option.name();
+    if (!option.given() || option.is_argument() || name == "--output" || name == "--artifact" ||
         name == "--bodies")
       continue;
     // Options without a delimiter have one value each time that they are given.
-    if (option->get_items_expected_max() > 0 && option->get_delimiter() == '\0') {
-      for (const std::string& value : option->results()) out += " " + name + " " + shell_word(value);
+    if (!option.is_flag() && !option.has_delimiter()) {
+      for (const std::string& value : option.values()) out += " " + name + " " + shell_word(value);
       continue;
     }
     std::string values;
-    for (const std::string& value : option->results()) values += (values.empty() ? "" : ",") + value;
-    const bool flag = option->get_items_expected_max() == 0;
-    out += " " + name + (!flag ? " " + shell_word(values) : values == "true" ? "" : "=" + values);
+    for (const std::string& value : option.values()) values += (values.empty() ? "" : ",") + value;
+    out += " " + name + (!option.is_flag() ? " " + shell_word(values) : values == "true" ? "" : "=" + values);
   }
   return out;
 }
 
 /// Writes an archive from which one command makes the figure again: the input files, the figure, the command,
 /// the versions, and a container with the program.
-void write_artifact(const FigureOptions& o, const CLI::App& app, const std::string& file,
+void write_artifact(const FigureOptions& o, const App& app, const std::string& file,
                     const std::string& bytes) {
   std::vector<io::ZipEntry> entries;
   std::string source, bodies;
@@ -283,7 +282,7 @@ void write_artifact(const FigureOptions& o, const CLI::App& app, const std::stri
   write_file(o.artifact, io::zip(entries));
 }
 
-int run_figure(const FigureOptions& o, const CLI::App& app, const Globals& globals) {
+int run_figure(const FigureOptions& o, const App& app, const Globals& globals) {
   const run::ProgressReport progress = progress_report(globals.quiet);
   if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // check the file before an expensive run
   const Source source = open_source(o, progress);
@@ -317,14 +316,13 @@ int run_figure(const FigureOptions& o, const CLI::App& app, const Globals& globa
   return kOk;
 }
 
-void add_panel_options(CLI::App& app, FigureOptions& o) {
-  auto* panels = app.add_option("--panels", o.figure.choice.panels,
+void add_panel_options(App& app, FigureOptions& o) {
+  auto* panels = app.add_option("--panels", o.figure.choice.panels, "N",
                                 "Maximum number of panels, placed where the picture changes [6; for two "
                                 "bodies 4]")
-                     ->check(CLI::Range(std::size_t{1}, figure::kMaxPanels))
-                     ->type_name("N");
+                     ->in_range(std::size_t{1}, figure::kMaxPanels);
   const auto add = [&](const char* name, std::vector<std::uint32_t>& numbers, const char* what) {
-    return app.add_option(name, numbers, what)->delimiter(',')->type_name("N,N,...")->excludes(panels);
+    return app.add_option(name, numbers, "N,N,...", what)->delimiter(',')->excludes(panels);
   };
   auto* faces = add("--faces", o.faces, "One panel for each number of wrapper faces given (approximate)");
   auto* events = add("--events", o.events, "One panel after each of these events");
@@ -337,52 +335,47 @@ void add_panel_options(CLI::App& app, FigureOptions& o) {
   steps->excludes(layers);
 }
 
-void add_callout_options(CLI::App& app, FigureOptions& o) {
+void add_callout_options(App& app, FigureOptions& o) {
   app.add_option_function<std::vector<std::string>>(
          "--callout",
          [&o](const std::vector<std::string>& all) {
            for (const std::string& text : all) o.figure.callouts.push_back(figure::parse_callout(text));
          },
+         "[PANEL:]face|region:N[=TEXT]",
          "Point to a face or region (N or aN of A, bN of B) with its number or a text, in one panel or in all; "
          "repeatable")
-      ->allow_extra_args(false)
-      ->type_name("[PANEL:]face|region:N[=TEXT]");
+      ->allow_extra_args(false);
   app.add_option_function<std::vector<std::string>>(
          "--inset",
          [&o](const std::vector<std::string>& all) {
            for (const std::string& text : all) o.figure.insets.push_back(figure::parse_inset(text));
          },
+         "PANEL:face|region:N|contact[:TIMES]",
          "Show a face, a region or the contact enlarged below a panel, which has a frame there; repeatable")
-      ->allow_extra_args(false)
-      ->type_name("PANEL:face|region:N|contact[:TIMES]");
+      ->allow_extra_args(false);
 }
 
-void add_paper_options(CLI::App& app, FigureOptions& o) {
-  app.add_option("--width", o.width, "Width on paper, in mm, cm, in or pt [85mm]")->type_name("LENGTH");
-  app.add_option("--columns", o.figure.columns, "Number of columns [chosen automatically]")
-      ->check(CLI::Range(1, 26))
-      ->type_name("N");
-  app.add_option("--font-size", o.figure.font_size, "Font size, in points")
-      ->check(CLI::Range(4.0, 24.0))
-      ->capture_default_str()
-      ->type_name("PT");
-  app.add_option("--line-width", o.line_width,
-                 "Width of thin lines, at least 0.25pt; other lines scale with it [0.35pt]")
-      ->type_name("LENGTH");
-  app.add_option("--dpi", o.picture.dpi,
+void add_paper_options(App& app, FigureOptions& o) {
+  app.add_option("--width", o.width, "LENGTH", "Width on paper, in mm, cm, in or pt [85mm]");
+  app.add_option("--columns", o.figure.columns, "N", "Number of columns [chosen automatically]")
+      ->in_range(1, 26);
+  app.add_option("--font-size", o.figure.font_size, "PT", "Font size, in points")
+      ->in_range(4.0, 24.0)
+      ->capture_default_str();
+  app.add_option("--line-width", o.line_width, "LENGTH",
+                 "Width of thin lines, at least 0.25pt; other lines scale with it [0.35pt]");
+  app.add_option("--dpi", o.picture.dpi, "N",
                  "Resolution of 3D faces and of PNG files, in pixels per inch [600; PNG 300]")
-      ->check(CLI::Range(spec::kMinDpi, spec::kMaxDpi))
-      ->type_name("N");
+      ->in_range(spec::kMinDpi, spec::kMaxDpi);
   app.add_option(
-         "--vector-faces", o.figure.vector_faces,
+         "--vector-faces", o.figure.vector_faces, "N",
          "Maximum number of visible faces in a panel for 3D faces as vector graphics; with more they are an "
          "image in all panels")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}))
-      ->capture_default_str()
-      ->type_name("N");
+      ->in_range(std::size_t{0}, std::size_t{1'000'000})
+      ->capture_default_str();
   app.add_flag("--title,!--no-title", o.figure.titles,
                "Show or hide a title below each panel, after its letter [hidden]");
-  CLI::Option* wrappers = app.add_flag_callback(
+  Option* wrappers = app.add_flag_callback(
       "--wrappers", [&o] { o.wrappers = true; },
       "Draw the bodies in their wrappers [unless these hide faces that --colour-by colours]");
   app.add_flag_callback(
@@ -403,8 +396,8 @@ void add_paper_options(CLI::App& app, FigureOptions& o) {
 
 }  // namespace
 
-Command add_figure(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_figure(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "figure", "Lay out panels of a run as a print figure of a given width (PDF, SVG or PNG)");
   const auto o = std::make_shared<FigureOptions>();
   app->add_option(
@@ -412,17 +405,15 @@ Command add_figure(CLI::App& root, const Globals& globals) {
          "A run's folder or trace; a scenario; or a mesh or .lrb file, whose refinement from the outermost "
          "wrapper to the body is shown")
       ->required();
-  app->add_option("-o,--output", o->file, "File to write [out/NAME.pdf]")->type_name("FIG.pdf|svg|png");
-  app->add_option("--bodies", o->bodies, "Bodies of the trace [a.lrb and b.lrb next to it]")
-      ->type_name("FILE")
+  app->add_option("-o,--output", o->file, "FIG.pdf|svg|png", "File to write [out/NAME.pdf]");
+  app->add_option("--bodies", o->bodies, "FILE", "Bodies of the trace [a.lrb and b.lrb next to it]")
       ->expected(1, 2);
   add_panel_options(*app, *o);
   add_callout_options(*app, *o);
   add_paper_options(*app, *o);
-  app->add_option("--views", o->views,
+  app->add_option("--views", o->views, "N",
                   "Maximum number of the run's views to show [one body: all; two bodies: 1]")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{26}))
-      ->type_name("N");
+      ->in_range(std::size_t{1}, std::size_t{26});
   app->add_flag("--try-views", o->try_views,
                 "Show the last state from several directions instead, each with the options for it");
   app->add_flag("--close-up", o->close_up, "Add panels that show the contact close up, without wrappers");
@@ -430,10 +421,9 @@ Command add_figure(CLI::App& root, const Globals& globals) {
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);
   app->add_option(
-         "--artifact", o->artifact,
-         "Also write an archive with the inputs, the command and a container recipe, which makes the same "
-         "figure again, byte for byte")
-      ->type_name("ZIP");
+      "--artifact", o->artifact, "ZIP",
+      "Also write an archive with the inputs, the command and a container recipe, which makes the same "
+      "figure again, byte for byte");
   return {app, [o, app, &globals] { return run_figure(*o, *app, globals); }};
 }
 

@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 
+#include <nlohmann/json.hpp>
+
 #include "scenarios/golden/check.hpp"
 #include "scenarios/golden/golden_report.hpp"
 #include "scenarios/io/files.hpp"
@@ -388,13 +390,13 @@ int run_remove(const GoldenOptions& o) {
   return kOk;
 }
 
-void add_folder(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
-  app.add_option("--goldens", o->goldens, "Folder with the goldens")->type_name("DIR")->capture_default_str();
+void add_folder(App& app, const std::shared_ptr<GoldenOptions>& o) {
+  app.add_option("--goldens", o->goldens, "DIR", "Folder with the goldens")->capture_default_str();
 }
 
-CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string& what,
-                   const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
-  CLI::App* app = golden.add_subcommand(name, what);
+App* add_part(App& golden, const std::string& name, const std::string& what,
+              const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
+  App* app = golden.add_subcommand(name, what);
   app->add_option("SCENARIO", o->scenarios,
                   "Shipped scenarios and crowds, JSON files, or captures [" + none + "]");
   add_folder(*app, o);
@@ -402,7 +404,7 @@ CLI::App* add_part(CLI::App& golden, const std::string& name, const std::string&
 }
 
 /// Comparison options: for a call of test, or stored by approve.
-void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+void add_comparison(App& app, const std::shared_ptr<GoldenOptions>& o) {
   std::vector<std::string> words;
   for (const EnumName<golden::Level>& w : kEnumNames<golden::Level>) words.emplace_back(w.name);
   app.add_option_function<std::vector<std::string>>(
@@ -410,105 +412,90 @@ void add_comparison(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
          [o](const std::vector<std::string>& chosen) {
            for (const std::string& word : chosen) o->levels.push_back(from_name<golden::Level>(word).value());
          },
+         all_names<golden::Level>(",", ","),
          "Parts to compare, comma-separated: answers, events, pictures, work [all, or as stored in the golden]")
       ->delimiter(',')
       ->allow_extra_args(false)  // scenarios may follow
-      ->check(CLI::IsMember(words).description(""))
-      ->type_name(all_names<golden::Level>(",", ","));
-  app.add_option("--picture-tolerance", o->large_share,
+      ->one_of(words);
+  app.add_option("--picture-tolerance", o->large_share, "SHARE",
                  "Fraction of pixels allowed to differ strongly [0.0005, or as stored in the golden]")
-      ->check(CLI::Range(0.0, 1.0))
-      ->type_name("SHARE");
+      ->in_range(0.0, 1.0);
   app.add_option(
-         "--flip", o->flip,
+         "--flip", o->flip, "ERROR",
          "Also pass pictures whose mean FLIP, the difference that an eye perceives, is at most this [0, or as "
          "stored in the golden]")
-      ->check(CLI::Range(0.0, 1.0))
-      ->type_name("ERROR");
+      ->in_range(0.0, 1.0);
   app.add_option(
-         "--work-tolerance", o->work,
+         "--work-tolerance", o->work, "SHARE",
          "Share by which tests and visited nodes of all steps may increase [0.05, or as stored in the golden]")
-      ->check(CLI::Range(0.0, 1e6))
-      ->type_name("SHARE");
+      ->in_range(0.0, 1e6);
 }
 
-void add_output(CLI::App& app, const std::shared_ptr<GoldenOptions>& o) {
+void add_output(App& app, const std::shared_ptr<GoldenOptions>& o) {
   add_comparison(app, o);
-  app.add_option("--junit", o->junit, "Also write the results as JUnit XML")->type_name("FILE");
-  app.add_option("--markdown", o->markdown,
-                 "Also write the results as a Markdown table, for the summary of a CI job")
-      ->type_name("FILE");
-  app.add_option("--picture-url", o->picture_url,
-                 "Address of the output folder, for the pictures of --markdown [its relative path]")
-      ->type_name("URL");
-  app.add_option("--repeat", o->repeat,
+  app.add_option("--junit", o->junit, "FILE", "Also write the results as JUnit XML");
+  app.add_option("--markdown", o->markdown, "FILE",
+                 "Also write the results as a Markdown table, for the summary of a CI job");
+  app.add_option("--picture-url", o->picture_url, "URL",
+                 "Address of the output folder, for the pictures of --markdown [its relative path]");
+  app.add_option("--repeat", o->repeat, "N",
                  "Repeat a failed test N times, to distinguish a changed scenario from a flaky one")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N");
-  app.add_option("--jobs", o->jobs,
+      ->in_range(1, 1000);
+  app.add_option("--jobs", o->jobs, "N",
                  "Number of scenarios to run in parallel; the result does not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->type_name("N")
+      ->in_range(1, 256)
       ->capture_default_str();
-  app.add_option("-o,--output", o->folder, "Folder for the report page and the differing pictures")
-      ->type_name("DIR")
+  app.add_option("-o,--output", o->folder, "DIR", "Folder for the report page and the differing pictures")
       ->capture_default_str();
   app.add_flag("--json", o->json, "Print one JSON line per scenario");
 }
 
 }  // namespace
 
-Command add_golden(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("golden", "Regression-test runs against approved traces and pictures");
+Command add_golden(App& root, const Globals& globals) {
+  App* app = root.add_subcommand("golden", "Regression-test runs against approved traces and pictures");
   const auto o = std::make_shared<GoldenOptions>();
   app->require_subcommand(1);
-  CLI::App* test =
+  App* test =
       add_part(*app, "test",
                "Compare runs with the goldens; on a difference, write a report page and exit with code 1", o,
                "all goldens");
   add_output(*test, o);
-  CLI::App* approve = add_part(
-      *app, "approve", "Approve the current runs: they replace the goldens that differ", o, "all goldens");
+  App* approve = add_part(*app, "approve", "Approve the current runs: they replace the goldens that differ",
+                          o, "all goldens");
+  approve->add_option("--variant", o->variant, "NAME",
+                      "Store differing pictures next to the approved ones, as a variant of this name");
+  approve->add_option("--size", o->size, "WxH",
+                      "Picture size, in pixels [480 wide, with the scenario's aspect ratio]");
   approve
-      ->add_option("--variant", o->variant,
-                   "Store differing pictures next to the approved ones, as a variant of this name")
-      ->type_name("NAME");
-  approve
-      ->add_option("--size", o->size, "Picture size, in pixels [480 wide, with the scenario's aspect ratio]")
-      ->type_name("WxH");
-  approve
-      ->add_option("--frames", o->frames, "Number of pictures, evenly spaced over the scenario's frames [3]")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N");
+      ->add_option("--frames", o->frames, "N",
+                   "Number of pictures, evenly spaced over the scenario's frames [3]")
+      ->in_range(1, 1000);
   const auto rectangles = [&](const char* name, std::vector<std::string>& to, const char* what) {
-    approve->add_option(name, to, what)->allow_extra_args(false)->type_name("X,Y,W,H");
+    approve->add_option(name, to, "X,Y,W,H", what)->allow_extra_args(false);
   };
   rectangles("--ignore", o->ignore, "A rectangle of pixels that is not compared; repeatable");
   rectangles("--only", o->only,
              "A rectangle of pixels that is compared, instead of whole pictures; repeatable");
-  approve
-      ->add_option(
-          "--from", o->from,
-          "Approve what a test found, on this machine or another one, instead of running the scenarios: its "
-          "output folder or a ZIP archive of it")
-      ->type_name("DIR|ZIP");
+  approve->add_option(
+      "--from", o->from, "DIR|ZIP",
+      "Approve what a test found, on this machine or another one, instead of running the scenarios: its "
+      "output folder or a ZIP archive of it");
   approve->add_flag("--dry-run", o->dry, "Change nothing; print which files would be approved or removed");
   add_comparison(*approve, o);
   // Results of a test are approved as they were drawn and compared there.
-  for (CLI::Option* option : approve->get_options())
-    if (const std::string name = option->get_name(); name != "--from" && name != "--goldens" &&
-                                                     name != "--dry-run" && name != "--help" &&
-                                                     option->nonpositional())
-      approve->get_option("--from")->excludes(option);
-  CLI::App* remove = app->add_subcommand("remove", "Remove goldens: the files that approving wrote");
+  for (const Option& option : approve->options())
+    if (const std::string name = option.name();
+        name != "--from" && name != "--goldens" && name != "--dry-run" && !option.is_argument())
+      approve->get_option("--from")->excludes(&option);
+  App* remove = app->add_subcommand("remove", "Remove goldens: the files that approving wrote");
   remove->add_option("NAME", o->scenarios, "Goldens, by name")->required();
   add_folder(*remove, o);
-  CLI::App* list =
-      app->add_subcommand("list", "List the goldens, how each is compared, and their size on disk");
+  App* list = app->add_subcommand("list", "List the goldens, how each is compared, and their size on disk");
   add_folder(*list, o);
   list->add_flag("--json", o->json, "Print one JSON line per golden");
-  CLI::App* report = add_part(*app, "report", "Like test, but always write a report page with every picture",
-                              o, "all goldens");
+  App* report = add_part(*app, "report", "Like test, but always write a report page with every picture", o,
+                         "all goldens");
   add_output(*report, o);
   return {app, [o, &globals, test, report, list, remove] {
             if (list->parsed()) return run_list(*o);

@@ -174,14 +174,14 @@ void write_query_page(const capture::Capture& capture, const std::string& source
   import_pair(options, globals, capture, found.pairs[0], folder);
 }
 
-Command add_import(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_import(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "import", "Show queries of any collision engine, captured with lrbscope_capture.h, and check them");
   const auto o = std::make_shared<ImportOptions>();
   app->add_option("CAPTURE", o->file, "Capture, as written by a program with lrbscope_capture.h")->required();
-  app->add_option("-o,--output", o->folder, "Output folder [out/import]")->type_name("DIR");
-  app->add_option("--queries", o->queries, "Only these queries, by number from 1: 40-60, 40- or 40")
-      ->type_name("FIRST-LAST");
+  app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/import]");
+  app->add_option("--queries", o->queries, "FIRST-LAST",
+                  "Only these queries, by number from 1: 40-60, 40- or 40");
   app->add_flag("--no-check", o->no_check, "Do not compare the answers with exact ones");
   add_picture_options(*app, o->picture);
   return {app, [o, &globals] { return run_import(*o, globals); }};

@@ -420,8 +420,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_inspect(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("inspect", "Report the properties and defects of a mesh or an LRB-rep");
+Command add_inspect(App& root, const Globals& globals) {
+  App* app = root.add_subcommand("inspect", "Report the properties and defects of a mesh or an LRB-rep");
   const auto o = std::make_shared<InspectOptions>();
   app->add_option("FILE", o->file, "Mesh or .lrb file")->required();
   app->add_flag("--validate", o->validate,
@@ -436,11 +436,10 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
   app->add_flag("--try", o->tried, "Rebuild with other settings and report which ones improve the LRB-rep")
       ->needs(regions);
   app->get_option("--sort")->needs(regions);
-  app->add_option("--draw", o->drawing,
+  app->add_option("--draw", o->drawing, "FILE.png",
                   "Draw the mesh's defects to this PNG, with the first defective elements marked; with "
-                  "--self-intersections, the pairs and the segments in which they intersect")
-      ->type_name("FILE.png");
-  app->add_option("-o,--output", o->picture, "Picture to write [out/NAME.png]")->type_name("FILE.png");
+                  "--self-intersections, the pairs and the segments in which they intersect");
+  app->add_option("-o,--output", o->picture, "FILE.png", "Picture to write [out/NAME.png]");
   add_size_options(*app, o->pictures);
   add_camera_options(*app, o->pictures.camera);
   auto* json = app->add_flag("--json", o->json, "Print one JSON object");
@@ -448,11 +447,10 @@ Command add_inspect(CLI::App& root, const Globals& globals) {
       app->add_flag("--self-intersections", o->self_intersections,
                     "Only list the pairs of faces that intersect, one JSON line each, with kind, segments "
                     "and curve; exit code 1 if there are any");
-  for (CLI::Option* other : {json, regions, app->get_option("--validate"), app->get_option("--render"),
-                             app->get_option("--output")})
+  for (Option* other : {json, regions, app->get_option("--validate"), app->get_option("--render"),
+                        app->get_option("--output")})
     pairs->excludes(other);
-  app->add_option("--page", o->page, "Write a page with a 3D view of the pairs and their curves")
-      ->type_name("DIR")
+  app->add_option("--page", o->page, "DIR", "Write a page with a 3D view of the pairs and their curves")
       ->needs(pairs);
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_inspect(*o, globals); }};

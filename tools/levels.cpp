@@ -64,22 +64,21 @@ int run_levels(const LevelsOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_levels(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_levels(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "levels",
       "Report how many faces a body needs at each of several tolerances (levels of detail), with proven "
       "error bounds");
   const auto o = std::make_shared<LevelsOptions>();
   o->shares.assign(std::begin(bodies::kLevelShares), std::end(bodies::kLevelShares));
   app->add_option("BODY", o->body, "Mesh or .lrb file")->required();
-  app->add_option("--at", o->shares, "Tolerances, as fractions of the longest side of the body's box")
-      ->check(CLI::Range(0.0, 1.0).description(""))
-      ->type_name("SHARE...")
+  app->add_option("--at", o->shares, "SHARE...",
+                  "Tolerances, as fractions of the longest side of the body's box")
+      ->in_hidden_range(0.0, 1.0)
       ->capture_default_str();
   app->add_option(
-         "-o,--output", o->folder,
-         "Write pictures and a page of the wrappers, their deviation from the body and their face counts")
-      ->type_name("FOLDER");
+      "-o,--output", o->folder, "FOLDER",
+      "Write pictures and a page of the wrappers, their deviation from the body and their face counts");
   add_up_option(*app, o->up);
   o->build.threads = 0;
   add_build_options(*app, o->build);

@@ -82,8 +82,8 @@ int run_list(const ListOptions& o) {
 
 }  // namespace
 
-Command add_list(CLI::App& root, const Globals&) {
-  CLI::App* app = root.add_subcommand(
+Command add_list(App& root, const Globals&) {
+  App* app = root.add_subcommand(
       "list",
       "List the shipped scenarios, crowds and experiments, or the body generators with their parameters");
   const auto o = std::make_shared<ListOptions>();

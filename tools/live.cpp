@@ -376,15 +376,15 @@ class Live {
 
 }  // namespace
 
-Command add_live(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_live(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "live",
       "Run a program that records its collision queries with lrbscope_capture.h, and show each query, "
       "checked, on a page that follows the program");
   const auto o = std::make_shared<LiveOptions>();
   app->add_option("PROGRAM", o->program, "The program and its arguments, after --")->required();
-  app->add_option("--port", o->port, "Port of the page on 127.0.0.1 [0: any free one]")->type_name("N");
-  app->add_option("-o,--output", o->record, "Also write the capture to this file")->type_name("FILE");
+  app->add_option("--port", o->port, "N", "Port of the page on 127.0.0.1 [0: any free one]");
+  app->add_option("-o,--output", o->record, "FILE", "Also write the capture to this file");
   app->add_flag(
       "--exit", o->ends_with_program,
       "End with the program, instead of serving the page until Ctrl-C. Every query is checked: the program "

@@ -89,21 +89,19 @@ int run_manifold(const ManifoldOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_manifold(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_manifold(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "manifold",
       "Find the contact manifolds for a solver: a normal and at most 4 points with depths for each contact "
       "region, with ids that persist from pose to pose; one JSON line per pose of B");
   const auto o = std::make_shared<ManifoldOptions>();
   add_posed_files(*app, *o);
-  app->add_option("--margin", o->request.margin,
-                  "Maximum distance of speculative contacts, in mesh units [0: only pairs that intersect]")
-      ->type_name("D");
+  app->add_option("--margin", o->request.margin, "D",
+                  "Maximum distance of speculative contacts, in mesh units [0: only pairs that intersect]");
   app->add_flag("--pairs", o->pairs, "List the pairs of triangles of each manifold");
-  app->add_option("--max-pairs", o->request.max_pairs,
+  app->add_option("--max-pairs", o->request.max_pairs, "N",
                   "Reject poses with more pairs than N [" + std::to_string(kMaxPairsWithContacts) + "]")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40).description(""))
-      ->type_name("N");
+      ->in_hidden_range(std::uint64_t{1}, std::uint64_t{1} << 40);
   add_picture_options(*app, o->draw, "Draw the bodies with the points and normals of the manifolds");
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);

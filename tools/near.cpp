@@ -62,24 +62,22 @@ int run_near(const NearOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_near(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_near(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "near",
       "Find all pairs of triangles within a distance, exactly, with their distances and closest points, for "
       "each pose of B; one JSON line per pose");
   const auto o = std::make_shared<NearOptions>();
   add_posed_files(*app, *o);
-  app->add_option("--within", o->request.within, "Maximum distance, in mesh units; 0: pairs that intersect")
-      ->required()
-      ->type_name("D");
-  app->add_option("--nearest", o->request.nearest,
+  app->add_option("--within", o->request.within, "D",
+                  "Maximum distance, in mesh units; 0: pairs that intersect")
+      ->required();
+  app->add_option("--nearest", o->request.nearest, "K",
                   "List only the K nearest pairs, in ascending order of the lower bounds of their distances")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40).description(""))
-      ->type_name("K");
-  app->add_option("--max-pairs", o->request.max_pairs,
+      ->in_hidden_range(std::uint64_t{1}, std::uint64_t{1} << 40);
+  app->add_option("--max-pairs", o->request.max_pairs, "N",
                   "Reject poses with more pairs than N [" + std::to_string(kMaxPairs) + "]")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40).description(""))
-      ->type_name("N");
+      ->in_hidden_range(std::uint64_t{1}, std::uint64_t{1} << 40);
   add_picture_options(*app, o->draw, "Draw the bodies with the faces and closest points of the pairs");
   add_repeat_option(*app, o->repeat, "pose");
   add_join_option(*app, o->corners);

@@ -29,7 +29,7 @@ std::string option_of(Value CollideRequest::*member) {
 }
 
 template <class Target>
-void add_recursion(CLI::App& app, Target& recursion, const std::string& usual) {
+void add_recursion(App& app, Target& recursion, const std::string& usual) {
   add_choice<Recursion>(app, option_of(&CollideRequest::recursion), recursion,
                         "complete: never misses a contact; paper, paper_strict: the paper's algorithm, which "
                         "can miss contacts [" +
@@ -37,10 +37,8 @@ void add_recursion(CLI::App& app, Target& recursion, const std::string& usual) {
 }
 
 /// Adds an option that takes a count, at least 1.
-void add_count(CLI::App& app, const std::string& name, std::uint64_t& count, const std::string& what) {
-  app.add_option(name, count, what)
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
-      ->type_name("N");
+void add_count(App& app, const std::string& name, std::uint64_t& count, const std::string& what) {
+  app.add_option(name, count, "N", what)->in_hidden_range(std::uint64_t{1}, std::uint64_t{1} << 62);
 }
 
 /// Reads --size.
@@ -59,25 +57,25 @@ void apply_size(const std::string& size, render::FrameSpec& spec) {
 
 }  // namespace
 
-void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion) {
+void add_recursion_option(App& app, std::optional<Recursion>& recursion) {
   add_recursion(app, recursion, "as in the scenario");
 }
 
-void add_events_option(CLI::App& app, std::optional<EventLevel>& level) {
+void add_events_option(App& app, std::optional<EventLevel>& level) {
   add_choice<EventLevel>(
       app, "--events", level,
       "Events to record. faces: face tests, refinements, contacts; nodes: also tree-node pairs and phases; "
       "all: also face pairs rejected by a separating plane [faces, or as in the scenario]");
 }
 
-void add_clock_option(CLI::App& app, std::optional<trace::Clock>& clock) {
+void add_clock_option(App& app, std::optional<trace::Clock>& clock) {
   add_choice<trace::Clock>(
       app, "--clock", clock,
       "Time in the trace. event: event numbers, the same bytes in every run; wall: nanoseconds, and "
       "microseconds of each step on the page");
 }
 
-void add_request_options(CLI::App& app, CollideRequest& request) {
+void add_request_options(App& app, CollideRequest& request) {
   add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
                    "all: every pair; first: one pair, a crossing one if there is any; any: stop at the first "
                    "pair found");
@@ -90,73 +88,67 @@ void add_request_options(CLI::App& app, CollideRequest& request) {
                 "; with contacts " + std::to_string(kMaxPairsWithContacts) + "]");
 }
 
-void add_coarse_options(CLI::App& app, CollideRequest& request) {
-  app.add_option(option_of(&CollideRequest::tolerance), request.tolerance,
+void add_coarse_options(App& app, CollideRequest& request) {
+  app.add_option(option_of(&CollideRequest::tolerance), request.tolerance, "LENGTH",
                  "Maximum error, in mesh units: answer with the coarsest wrappers within it, and list their "
                  "pairs")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("LENGTH");
+      ->not_negative();
   add_count(app, option_of(&CollideRequest::max_tests), request.max_tests,
             "Maximum number of face tests; on reaching it, return the finest result so far, with its error "
             "bound");
-  app.add_option(option_of(&CollideRequest::max_time), request.max_time,
+  app.add_option(option_of(&CollideRequest::max_time), request.max_time, "S",
                  "Time limit per query, in seconds; on reaching it, return the best result so far, with its "
                  "error bound")
-      ->check(CLI::PositiveNumber)
-      ->type_name("S");
+      ->positive();
 }
 
-void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& what) {
-  app.add_option("--repeat", repeat,
+void add_repeat_option(App& app, std::uint32_t& repeat, const std::string& what) {
+  app.add_option("--repeat", repeat, "N",
                  "Repeat the query of each " + what + " N times and add the median time, in microseconds")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
+      ->in_range(1, 1000000);
 }
 
-void add_join_option(CLI::App& app, bodies::Corners& corners) {
+void add_join_option(App& app, bodies::Corners& corners) {
   app.add_flag_callback(
       "--no-join", [&corners] { corners = bodies::Corners::apart; },
       "Do not merge coincident vertices [merged where the surface would otherwise be open; face numbers do "
       "not change]. Always merged in STL files");
 }
 
-void add_build_options(CLI::App& app, BuildOptions& options) {
-  app.add_option("--patch", options.patch_interior, "Target number of interior vertices per patch")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--max-outer", options.max_outer_faces, "Target number of faces of the outermost wrapper")
-      ->check(CLI::Range(4, 1000))
-      ->capture_default_str()
-      ->type_name("N");
+void add_build_options(App& app, BuildOptions& options) {
+  app.add_option("--patch", options.patch_interior, "N", "Target number of interior vertices per patch")
+      ->in_range(1, 1000)
+      ->capture_default_str();
+  app.add_option("--max-outer", options.max_outer_faces, "N",
+                 "Target number of faces of the outermost wrapper")
+      ->in_range(4, 1000)
+      ->capture_default_str();
   app.add_flag("--lean", options.lean,
                "Build fewer pseudo faces (about 1.4 faces in total per real face instead of 2); wrappers fit "
                "less tightly");
-  app.add_option("--seed", options.seed, "Random seed of the builder")->capture_default_str()->type_name("N");
-  app.add_option("--threads", options.threads,
+  app.add_option("--seed", options.seed, "N", "Random seed of the builder")->capture_default_str();
+  app.add_option("--threads", options.threads, "N",
                  "Number of threads [all cores]; the result does not depend on it")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
+      ->in_range(1, 1024);
 }
 
-void add_size_options(CLI::App& app, PictureOptions& options) {
-  app.add_option("--size", options.size, "Picture size, in pixels")->type_name("WxH");
+void add_size_options(App& app, PictureOptions& options) {
+  app.add_option("--size", options.size, "WxH", "Picture size, in pixels");
   app.add_option(
-         "--dpi", options.dpi,
+         "--dpi", options.dpi, "N",
          "Print resolution: same physical size as --size at 96 dpi, with more pixels; lines and text scale "
          "with it")
-      ->check(CLI::Range(spec::kMinDpi, spec::kMaxDpi))
-      ->type_name("N");
+      ->in_range(spec::kMinDpi, spec::kMaxDpi);
   add_style_option(app, options, "screen");
 }
 
-void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual) {
+void add_style_option(App& app, PictureOptions& options, const std::string& usual) {
   add_choice<render::StyleName>(
       app, "--style", options.style,
       "print: black on white, thin lines, distinguishable in greyscale; dark: for slides [" + usual + "]");
 }
 
-void add_picture_options(CLI::App& app, PictureOptions& options, UpOption up) {
+void add_picture_options(App& app, PictureOptions& options, UpOption up) {
   add_size_options(app, options);
   app.add_flag("--transparent", options.transparent, "Transparent background");
   app.add_flag_callback(
@@ -164,32 +156,27 @@ void add_picture_options(CLI::App& app, PictureOptions& options, UpOption up) {
   app.add_flag_callback(
       "--no-legend", [&options] { options.legend = false; }, "Omit the legend and the colour bar");
   app.add_option_function<std::string>(
-         "--format", [&options](const std::string& word) { options.svg = word == "svg"; },
+         "--format", [&options](const std::string& word) { options.svg = word == "svg"; }, "png|svg",
          "svg: also write frames and montage as SVG (2D bodies only)")
-      ->check(CLI::IsMember({"png", "svg"}).description(""))
-      ->type_name("png|svg");
+      ->one_of({"png", "svg"});
   add_choice<render::FrameSpec::At>(app, "--frames", options.at, "Events after which a frame is drawn");
-  app.add_option("--every", options.every, "Draw only every N-th of the frames selected by --frames")
-      ->check(CLI::Range(1, 1000000000))
-      ->type_name("N");
-  app.add_option("--most", options.most, "Maximum number of frames, evenly spaced")
-      ->check(CLI::Range(1, 10000))
-      ->type_name("N");
+  app.add_option("--every", options.every, "N", "Draw only every N-th of the frames selected by --frames")
+      ->in_range(1, 1000000000);
+  app.add_option("--most", options.most, "N", "Maximum number of frames, evenly spaced")->in_range(1, 10000);
   add_camera_options(app, options.camera, up);
   add_orbit_option(app, options.camera);
   add_colour_options(app, options);
 }
 
-void add_colour_options(CLI::App& app, PictureOptions& options) {
+void add_colour_options(App& app, PictureOptions& options) {
   add_choice<render::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by,
                                           "Quantity that faces are coloured by");
   add_choice<render::FrameSpec::ColourPer>(
       app, "--colour-per", options.colour_per,
       "Colour a face by its own value, or by the sum over its region or level");
-  app.add_option("--node-boxes", options.node_boxes,
+  app.add_option("--node-boxes", options.node_boxes, "DEPTH",
                  "Draw the visited tree-node boxes at this depth; solid: overlapping, dashed: disjoint")
-      ->check(CLI::Range(0U, spec::kMaxDepth))
-      ->type_name("DEPTH");
+      ->in_range(0U, spec::kMaxDepth);
 }
 
 void apply(const PictureOptions& options, render::FrameSpec& spec) {
@@ -213,28 +200,23 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
   apply(options.camera, spec.views);
 }
 
-void add_camera_options(CLI::App& app, CameraOptions& options, UpOption up) {
-  app.add_option("--from", options.from, "Direction from the bodies to the camera, in file axes")
-      ->type_name("X,Y,Z");
-  app.add_option("--look-at", options.look_at, "Point to centre the picture on [centre of the bodies]")
-      ->type_name("X,Y,Z");
-  app.add_option("--zoom", options.zoom, "Zoom factor; above 1 is closer")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->type_name("N");
+void add_camera_options(App& app, CameraOptions& options, UpOption up) {
+  app.add_option("--from", options.from, "X,Y,Z", "Direction from the bodies to the camera, in file axes");
+  app.add_option("--look-at", options.look_at, "X,Y,Z",
+                 "Point to centre the picture on [centre of the bodies]");
+  app.add_option("--zoom", options.zoom, "N", "Zoom factor; above 1 is closer")->in_range(0.01, 1000.0);
   app.add_option_function<std::string>(
          "--projection",
          [&options](const std::string& word) { options.orthographic = word == "orthographic"; },
-         "Camera projection")
-      ->check(CLI::IsMember({"perspective", "orthographic"}).description(""))
-      ->type_name("perspective|orthographic");
+         "perspective|orthographic", "Camera projection")
+      ->one_of({"perspective", "orthographic"});
   add_up_option(app, options.up, up);
 }
 
-void add_orbit_option(CLI::App& app, CameraOptions& options) {
-  app.add_option("--orbit", options.orbit,
+void add_orbit_option(App& app, CameraOptions& options) {
+  app.add_option("--orbit", options.orbit, "DEGREES",
                  "Total angle by which the camera orbits the bodies between the first and the last frame")
-      ->check(CLI::Range(-36000.0, 36000.0))
-      ->type_name("DEGREES");
+      ->in_range(-36000.0, 36000.0);
 }
 
 void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views) {
@@ -271,18 +253,17 @@ void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& v
   }
 }
 
-void add_up_option(CLI::App& app, std::string& up, UpOption values) {
+void add_up_option(App& app, std::string& up, UpOption values) {
   std::vector<std::string> axes = {"x", "y", "z"};
   const bool automatic = values != UpOption::axis;
   if (automatic) axes.emplace_back("auto");
   app.add_option(
-         "--up", up,
+         "--up", up, automatic ? "x|y|z|auto" : "x|y|z",
          std::string("Axis that points up in the pictures") +
              (automatic ? "; auto: the one on which the body is most stable" : "") +
              (values == UpOption::auto_by_default ? " [auto, by body A; z for 2D and bodies that fall over]"
                                                   : " [z]"))
-      ->check(CLI::IsMember(axes).description(""))
-      ->type_name(automatic ? "x|y|z|auto" : "x|y|z");
+      ->one_of(axes);
 }
 
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
@@ -294,13 +275,12 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
   return {turned(view.from), turned(view.up)};
 }
 
-void add_animation_option(CLI::App& app, PictureOptions& options) {
-  app.add_option("--animate", options.animation,
-                 "Also write the frames as an animation; formats other than PNG need ffmpeg")
-      ->type_name("OUT.png|mp4|gif|webp");
+void add_animation_option(App& app, PictureOptions& options) {
+  app.add_option("--animate", options.animation, "OUT.png|mp4|gif|webp",
+                 "Also write the frames as an animation; formats other than PNG need ffmpeg");
 }
 
-void add_live_option(CLI::App& app, bool& live) {
+void add_live_option(App& app, bool& live) {
   app.add_flag("--live", live,
                "Also write live.html, a page in which B can be dragged and the engine answers each pose "
                "(needs a program built with -DLRB_WASM=ON)");

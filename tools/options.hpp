@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "bench/speed/make_sets.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
@@ -19,7 +17,7 @@
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/camera.hpp>
-#include <lrbscope/trace/trace.hpp>
+#include <lrbscope/trace/event.hpp>
 
 namespace lrb::cli {
 
@@ -66,72 +64,64 @@ struct MeasureOptions {
 };
 
 /// Adds --tex.
-inline void add_tex_option(CLI::App& app, bool& tex, const char* what) {
+inline void add_tex_option(App& app, bool& tex, const char* what) {
   app.add_flag("--tex", tex, std::string("Also write ") + what + " for LaTeX with the package booktabs");
 }
 
 /// Adds the options; the help shows the values in `o` as defaults.
-inline void add_measure_options(CLI::App& app, MeasureOptions& o) {
-  app.add_option("-o,--output", o.folder,
-                 "Output folder; a survey found in it is continued [" + o.folder_help + "]")
-      ->type_name("DIR");
-  app.add_option("--models", o.models, "Folder of additional meshes; each is collided with the next")
-      ->type_name("DIR");
-  app.add_option("--method", o.methods, "Only these methods")->type_name("NAME");
-  app.add_option("--poses", o.set.poses, "Number of poses per class [" + std::to_string(o.set.poses) + "]")
-      ->check(CLI::Range(1, 10000))
-      ->type_name("N");
-  app.add_option("--seed", o.set.seed, "Random seed for the poses [1]")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("S");
-  app.add_option("--timeout", o.timeout, "Time limit per pose and method, in seconds [20]")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->type_name("S");
+inline void add_measure_options(App& app, MeasureOptions& o) {
+  app.add_option("-o,--output", o.folder, "DIR",
+                 "Output folder; a survey found in it is continued [" + o.folder_help + "]");
+  app.add_option("--models", o.models, "DIR", "Folder of additional meshes; each is collided with the next");
+  app.add_option("--method", o.methods, "NAME", "Only these methods");
+  app.add_option("--poses", o.set.poses, "N",
+                 "Number of poses per class [" + std::to_string(o.set.poses) + "]")
+      ->in_range(1, 10000);
+  app.add_option("--seed", o.set.seed, "S", "Random seed for the poses [1]")->not_negative();
+  app.add_option("--timeout", o.timeout, "S", "Time limit per pose and method, in seconds [20]")
+      ->in_range(0.1, 3600.0);
 }
 
 /// Adds --quantity: the quantity that methods are compared on.
-inline void add_quantity_option(CLI::App& app, methods::Quantity& quantity) {
+inline void add_quantity_option(App& app, methods::Quantity& quantity) {
   app.add_option_function<std::string>(
-         "--quantity",
-         [&quantity](const std::string& word) {
-           const auto known = from_name<methods::Quantity>(word);
-           if (!known)
-             throw CLI::ValidationError("--quantity",
-                                        "'" + word + "': expected " + all_names<methods::Quantity>());
-           quantity = *known;
-         },
-         "Quantity to compute: " + all_names<methods::Quantity>() + " [pairs]")
-      ->type_name("Q");
+      "--quantity",
+      [&quantity](const std::string& word) {
+        const auto known = from_name<methods::Quantity>(word);
+        if (!known) reject_value("--quantity", "'" + word + "': expected " + all_names<methods::Quantity>());
+        quantity = *known;
+      },
+      "Q", "Quantity to compute: " + all_names<methods::Quantity>() + " [pairs]");
 }
 
 /// Adds an option whose value is the name of an enumerator.
 template <class Enum, class Target>
-void add_choice(CLI::App& app, const std::string& name, Target& target, const std::string& what) {
+void add_choice(App& app, const std::string& name, Target& target, const std::string& what) {
   std::vector<std::string> words;
   words.reserve(kEnumNames<Enum>.size());
   for (const EnumName<Enum>& entry : kEnumNames<Enum>) words.emplace_back(entry.name);
   app.add_option_function<std::string>(
-         name, [&target](const std::string& word) { target = from_name<Enum>(word).value(); }, what)
-      ->check(CLI::IsMember(words).description(""))
-      ->type_name(all_names<Enum>("|", "|"));
+         name, [&target](const std::string& word) { target = from_name<Enum>(word).value(); },
+         all_names<Enum>("|", "|"), what)
+      ->one_of(words);
 }
 
 /// Adds --mode, --recursion, --predicates and --max-pairs.
-void add_request_options(CLI::App& app, CollideRequest& request);
+void add_request_options(App& app, CollideRequest& request);
 /// Adds --tolerance, --max-tests and --max-time.
-void add_coarse_options(CLI::App& app, CollideRequest& request);
+void add_coarse_options(App& app, CollideRequest& request);
 /// Adds --recursion, which overrides the scenario.
-void add_recursion_option(CLI::App& app, std::optional<Recursion>& recursion);
+void add_recursion_option(App& app, std::optional<Recursion>& recursion);
 /// Adds --events, which overrides the scenario.
-void add_events_option(CLI::App& app, std::optional<EventLevel>& level);
+void add_events_option(App& app, std::optional<EventLevel>& level);
 /// Adds --clock, which overrides the scenario.
-void add_clock_option(CLI::App& app, std::optional<trace::Clock>& clock);
+void add_clock_option(App& app, std::optional<trace::Clock>& clock);
 /// Adds --no-join.
-void add_join_option(CLI::App& app, bodies::Corners& corners);
+void add_join_option(App& app, bodies::Corners& corners);
 /// Adds --repeat. what: the unit of a query, such as "pose".
-void add_repeat_option(CLI::App& app, std::uint32_t& repeat, const std::string& what);
+void add_repeat_option(App& app, std::uint32_t& repeat, const std::string& what);
 /// Adds --patch, --max-outer, --lean, --seed and --threads.
-void add_build_options(CLI::App& app, BuildOptions& options);
+void add_build_options(App& app, BuildOptions& options);
 
 /// Camera options of pictures: --from, --look-at, --zoom, --projection and --up, and --orbit if added. They
 /// override the scenario.
@@ -143,9 +133,9 @@ struct CameraOptions {
 };
 /// The values and the default of --up: an axis, z by default; or also `auto`, which may be the default.
 enum class UpOption : std::uint8_t { axis, axis_or_auto, auto_by_default };
-void add_camera_options(CLI::App& app, CameraOptions& options, UpOption up = UpOption::axis);
+void add_camera_options(App& app, CameraOptions& options, UpOption up = UpOption::axis);
 /// Adds --orbit, for pictures of several frame states.
-void add_orbit_option(CLI::App& app, CameraOptions& options);
+void add_orbit_option(App& app, CameraOptions& options);
 /// Applies the options to all views. --up rotates existing views; --from and --look-at are given in the axes
 /// of the bodies' files, and are not rotated. Throws InputError for an invalid camera.
 void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views);
@@ -166,25 +156,25 @@ struct PictureOptions {
   std::optional<render::FrameSpec::ColourPer> colour_per;
   std::optional<std::uint32_t> node_boxes;
 };
-void add_picture_options(CLI::App& app, PictureOptions& options, UpOption up = UpOption::axis);
+void add_picture_options(App& app, PictureOptions& options, UpOption up = UpOption::axis);
 /// Adds --size, --dpi and --style alone.
-void add_size_options(CLI::App& app, PictureOptions& options);
+void add_size_options(App& app, PictureOptions& options);
 /// Adds --style alone; `usual` is its default.
-void add_style_option(CLI::App& app, PictureOptions& options, const std::string& usual);
+void add_style_option(App& app, PictureOptions& options, const std::string& usual);
 /// Adds --colour-by and --node-boxes alone.
-void add_colour_options(CLI::App& app, PictureOptions& options);
+void add_colour_options(App& app, PictureOptions& options);
 void apply(const PictureOptions& options, render::FrameSpec& spec);
 
 /// Adds --animate, for commands that call animate_frames().
-void add_animation_option(CLI::App& app, PictureOptions& options);
+void add_animation_option(App& app, PictureOptions& options);
 /// Encodes the frames in a folder as an animation, if one was requested.
 void animate_frames(const PictureOptions& options, const std::string& folder);
 
 /// Adds --live, for commands that write a run.
-void add_live_option(CLI::App& app, bool& live);
+void add_live_option(App& app, bool& live);
 
 /// Adds --up.
-void add_up_option(CLI::App& app, std::string& up, UpOption values = UpOption::axis);
+void add_up_option(App& app, std::string& up, UpOption values = UpOption::axis);
 /// Replaces --up auto by the axis on which the body is most stable, or z, and notes it.
 void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals);
 /// Returns a view rotated so that an axis (0, 1, 2) points up instead of z.

@@ -33,20 +33,17 @@ struct PaperSeriesOptions {
   bool lean = false;
 };
 
-void add_series_options(CLI::App& app, PaperSeriesOptions& o) {
-  app.add_option("--meshes", o.meshes,
-                 "Meshes, or folders of meshes, to collide at several resolutions [two generated bodies]")
-      ->type_name("PATH...");
+void add_series_options(App& app, PaperSeriesOptions& o) {
+  app.add_option("--meshes", o.meshes, "PATH...",
+                 "Meshes, or folders of meshes, to collide at several resolutions [two generated bodies]");
   app.add_option(
-         "--resolutions", o.resolutions.most,
+         "--resolutions", o.resolutions.most, "N",
          "Number of resolutions per body, each with half as many faces as the one before; 0 omits this part")
-      ->check(CLI::Range(0, 30))
-      ->type_name("N")
+      ->in_range(0, 30)
       ->capture_default_str();
-  app.add_option("--subdivide", o.resolutions.subdivisions,
+  app.add_option("--subdivide", o.resolutions.subdivisions, "N",
                  "Number of subdivisions of each body; each one replaces a face by four")
-      ->check(CLI::Range(0, 4))
-      ->type_name("N")
+      ->in_range(0, 4)
       ->capture_default_str();
   app.add_flag("--lean", o.lean, "Build these bodies with fewer pseudo faces; wrappers fit less tightly");
 }
@@ -328,44 +325,37 @@ int run_paper(PaperOptions o, const Globals& globals) {
 
 }  // namespace
 
-Command add_paper(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_paper(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "paper",
       "Reproduce the paper's experiment: tables, figures, close-ups of single collisions, and the same on "
       "meshes");
   const auto o = std::make_shared<PaperOptions>();
-  app->add_option("-o,--output", o->folder, "Output folder")->type_name("DIR")->capture_default_str();
-  app->add_option("--experiment", o->experiment,
+  app->add_option("-o,--output", o->folder, "DIR", "Output folder")->capture_default_str();
+  app->add_option("--experiment", o->experiment, "NAME|FILE",
                   "Experiment: paper, table1, table2, figures, close_up or a JSON file")
-      ->type_name("NAME|FILE")
       ->capture_default_str();
   app->add_flag("--print", o->print, "Only print the shipped experiment, as a starting point for your own");
-  app->add_option("--collisions", o->collisions, "Number of collisions of A with each object [100]")
-      ->check(CLI::Range(1u, paper::kMaxCollisions))
-      ->type_name("N");
-  app->add_option("--step", o->step, "Time step, as a fraction of the diagonal [0.005]")
-      ->check(CLI::Range(paper::kMinStep, paper::kMaxStep))
-      ->type_name("SHARE");
-  app->add_option("--steps-after", o->steps_after, "Number of time steps counted after first contact [5]")
-      ->check(CLI::Range(0u, paper::kMaxStepsAfter))
-      ->type_name("N");
-  app->add_option("--seed", o->seed, "Random seed for directions and rotations [1]")->type_name("N");
-  app->add_option("--seeds", o->seeds,
+  app->add_option("--collisions", o->collisions, "N", "Number of collisions of A with each object [100]")
+      ->in_range(1u, paper::kMaxCollisions);
+  app->add_option("--step", o->step, "SHARE", "Time step, as a fraction of the diagonal [0.005]")
+      ->in_range(paper::kMinStep, paper::kMaxStep);
+  app->add_option("--steps-after", o->steps_after, "N",
+                  "Number of time steps counted after first contact [5]")
+      ->in_range(0u, paper::kMaxStepsAfter);
+  app->add_option("--seed", o->seed, "N", "Random seed for directions and rotations [1]");
+  app->add_option("--seeds", o->seeds, "N",
                   "Number of repetitions, with seed, seed + 1, and so on; the tables then show a band [1]")
-      ->check(CLI::Range(1u, paper::kMaxSeeds))
-      ->type_name("N");
-  app->add_option("--jobs", o->jobs, "Number of threads [all cores]; the result does not depend on it")
-      ->check(CLI::Range(1u, 1024u))
-      ->type_name("N");
-  CLI::Option* shard =
-      app->add_option("--shard", o->shard,
-                      "Run only part i of n (from 0) of the collisions, and write only its records")
-          ->type_name("i/n");
-  CLI::Option* merge = app->add_option("--merge", o->merge,
-                                       "Report the records of all shards without computing any; repeat the "
-                                       "shards' --meshes, if any")
-                           ->type_name("records.jsonl...")
-                           ->excludes(shard);
+      ->in_range(1u, paper::kMaxSeeds);
+  app->add_option("--jobs", o->jobs, "N", "Number of threads [all cores]; the result does not depend on it")
+      ->in_range(1u, 1024u);
+  Option* shard =
+      app->add_option("--shard", o->shard, "i/n",
+                      "Run only part i of n (from 0) of the collisions, and write only its records");
+  Option* merge = app->add_option("--merge", o->merge, "records.jsonl...",
+                                  "Report the records of all shards without computing any; repeat the "
+                                  "shards' --meshes, if any")
+                      ->excludes(shard);
   add_series_options(*app, o->series);
   for (const char* of_shards : {"--collisions", "--step", "--steps-after", "--seed", "--seeds",
                                 "--resolutions", "--subdivide", "--lean"})

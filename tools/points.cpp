@@ -69,27 +69,24 @@ int run_points(const PointsOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_points(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_points(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "points",
       "Compute the signed distance of points to a body, as a proven interval, negative inside; one JSON line "
       "per point");
   const auto o = std::make_shared<PointsOptions>();
   app->add_option("BODY", o->body, "Mesh or .lrb file")->required();
   app->add_option("POINTS", o->points, "File with points: lines of 3 numbers, x y z")->required();
-  app->add_option("--tolerance", o->request.tolerance,
-                  "Stop once the interval is at most this wide, in mesh units")
-      ->type_name("E");
-  app->add_option("--relative-tolerance", o->request.relative_tolerance,
-                  "Stop once the interval is at most this wide, relative to the distance")
-      ->type_name("E");
-  app->add_option("--threads", o->threads, "Number of threads [all cores]; the result does not depend on it")
-      ->type_name("N");
+  app->add_option("--tolerance", o->request.tolerance, "E",
+                  "Stop once the interval is at most this wide, in mesh units");
+  app->add_option("--relative-tolerance", o->request.relative_tolerance, "E",
+                  "Stop once the interval is at most this wide, relative to the distance");
+  app->add_option("--threads", o->threads, "N",
+                  "Number of threads [all cores]; the result does not depend on it");
   add_picture_options(*app, o->draw,
                       "Draw the body with the points in the colours of their sides, and segments to the "
                       "closest points");
-  app->add_option("--page", o->page, "Write a page with a 3D view of the body and the points")
-      ->type_name("DIR");
+  app->add_option("--page", o->page, "DIR", "Write a page with a 3D view of the body and the points");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_points(*o, globals); }};
 }

@@ -19,7 +19,7 @@ void PoseLines::check(const LrbRep& a, const LrbRep& b) const {
   for (std::size_t i = 0; i < poses.size(); ++i) at(i, [&] { check_query(a, Pose{}, b, poses[i]); });
 }
 
-void add_posed_files(CLI::App& app, PosedFiles& files) {
+void add_posed_files(App& app, PosedFiles& files) {
   app.add_option("A", files.a, "Mesh or .lrb file; does not move")->required();
   app.add_option("B", files.b, "Mesh or .lrb file; moved to each pose")->required();
   app.add_option("--poses", files.poses, io::kPoseFileHelp + std::string(" [B stays in place]"));
@@ -88,25 +88,21 @@ render::Look look_of(const DrawOptions& options) {
   return look;
 }
 
-void add_picture_options(CLI::App& app, DrawOptions& options, const std::string& picture) {
-  app.add_option("--draw", options.picture, picture + "; for several poses, one numbered file each")
-      ->type_name("PNG");
-  app.add_option("--size", options.look.size, "Picture size, in pixels [1200x750]")->type_name("WxH");
+void add_picture_options(App& app, DrawOptions& options, const std::string& picture) {
+  app.add_option("--draw", options.picture, "PNG", picture + "; for several poses, one numbered file each");
+  app.add_option("--size", options.look.size, "WxH", "Picture size, in pixels [1200x750]");
   add_up_option(app, options.look.camera.up);
 }
 
-void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture, bool with_history) {
+void add_draw_options(App& app, DrawOptions& options, const std::string& picture, bool with_history) {
   add_picture_options(app, options, picture);
-  app.add_option("--chart", options.chart,
+  app.add_option("--chart", options.chart, "FILE",
                  "Chart the convergence of the bounds over the work done, as .svg, .png or .pdf (needs "
                  "gnuplot)")
-      ->check(CLI::Validator(
-          [](const std::string& path) {
-            const bool known = path.ends_with(".svg") || path.ends_with(".png") || path.ends_with(".pdf");
-            return known ? std::string() : path + ": expected a file name that ends in .svg, .png or .pdf";
-          },
-          ""))
-      ->type_name("FILE");
+      ->satisfies([](const std::string& path) {
+        const bool known = path.ends_with(".svg") || path.ends_with(".png") || path.ends_with(".pdf");
+        return known ? std::string() : path + ": expected a file name that ends in .svg, .png or .pdf";
+      });
   if (with_history)
     app.add_flag("--convergence", options.history, "Add the convergence history: [work, lower, upper]");
 }

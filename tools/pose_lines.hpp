@@ -84,7 +84,7 @@ struct PosedFiles {
   std::string a, b, poses;
 };
 /// Adds A, B and --poses.
-void add_posed_files(CLI::App& app, PosedFiles& files);
+void add_posed_files(App& app, PosedFiles& files);
 /// Loads both bodies without regions, and prints their notes.
 std::array<bodies::LoadedBody, 2> load_noted(const std::string& a, const std::string& b,
                                              bodies::Corners corners, const Globals& globals);
@@ -127,9 +127,8 @@ struct DrawOptions {
 /// Returns the style of the pictures. Throws InputError for an unsupported size.
 render::Look look_of(const DrawOptions& options);
 /// Adds --draw, --size and --up. `picture`: content of the picture that --draw writes.
-void add_picture_options(CLI::App& app, DrawOptions& options, const std::string& picture);
+void add_picture_options(App& app, DrawOptions& options, const std::string& picture);
 /// Adds these, --chart and, if `with_history`, --convergence.
-void add_draw_options(CLI::App& app, DrawOptions& options, const std::string& picture,
-                      bool with_history = true);
+void add_draw_options(App& app, DrawOptions& options, const std::string& picture, bool with_history = true);
 
 }  // namespace lrb::cli

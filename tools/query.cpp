@@ -163,8 +163,8 @@ int run_query(const QueryOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_query(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_query(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "query", "Find all intersecting pairs of faces, exactly, for each pose of B; one JSON line per pose");
   const auto o = std::make_shared<QueryOptions>();
   add_posed_files(*app, *o);
@@ -174,10 +174,9 @@ Command add_query(CLI::App& root, const Globals& globals) {
                                    "For separate bodies, add the coarsest pair of disjoint wrappers (a "
                                    "certificate of separation)");
   app->add_option(
-         "--draw-separation", o->draw,
+         "--draw-separation", o->draw, "PNG",
          "Draw the certificate of --separation to this PNG; for several poses, one numbered file each")
-      ->needs(separation)
-      ->type_name("PNG");
+      ->needs(separation);
   app->add_flag("--pairs", o->pairs, "Add the sorted list of intersecting pairs");
   app->add_flag("--kind", o->kind, "Add the kind of contact, as reported by `clash`");
   app->add_flag("--distance", o->distance, "Add the distance between the surfaces, as a proven interval");

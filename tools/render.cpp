@@ -196,33 +196,27 @@ int run_render(const RenderOptions& given, const Globals& globals) {
 
 }  // namespace
 
-Command add_render(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand("render", "Redraw the pictures of a recorded run without rerunning it");
+Command add_render(App& root, const Globals& globals) {
+  App* app = root.add_subcommand("render", "Redraw the pictures of a recorded run without rerunning it");
   const auto o = std::make_shared<RenderOptions>();
   app->add_option("TRACE", o->trace, "A run's folder, trace.json or trace.json.gz")->required();
-  app->add_option("-o,--output", o->folder, "Output folder [out/NAME-render]")->type_name("DIR");
-  app->add_option("--bodies", o->bodies,
+  app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/NAME-render]");
+  app->add_option("--bodies", o->bodies, "FILE",
                   "Bodies of the trace [a.lrb and b.lrb next to it; crowd: KIND.lrb for each kind]")
-      ->type_name("FILE")
       ->expected(1, static_cast<int>(spec::kMaxCrowdBodies));
-  app->add_option("--events", o->events, "Draw a frame after each of these events")
-      ->delimiter(',')
-      ->type_name("N,N,...");
-  app->add_option("--montage", o->montage, "Number of panels of the montage [as in the run]")
-      ->check(CLI::Range(1, 26))
-      ->type_name("N");
-  app->add_option("--columns", o->columns, "Number of columns of the montage [as in the run]")
-      ->check(CLI::Range(1, 26))
-      ->type_name("N");
+  app->add_option("--events", o->events, "N,N,...", "Draw a frame after each of these events")
+      ->delimiter(',');
+  app->add_option("--montage", o->montage, "N", "Number of panels of the montage [as in the run]")
+      ->in_range(1, 26);
+  app->add_option("--columns", o->columns, "N", "Number of columns of the montage [as in the run]")
+      ->in_range(1, 26);
   app->add_flag("--close-up", o->close_up, "Add a second view that shows the contact close up");
-  app->add_option("--region", o->regions,
+  app->add_option("--region", o->regions, "N,N,...",
                   "Show only these regions (N or aN of A, bN of B), close up; the rest is a ghost")
-      ->delimiter(',')
-      ->type_name("N,N,...");
-  app->add_option("--layer", o->layers,
+      ->delimiter(',');
+  app->add_option("--layer", o->layers, "K,K,...",
                   "Show only the regions of these layers (K or aK of A, bK of B; 0 is the innermost)")
-      ->delimiter(',')
-      ->type_name("K,K,...");
+      ->delimiter(',');
   app->add_flag("--no-ghost", o->hide_rest, "With --region or --layer: omit the rest");
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);

@@ -18,7 +18,7 @@ namespace lrb::cli {
 namespace {
 
 struct CrowdOptions {
-  std::string crowd, folder, pair;
+  std::string crowd = "crowd", folder, pair;
   std::uint32_t jobs = 0;  ///< 0: all cores
   std::optional<std::uint32_t> steps;
   std::optional<trace::Clock> clock;
@@ -71,33 +71,29 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_crowd(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_crowd(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "crowd", "Move many bodies; per step, query each pair of bodies whose boxes overlap, on all cores");
   const auto o = std::make_shared<CrowdOptions>();
-  app->add_option("CROWD", o->crowd,
+  app->add_option("CROWD", o->crowd, "NAME|FILE|DIR",
                   "Shipped crowd (see lrbscope list), JSON file, or with --pair a recorded crowd")
-      ->type_name("NAME|FILE|DIR")
-      ->default_val("crowd");
-  app->add_option("-o,--output", o->folder, "Output folder [out/NAME]")->type_name("DIR");
-  app->add_option("--jobs", o->jobs, "Number of threads [all cores]; the result does not depend on it")
-      ->check(CLI::Range(1u, 1024u))
-      ->type_name("N");
-  app->add_option("--steps", o->steps, "Number of time steps [as in the crowd's file]")
-      ->check(CLI::Range(1u, 100000u))
-      ->type_name("N");
+      ->capture_default_str();
+  app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/NAME]");
+  app->add_option("--jobs", o->jobs, "N", "Number of threads [all cores]; the result does not depend on it")
+      ->in_range(1u, 1024u);
+  app->add_option("--steps", o->steps, "N", "Number of time steps [as in the crowd's file]")
+      ->in_range(1u, 100000u);
   add_choice<trace::Clock>(
       *app, "--clock", o->clock,
       "Time in the trace. event: independent of the number of threads, one track per body; wall: wall-clock "
       "time, one track per thread");
   app->add_option(
-         "--pair", o->pair,
+         "--pair", o->pair, "BODY,BODY",
          "Record these two bodies of a recorded crowd (CROWD is its folder or trace) as a run of two "
          "bodies, for `why`, `export`, `figure` and `compare`")
-      ->type_name("BODY,BODY")
-      ->excludes("--jobs")
-      ->excludes("--steps")
-      ->excludes("--clock");
+      ->excludes(app->get_option("--jobs"))
+      ->excludes(app->get_option("--steps"))
+      ->excludes(app->get_option("--clock"));
   app->add_flag("--no-frames", o->no_frames, "Do not draw frames");
   app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};
@@ -139,12 +135,11 @@ int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bo
   return outcome.mismatches.empty() ? kOk : kMismatch;
 }
 
-Command add_run(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("run", "Run a scenario and write a page, frames, a trace and statistics");
+Command add_run(App& root, const Globals& globals) {
+  App* app = root.add_subcommand("run", "Run a scenario and write a page, frames, a trace and statistics");
   const auto o = std::make_shared<RunCommandOptions>();
   app->add_option("SCENARIO", o->scenario, "Shipped scenario (see lrbscope list) or JSON file")->required();
-  app->add_option("-o,--output", o->folder, "Output folder [out/NAME]")->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/NAME]");
   add_recursion_option(*app, o->recursion);
   add_events_option(*app, o->events);
   add_clock_option(*app, o->clock);

@@ -313,40 +313,31 @@ int run_stability(StabilityOptions o, const Globals& globals) {
 
 }  // namespace
 
-Command add_stability(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_stability(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "stability",
       "Run families of hard cases through lrbscope and other engines, and report the failures of each");
   const auto o = std::make_shared<StabilityOptions>();
-  app->add_option("-o,--output", o->folder, "Output folder [out/stability, or out/stability-QUANTITY]")
-      ->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "DIR",
+                  "Output folder [out/stability, or out/stability-QUANTITY]");
   add_quantity_option(*app, o->quantity);
-  app->add_option("--family", o->families, "Only these families")->type_name("NAME");
-  app->add_option("--method", o->methods, "Only these methods")->type_name("NAME");
-  app->add_option("--difficulty", o->difficulty, "Only this difficulty, from 0 (benign) to 10 (degenerate)")
-      ->check(CLI::Range(0, kDifficulties - 1))
-      ->type_name("K");
-  app->add_option("--cases", o->cases, "Number of cases per family and difficulty [100]")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
-  app->add_option("--seed", o->seed, "Random seed for the cases [1]")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("S");
-  app->add_option("--jobs", o->jobs, "Number of processes to run in parallel [2]")
-      ->check(CLI::Range(1, 256))
-      ->type_name("N");
-  app->add_option("--timeout", o->timeout, "Time limit per case and method, in seconds [5]")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->type_name("S");
-  app->add_option("--only", o->only, "Rerun this case and print the result")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("CASE");
+  app->add_option("--family", o->families, "NAME", "Only these families");
+  app->add_option("--method", o->methods, "NAME", "Only these methods");
+  app->add_option("--difficulty", o->difficulty, "K",
+                  "Only this difficulty, from 0 (benign) to 10 (degenerate)")
+      ->in_range(0, kDifficulties - 1);
+  app->add_option("--cases", o->cases, "N", "Number of cases per family and difficulty [100]")
+      ->in_range(1, 1000000);
+  app->add_option("--seed", o->seed, "S", "Random seed for the cases [1]")->not_negative();
+  app->add_option("--jobs", o->jobs, "N", "Number of processes to run in parallel [2]")->in_range(1, 256);
+  app->add_option("--timeout", o->timeout, "S", "Time limit per case and method, in seconds [5]")
+      ->in_range(0.1, 3600.0);
+  app->add_option("--only", o->only, "CASE", "Rerun this case and print the result")->not_negative();
   app->add_option(
-         "--save", o->save,
-         "With --only or --saved: write the case as meshes and poses, the right answer with its proof in "
-         "fractions, and the answers of the engines")
-      ->type_name("DIR");
-  app->add_option("--saved", o->saved, "Query the case of a folder that --save wrote")->type_name("DIR");
+      "--save", o->save, "DIR",
+      "With --only or --saved: write the case as meshes and poses, the right answer with its proof in "
+      "fractions, and the answers of the engines");
+  app->add_option("--saved", o->saved, "DIR", "Query the case of a folder that --save wrote");
   app->add_flag("--minimise", o->minimise,
                 "With --save and one --method: shrink a case that it fails on to the fewest triangles and "
                 "bits, and write that with a picture and a report for the engine's tracker");

@@ -126,8 +126,8 @@ int run_sweep(const SweepOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_sweep(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_sweep(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "sweep", "Find the time of impact (first contact) for each motion of B; one JSON line per motion");
   const auto o = std::make_shared<SweepOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
@@ -136,11 +136,9 @@ Command add_sweep(CLI::App& root, const Globals& globals) {
          "--motions", o->motions,
          "File with motions of B: lines of 24 numbers, the poses at t = 0 and t = 1 (3x4 each, row by row)")
       ->required();
-  app->add_option("--tolerance", o->request.tolerance, "Maximum width of the interval of t [1e-9]")
-      ->type_name("T");
-  app->add_option("--budget", o->request.max_steps, "Maximum number of steps [10000000]")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62).description(""))
-      ->type_name("N");
+  app->add_option("--tolerance", o->request.tolerance, "T", "Maximum width of the interval of t [1e-9]");
+  app->add_option("--budget", o->request.max_steps, "N", "Maximum number of steps [10000000]")
+      ->in_hidden_range(std::uint64_t{1}, std::uint64_t{1} << 62);
   app->add_flag("--features", o->features, "Add the features (vertex, edge or face) in first contact");
   app->add_flag("--history", o->request.history,
                 "Add the intervals of t that were examined, with the result of each");

@@ -138,26 +138,21 @@ int run_tails(const TailsOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_tails(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_tails(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "tails", "Measure the distribution of an engine's cost over random poses, or in a capture");
   const auto o = std::make_shared<TailsOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file, 3D; does not move. Or a capture, alone")->required();
   app->add_option("B", o->b, "Mesh or .lrb file, 3D; moves");
   add_engine_options(*app, *o);
-  app->add_option("--poses", o->poses, std::string("Number of random poses: ") + kSampling + " [10000]")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
-  app->add_option("--seed", o->seed, "Random seed for the poses [1]")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("S");
-  app->add_option("-o,--output", o->folder,
-                  "Write a page of the distributions and the costliest poses, and all samples")
-      ->type_name("DIR");
-  auto* record = app->add_option("--record", o->record,
+  app->add_option("--poses", o->poses, "N", std::string("Number of random poses: ") + kSampling + " [10000]")
+      ->in_range(1, 1000000);
+  app->add_option("--seed", o->seed, "S", "Random seed for the poses [1]")->not_negative();
+  app->add_option("-o,--output", o->folder, "DIR",
+                  "Write a page of the distributions and the costliest poses, and all samples");
+  auto* record = app->add_option("--record", o->record, "P,...",
                                  "Record the poses at these percentiles of time into the folder: p99,max")
-                     ->delimiter(',')
-                     ->type_name("P,...");
+                     ->delimiter(',');
   app->add_flag("--json", o->json, "Print JSON, a line for each row of the table")->excludes(record);
   return {app, [o, &globals] { return run_tails(*o, globals); }};
 }

@@ -342,27 +342,25 @@ int run_tree(const TreeCommandOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_tree(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_tree(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "tree", "Measure a bounding volume hierarchy and list its faults; exit code 1 if there are any");
   const auto o = std::make_shared<TreeCommandOptions>();
   app->add_option(
          "FILE", o->file,
          "Capture, as written by a program with lrbscope_capture.h; or a mesh or .lrb file: lrbscope's own tree")
       ->required();
-  app->add_option("--tree", o->tree, "Only this tree, by the engine's number")->type_name("N");
+  app->add_option("--tree", o->tree, "N", "Only this tree, by the engine's number");
   app->add_flag("--exact", o->report.exact,
                 "Compute EPO by clipping triangles to volumes instead of sampling; not for spheres and RSS");
-  app->add_option("--tolerance", o->report.tolerance,
+  app->add_option("--tolerance", o->report.tolerance, "T",
                   "Maximum distance of a corner outside a volume, relative to the mesh's diagonal [1e-7]")
-      ->check(CLI::Range(0.0, 1.0))
-      ->type_name("T");
-  app->add_option("--seed", o->report.seed, "Random seed for the points of the surface [1]")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("S");
+      ->in_range(0.0, 1.0);
+  app->add_option("--seed", o->report.seed, "S", "Random seed for the points of the surface [1]")
+      ->not_negative();
   app->add_flag("--json", o->json, "Print one JSON object");
-  app->add_option("-o,--output", o->folder, "Also write a page, with charts and a 3D view of the nodes")
-      ->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "DIR",
+                  "Also write a page, with charts and a 3D view of the nodes");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_tree(*o, globals); }};
 }

@@ -71,8 +71,8 @@ int run_why(const WhyOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_why(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_why(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "why", "Explain why two faces are or are not reported as a pair, or why two bodies are separate");
   const auto o = std::make_shared<WhyOptions>();
   auto* a = app->add_option("A", o->a, "Mesh or .lrb file; does not move");
@@ -81,19 +81,16 @@ Command add_why(CLI::App& root, const Globals& globals) {
   app->add_option("--pose", o->pose, "Number of the pose in the file, from 0")
       ->needs(poses)
       ->capture_default_str();
-  auto* run = app->add_option("--run", o->run, "A recorded run (folder or trace) instead of A and B")
+  auto* run = app->add_option("--run", o->run, "DIR", "A recorded run (folder or trace) instead of A and B")
                   ->excludes(a)
-                  ->excludes(poses)
-                  ->type_name("DIR");
-  app->add_option("--step", o->step, "Time step of the run [the last]")->needs(run)->type_name("N");
-  app->add_option("--pair", o->pair, "A simplex of A and one of B, numbered as in `query --pairs`")
+                  ->excludes(poses);
+  app->add_option("--step", o->step, "N", "Time step of the run [the last]")->needs(run);
+  app->add_option("--pair", o->pair, "I,J", "A simplex of A and one of B, numbered as in `query --pairs`")
       ->delimiter(',')
-      ->expected(2)
-      ->type_name("I,J");
-  app->add_option("-o,--output", o->picture,
+      ->expected(2);
+  app->add_option("-o,--output", o->picture, "FILE.png",
                   "Draw the two faces and their surroundings; without --pair, the separating plane or boxes "
-                  "of the bodies")
-      ->type_name("FILE.png");
+                  "of the bodies");
   app->add_flag("--json", o->json, "Print one JSON object");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_why(*o, globals); }};

@@ -126,8 +126,8 @@ int run_worst(const WorstOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_worst(CLI::App& root, const Globals& globals) {
-  CLI::App* app = root.add_subcommand(
+Command add_worst(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(
       "worst", "Search for the poses at which an engine does most work, or answers wrongly");
   const auto o = std::make_shared<WorstOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file, 3D; does not move")->required();
@@ -137,17 +137,12 @@ Command add_worst(CLI::App& root, const Globals& globals) {
       *app, "--goal", o->goal,
       "Quantity to maximise: tests for each pair found, tests, time, or wrong: compare the pairs "
       "with the exact ones at poses that are hard in floating point [tests-per-answer]");
-  app->add_option("--budget", o->search.budget, "Number of queries [3000]")
-      ->check(CLI::Range(8, 10000000))
-      ->type_name("N");
-  app->add_option("--seed", o->search.seed, "Random seed for the poses [1]")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("S");
+  app->add_option("--budget", o->search.budget, "N", "Number of queries [3000]")->in_range(8, 10000000);
+  app->add_option("--seed", o->search.seed, "S", "Random seed for the poses [1]")->not_negative();
   app->add_flag("--random", o->at_random, "Also spend the same budget at random, for comparison");
   app->add_option(
-         "-o,--output", o->folder,
-         "Write a page with a map of the cost, the poses, and a scenario of them for regression tests")
-      ->type_name("DIR");
+      "-o,--output", o->folder, "DIR",
+      "Write a page with a map of the cost, the poses, and a scenario of them for regression tests");
   app->add_flag("--json", o->json, "Print JSON, a line for each pose");
   return {app, [o, &globals] { return run_worst(*o, globals); }};
 }

@@ -96,22 +96,19 @@ int run_xray(const XrayOptions& o, const Globals& globals) {
 
 }  // namespace
 
-Command add_xray(CLI::App& root, const Globals& globals) {
-  CLI::App* app =
-      root.add_subcommand("xray", "Record another engine's traversal and show it next to lrbscope's");
+Command add_xray(App& root, const Globals& globals) {
+  App* app = root.add_subcommand("xray", "Record another engine's traversal and show it next to lrbscope's");
   const auto o = std::make_shared<XrayOptions>();
   app->add_option("A", o->a, "Mesh or .lrb file, 3D; does not move")->required();
   app->add_option("B", o->b, "Mesh or .lrb file, 3D; moves")->required();
-  app->add_option("--method", o->method,
+  app->add_option("--method", o->method, "fcl|cgal",
                   "The other engine; it must have been installed when lrbscope was built")
-      ->check(CLI::IsMember({"fcl", "cgal"}).description(""))
-      ->type_name("fcl|cgal")
+      ->one_of({"fcl", "cgal"})
       ->capture_default_str();
-  app->add_option("--poses", o->poses,
+  app->add_option("--poses", o->poses, "FILE",
                   "File with the poses of B: lines of 12 numbers (3x4, row by row), .csv or .json")
-      ->type_name("FILE")
       ->required();
-  app->add_option("-o,--output", o->folder, "Output folder [out/xray-METHOD]")->type_name("DIR");
+  app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/xray-METHOD]");
   add_picture_options(*app, o->picture);
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_xray(*o, globals); }};
