@@ -16,12 +16,10 @@
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/document.hpp"
-#include "scenarios/run/answer_page.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
@@ -118,7 +116,7 @@ std::string region_caption(const bodies::RegionFigures& r) {
 
 struct InspectOptions {
   bodies::Corners corners = bodies::Corners::joined;
-  std::string file, picture, drawing, page;
+  std::string file, picture, drawing;
   PictureOptions pictures;
   bool validate = false, render = false, json = false;
   bool regions = false, tried = false, self_intersections = false;
@@ -155,7 +153,6 @@ render::Look sheet_look(const InspectOptions& o, int width, int height) {
 /// Prints a JSON line for each pair of faces that intersect.
 int list_self_intersections(const InspectOptions& o, const Globals& globals) {
   const render::Look look = sheet_look(o, run::kAnswerWidth, run::kAnswerHeight);
-  if (!o.page.empty()) compare::reject_folder_of_run(o.page, "--page");
   std::vector<std::string> notes;
   SelfIntersections found;
   std::optional<LrbRep> body;  // to be drawn
@@ -165,7 +162,7 @@ int list_self_intersections(const InspectOptions& o, const Globals& globals) {
   } else {
     const CheckedMesh mesh = check(bodies::read_body(o.file, o.corners, notes), MeshFinding::kShown);
     found = self_intersections(mesh);
-    if (!o.drawing.empty() || !o.page.empty()) body.emplace(bodies::faces_of_mesh(mesh.mesh()).rep);
+    if (!o.drawing.empty()) body.emplace(bodies::faces_of_mesh(mesh.mesh()).rep);
   }
   if (!o.drawing.empty()) run::check_views(look.views, body->dim());
   note(globals, notes);
@@ -190,7 +187,6 @@ int list_self_intersections(const InspectOptions& o, const Globals& globals) {
   note(globals, {render::counted(found.pairs.size(), "pair", "pairs") + " of faces, " +
                  render::counted(found.curves, "curve", "curves")});
   if (!o.drawing.empty()) run::write_picture(run::picture_of(found, *body, look), o.drawing, look.dpi);
-  if (!o.page.empty()) run::write_page(o.page, *body, found, globals.command_line);
   return found.pairs.empty() ? kOk : kMismatch;
 }
 
@@ -450,8 +446,6 @@ Command add_inspect(App& root, const Globals& globals) {
   for (Option* other : {json, regions, app->get_option("--validate"), app->get_option("--render"),
                         app->get_option("--output")})
     pairs->excludes(other);
-  app->add_option("--page", o->page, "DIR", "Write a page with a 3D view of the pairs and their curves")
-      ->needs(pairs);
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
 }

@@ -5,9 +5,7 @@
 
 #include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/io/poses.hpp"
-#include "scenarios/run/answer_page.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/pose_lines.hpp"
@@ -20,7 +18,7 @@ namespace {
 
 struct PointsOptions {
   bodies::Corners corners = bodies::Corners::joined;
-  std::string body, points, page;
+  std::string body, points;
   PointDistanceRequest request;
   unsigned threads = 0;
   DrawOptions draw;
@@ -41,7 +39,6 @@ std::string line_of(std::size_t point, const PointDistance& d) {
 
 int run_points(const PointsOptions& o, const Globals& globals) {
   const render::Look look = look_of(o.draw);
-  if (!o.page.empty()) compare::reject_folder_of_run(o.page, "--page");
   const std::vector<Eigen::Vector3d> points = io::read_points(o.points);
   const bodies::LoadedBody body = bodies::load_faces(o.body, o.corners);
   note(globals, body.notes);
@@ -63,7 +60,6 @@ int run_points(const PointsOptions& o, const Globals& globals) {
   }
   progress.finish();
   if (!o.draw.picture.empty()) run::write_picture(run::picture_of(shown, body.rep, look), o.draw.picture);
-  if (!o.page.empty()) run::write_page(o.page, body.rep, shown, globals.command_line);
   return kOk;
 }
 
@@ -86,7 +82,6 @@ Command add_points(App& root, const Globals& globals) {
   add_picture_options(*app, o->draw,
                       "Draw the body with the points in the colours of their sides, and segments to the "
                       "closest points");
-  app->add_option("--page", o->page, "DIR", "Write a page with a 3D view of the body and the points");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_points(*o, globals); }};
 }

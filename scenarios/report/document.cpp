@@ -393,10 +393,6 @@ Document& Document::tree_view(const std::string& json) {
   return view(json, "tree");
 }
 
-Document& Document::answers_view(const std::string& json) {
-  return view(json, "answers");
-}
-
 Document& Document::frames(const std::vector<Frame>& frames, const std::string& folder, std::size_t budget) {
   if (frames.empty()) return *this;
   std::vector<PngBytes> pngs;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# browser.sh LRBSCOPE: makes pages of runs, of a tree, of answers and of a crowd, opens them in headless Chromium, and drives them (drive.js,
-# drive_tree.js, drive_answers.js, drive_crowd.js, drive_compare.js) with clicks, filters, sliders and keys. Fails if a page disagrees with the trace or the tree, and on any error in the
+# browser.sh LRBSCOPE: makes pages of runs, of a tree and of a crowd, opens them in headless Chromium, and drives them (drive.js,
+# drive_tree.js, drive_crowd.js, drive_compare.js) with clicks, filters, sliders and keys. Fails if a page disagrees with the trace or the tree, and on any error in the
 # browser's console. Skipped (77) without Chromium.
 set -euo pipefail
 lrbscope=$(realpath "$1")
@@ -98,23 +98,6 @@ drive 1400 1000 'page.html?drive=open' "${webgl[@]}"
 "$lrbscope" --quiet tree "$work/out/a.lrb" -o "$work/tree" >/dev/null
 with_scripts "$work/tree/index.html" drive_tree.js >"$work/page.html"
 drive 1400 1000 page.html "${webgl[@]}"
-# Answers about one body: points beside a rock, and two copies of it that cross.
-awk 'BEGIN { srand(1); for (i = 0; i < 40; i++) print 3 * rand() - 1.5, 3 * rand() - 1.5, 3 * rand() - 1.5 }' >"$work/points.txt"
-"$lrbscope" --quiet run "$here/near.json" --frames none -o "$work/rock" >/dev/null
-"$lrbscope" --quiet export "$work/rock/a.lrb" -o "$work/one.obj" >/dev/null
-awk '$1 == "v" { n++; x[n] = $2; y[n] = $3; z[n] = $4 } $1 == "f" { m++; f[m] = $0 }
-  END { for (c = 0; c < 2; c++) for (i = 1; i <= n; i++) print "v", x[i] + 0.7 * c, y[i], z[i]
-    for (c = 0; c < 2; c++) for (i = 1; i <= m; i++) { k = split(f[i], w); printf "f"; for (j = 2; j <= k; j++) printf " %d", w[j] + n * c; print "" } }' \
-  "$work/one.obj" >"$work/two.obj"
-"$lrbscope" --quiet points "$work/two.obj" "$work/points.txt" --page "$work/answers" >/dev/null
-with_scripts "$work/answers/index.html" drive_answers.js >"$work/page.html"
-drive 1400 1000 page.html "${webgl[@]}"
-"$lrbscope" --quiet inspect "$work/two.obj" --self-intersections --page "$work/answers" >/dev/null || [ $? = 1 ]
-with_scripts "$work/answers/index.html" drive_answers.js >"$work/page.html"
-for size in "1400 1000" "600 900"; do
-  # shellcheck disable=SC2086
-  drive $size page.html "${webgl[@]}"
-done
 "$lrbscope" --quiet crowd "$here/few.crowd.json" -o "$work/crowd" >/dev/null
 {
   sed '/^<\/body>$/,$d' "$work/crowd/index.html"

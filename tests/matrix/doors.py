@@ -263,10 +263,10 @@ class Matrix:
         self.run(["inspect", file, "--render", "-o", f"{out}-r.png", "--size", "640x480"], made=f"{out}-r.png")
         self.run(["inspect", file, "--draw", f"{out}-f.png"], None, (2,) if stored else (0,))
         self.run(["inspect", file, "--regions"], None, (0, 2))
-        crossing = ["inspect", file, "--self-intersections", "--draw", f"{out}-x.png", "--page", f"{out}-x"]
-        self.run(crossing, lambda lines: check_self_intersections(lines, kind), (0, 1), f"{out}-x/index.html")
-        points = ["points", file, f"{kind['name']}.points.txt", "--draw", f"{out}-p.png", "--page", f"{out}-p"]
-        self.run(points, check_points, made=f"{out}-p/index.html")
+        crossing = ["inspect", file, "--self-intersections", "--draw", f"{out}-x.png"]
+        self.run(crossing, lambda lines: check_self_intersections(lines, kind), (0, 1), f"{out}-x.png")
+        points = ["points", file, f"{kind['name']}.points.txt", "--draw", f"{out}-p.png"]
+        self.run(points, check_points, made=f"{out}-p.png")
         self.run(["inspect", file, "--validate"], None, (0,) if stored or kind["builds"] else (0, 2))
         self.run(["figure", file, "-o", f"{out}.png", "--dpi", "100"], None, built)
         self.run(["levels", file], None, built)

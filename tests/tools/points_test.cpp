@@ -1,6 +1,5 @@
 // lrbscope points: output and errors.
 #include <array>
-#include <filesystem>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -79,39 +78,6 @@ TEST_CASE("points: a picture, with points in the colours of their sides") {
   CHECK(colours("open.obj") == std::array{false, false});  // neither
 }
 
-TEST_CASE("points: a page with all points, or evenly chosen ones") {
-  Command command({"--quiet", "points", "cube.obj"});
-  command.folder.write("few.txt", "0.5 0.5 0.75\n4 0.5 5\n1 0.5 0.5\n");
-  command.lines({"few.txt", "--page", "out"});
-  const std::string page = slurp(command.folder / "out/index.html");
-  for (const char* part : {"<tr data-to=\"item 0\"><td", ">inside</td>", ">outside</td>",
-                           ">on the surface</td>", "<dt>Inside</dt>", "\"what\":\"point\"", "item 2"})
-    CHECK_MESSAGE(page.find(part) != std::string::npos, std::string(part));
-  CHECK(page.find("evenly chosen") == std::string::npos);
-
-  std::string text;
-  for (int i = 0; i < 5000; ++i) text += "0.5 0.5 " + std::to_string(i + 2) + "\n";
-  command.folder.write("many.txt", text);
-  CHECK(command.lines({"many.txt", "--page", "out", "--draw", "out.png"}).size() == 5000);
-  const std::string cut = slurp(command.folder / "out/index.html");
-  CHECK(cut.find("evenly chosen from 5\xe2\x80\xaf"
-                 "000") != std::string::npos);
-  std::size_t rows = 0;
-  for (std::size_t at = 0; (at = cut.find("<tr data-to=", at)) != std::string::npos; ++at) ++rows;
-  CHECK(rows > 1000);
-  CHECK(rows <= 2000);
-}
-
-TEST_CASE("points: a page does not replace that of a run") {
-  Command command({"--quiet", "points", "cube.obj", "points.txt"});
-  command.folder.write("points.txt", "0 0 0\n");
-  std::filesystem::create_directory(command.folder / "run");
-  command.folder.write("run/trace.json", "{}");
-  command.check_refusals(
-      {{{"--page", "run"}, "run"}, {{"--draw", "a.png", "--size", "640"}, "--size: expected"}});
-  CHECK_FALSE(std::filesystem::exists(command.folder / "run/index.html"));
-}
-
 TEST_CASE("points: invalid input is rejected in one line") {
   Command command({"points"});
   command.folder.write("points.txt", "0 0 0\n");
@@ -125,7 +91,8 @@ TEST_CASE("points: invalid input is rejected in one line") {
        {{"cube.obj", "nan.txt"}, "nan.txt:1: \"nan\" is not finite"},
        {{"cube.obj", "none.txt"}, "none.txt: no points"},
        {{"empty.obj", "points.txt"}, "empty.obj"},
-       {{"cube.obj", "points.txt", "--tolerance", "-1"}, "tolerance"}});
+       {{"cube.obj", "points.txt", "--tolerance", "-1"}, "tolerance"},
+       {{"cube.obj", "points.txt", "--draw", "a.png", "--size", "640"}, "--size: expected"}});
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// lrbscope inspect --self-intersections: lines, picture, page and errors.
-#include <filesystem>
+// lrbscope inspect --self-intersections: lines, picture and errors.
 #include <string>
 
 #include <doctest/doctest.h>
@@ -40,18 +39,14 @@ TEST_CASE("self-intersections: pairs, curves, and the exit code") {
   CHECK(c.pairs("plane.obj").size() == 1);
 }
 
-TEST_CASE("self-intersections: a picture and a page, also of bodies without any") {
+TEST_CASE("self-intersections: a picture, also of bodies without any") {
   const CrossingMeshes c;
   for (const std::string name : {"twice", "plane", "cube"}) {
     CAPTURE(name);
-    const auto found = c.pairs(name + ".obj", {"--draw", name + ".png", "--page", name, "--size", "640x400"});
+    c.pairs(name + ".obj", {"--draw", name + ".png", "--size", "640x400"});
     const render::Image image = render::read_png(c.folder / (name + ".png")).image;
     CHECK(image.rect() == render::PixelRect{0, 0, 640, 400});
     CHECK(count_pixels(image, {}, is_painted) > image.pixels().size() / 50);
-    const std::string page = slurp(c.folder / (name + "/index.html"));
-    CHECK((page.find("<tr data-to=\"item 0\">") != std::string::npos) == !found.empty());
-    CHECK((page.find("<tr data-to=\"group 1\">") != std::string::npos) == (name == "twice"));
-    CHECK(page.find("\"what\":\"pair\"") != std::string::npos);
   }
 }
 
@@ -64,17 +59,11 @@ TEST_CASE("self-intersections: those of an .lrb are those of its mesh") {
 }
 
 TEST_CASE("self-intersections: invalid options are rejected in one line") {
-  CrossingMeshes c;
-  std::filesystem::create_directory(c.folder / "run");
-  c.folder.write("run/trace.json", "{}");
-  c.check_refusals({{{"crossing.obj", "--page", "run"}, "run"},
-                    {{"crossing.obj", "--size", "640x400"}, "--size: needs --render or --draw"},
+  const CrossingMeshes c;
+  c.check_refusals({{{"crossing.obj", "--size", "640x400"}, "--size: needs --render or --draw"},
                     {{"crossing.obj", "--draw", "a.png", "--size", "640"}, "--size: expected"},
                     {{"plane.obj", "--draw", "a.png", "--from", "1,0,0"}, "2D"},
-                    {{"none.obj", "--draw", "a.png", "--page", "page"}, "none.obj"}});
-  CHECK_FALSE(std::filesystem::exists(c.folder / "page"));
-  c.words = {"--quiet", "inspect"};
-  c.check_refusals({{{"crossing.obj", "--page", "page"}, "--self-intersections"}});
+                    {{"none.obj", "--draw", "a.png"}, "none.obj"}});
 }
 
 }  // namespace
