@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # browser.sh LRBSCOPE: makes pages of runs, of a tree and of a crowd, opens them in headless Chromium, and drives them (drive.js,
-# drive_tree.js, drive_crowd.js, drive_compare.js) with clicks, filters, sliders and keys. Fails if a page disagrees with the trace or the tree, and on any error in the
-# browser's console. Skipped (77) without Chromium.
+# drive_tree.js, drive_crowd.js, drive_compare.js). Fails if a page disagrees with the trace or the tree, and on any error in the
+# browser's console. measure.sh measures pages of each kind. Skipped (77) without Chromium.
 set -euo pipefail
 lrbscope=$(realpath "$1")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -16,14 +16,6 @@ page() {
     sed 's/</\\u003c/g' "$work/out/trace.json"
     echo '</script>'
   } >"$work/page.html"
-}
-
-# in_frame WIDTH: writes $work/frame.html, the page in a frame of this width; browser windows cannot be as narrow as phones.
-in_frame() {
-  cat >"$work/frame.html" <<END
-<!DOCTYPE html><body style="margin: 0"><iframe src="page.html?drive=layout" style="border: 0; width: $1px; height: 900px"></iframe>
-<script>onmessage = (e) => { const out = document.createElement("pre"); out.id = "driven"; out.textContent = e.data; document.body.append(out); };</script>
-END
 }
 
 # drive WIDTH HEIGHT FILE OPTION...: opens a file of $work and prints the results of drive.js.
@@ -50,7 +42,7 @@ command=$(sed -n 's/^command lrbscope //p' "$work/driven")
 verdict=$(sed -n 's/^verdict .*Decided by \(.*\)\./\1/p' "$work/driven")
 hash=$(sed -n 's/^hash //p' "$work/driven")
 drive 1400 900 "page.html?drive=reload$hash" "${webgl[@]}"
-for size in "1400 900" "1920 1080" "1000 800"; do
+for size in "1920 1080" "1000 800"; do
   # shellcheck disable=SC2086
   drive $size 'page.html?drive=screen' "${webgl[@]}"
 done
@@ -63,7 +55,6 @@ if ! eval "\"$lrbscope\" $command" | grep -qxF "decided by $verdict"; then
   echo "browser.sh: \"$command\" does not print \"decided by $verdict\"" >&2
   failed=1
 fi
-for width in 400 3000; do in_frame "$width" && drive 3200 1000 frame.html "${webgl[@]}"; done
 drive 1200 900 'page.html?drive=flat' --disable-gpu --disable-3d-apis --disable-software-rasterizer
 page "$here/build.json"
 drive 1400 1000 'page.html?drive=build' "${webgl[@]}"
