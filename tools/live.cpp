@@ -1,15 +1,18 @@
-#include "scenarios/profile/live.hpp"
-
-#include <array>
-#include <chrono>
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
 
 #include <fcntl.h>
+#include <nlohmann/json.hpp>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/ioctl.h>
@@ -19,21 +22,24 @@
 
 #include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/profile/check.hpp"
 #include "scenarios/report/assets.hpp"
 #include "tools/import.hpp"
-#include "tools/loopback_server.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
+
+// After Eigen, whose parameters have the name of a macro of <resolv.h>.
+#include <httplib.h>
 
 extern char** environ;
 
 namespace lrb::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::ordered_json;
+using profile::Judgement;
 
 struct LiveOptions {
   std::vector<std::string> program;
@@ -42,51 +48,10 @@ struct LiveOptions {
   bool ends_with_program = false;
 };
 
-/// The reading end of a named pipe.
-class NamedPipe {
- public:
-  explicit NamedPipe(const std::string& path) {
-    if (mkfifo(path.c_str(), 0600) == 0) descriptor_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor_ < 0)
-      throw EnvironmentError(path + ": cannot make a named pipe: " + std::strerror(errno) + "; set TMPDIR");
-    // A larger pipe rarely makes the program wait. The system may refuse.
-    fcntl(descriptor_, F_SETPIPE_SZ, 1 << 20);
-    const int size = fcntl(descriptor_, F_GETPIPE_SZ);
-    capacity_ = size > 0 ? size : 1 << 16;
-  }
-  ~NamedPipe() { shut(); }
-  NamedPipe(const NamedPipe&) = delete;
-  NamedPipe& operator=(const NamedPipe&) = delete;
-
-  int descriptor() const { return descriptor_; }
-  /// Returns true if the writer is ahead: more than half of the pipe waits to be read.
-  bool is_filling() const { return waiting() > capacity_ / 2; }
-  bool is_empty() const { return waiting() == 0; }
-  /// Reads the available bytes. Returns the number of bytes, 0 without a writer, and -1 if there is nothing
-  /// yet.
-  ssize_t read(std::vector<std::byte>& buffer) const {
-    const ssize_t n = ::read(descriptor_, buffer.data(), buffer.size());
-    return n < 0 ? -1 : n;
-  }
-  void shut() {
-    if (descriptor_ >= 0) close(descriptor_);
-    descriptor_ = -1;
-  }
-
- private:
-  /// Returns the number of bytes to read.
-  int waiting() const {
-    int out = 0;
-    return ioctl(descriptor_, FIONREAD, &out) == 0 ? out : 0;
-  }
-
-  int descriptor_ = -1, capacity_ = 0;
-};
-
 /// The running program.
 class Program {
  public:
-  explicit Program(const std::vector<std::string>& words) : name_(words.front()) {
+  explicit Program(const std::vector<std::string>& words) : name_(printable_name(words.front())) {
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
@@ -102,8 +67,7 @@ class Program {
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
     const int error = posix_spawnp(&id_, arguments[0], nullptr, &attributes, arguments.data(), environ);
     posix_spawnattr_destroy(&attributes);
-    if (error != 0)
-      throw InputError(printable_name(name_) + ": cannot start the program: " + std::strerror(error));
+    if (error != 0) throw InputError(name_ + ": cannot start the program: " + std::strerror(error));
   }
   ~Program() { end(); }
   Program(const Program&) = delete;
@@ -115,8 +79,7 @@ class Program {
   }
   /// Ends it: politely, and after two seconds in any case.
   void end() {
-    if (has_ended()) return;
-    kill(id_, SIGTERM);
+    if (!has_ended()) kill(id_, SIGTERM);
     for (int i = 0; i < 100 && !has_ended(); ++i) usleep(20'000);
     if (has_ended()) return;
     kill(id_, SIGKILL);
@@ -124,11 +87,9 @@ class Program {
   }
   /// Returns how it failed, or an empty text.
   std::string failure() const {
-    if (WIFSIGNALED(status_))
-      return printable_name(name_) + " was ended by signal " + std::to_string(WTERMSIG(status_));
-    if (WEXITSTATUS(status_) != 0)
-      return printable_name(name_) + " ended with exit code " + std::to_string(WEXITSTATUS(status_));
-    return {};
+    if (WIFSIGNALED(status_)) return name_ + " was ended by signal " + std::to_string(WTERMSIG(status_));
+    const int code = WEXITSTATUS(status_);
+    return code == 0 ? "" : name_ + " ended with exit code " + std::to_string(code);
   }
 
  private:
@@ -138,240 +99,289 @@ class Program {
   bool ended_ = false;
 };
 
-std::string type_of(const fs::path& file) {
-  const std::string extension = file.extension().string();
-  if (extension == ".html") return "text/html; charset=utf-8";
-  if (extension == ".json" || extension == ".jsonl") return "application/json";
-  if (extension == ".png") return "image/png";
-  if (extension == ".svg") return "image/svg+xml";
-  if (extension == ".txt") return "text/plain; charset=utf-8";
-  return "application/octet-stream";
-}
+struct LiveQuery {
+  capture::Query query;
+  std::string verdict = "not checked", explanation = {};
+};
+
+/// The queries of a running engine, checked as they end. Memory is bounded.
+class LiveQueries {
+ public:
+  explicit LiveQueries(const capture::Capture& descriptions)
+      : descriptions_(descriptions), bodies_(descriptions) {}
+
+  const std::deque<LiveQuery>& kept() const { return kept_; }
+
+  void add(capture::Query query, bool is_to_check) {
+    kept_.push_back({std::move(query)});
+    events_ += kept_.back().query.events.size();
+    if (is_to_check)
+      check(kept_.back());
+    else
+      ++unchecked_;
+    forget();
+  }
+  const LiveQuery* find(std::uint32_t number) const {
+    const auto found =
+        std::find_if(kept_.begin(), kept_.end(), [&](const auto& q) { return q.query.number == number; });
+    return found == kept_.end() ? nullptr : &*found;
+  }
+  std::uint64_t count(Judgement judgement) const {
+    return sums_.outcomes[static_cast<std::size_t>(judgement)];
+  }
+  /// Returns "1 200 queries: 1 190 right, 2 wrong, 8 not checked".
+  std::string summary() const {
+    std::string out = render::counted(sums_.queries + unchecked_, "query", "queries");
+    const char* separator = ": ";
+    for (const Judgement j :
+         {Judgement::right, Judgement::undecidable, Judgement::wrong, Judgement::unchecked}) {
+      const bool is_unchecked = j == Judgement::unchecked;
+      const std::uint64_t n = count(j) + (is_unchecked ? unchecked_ : 0);
+      if (n == 0) continue;
+      out += separator + render::group_digits(n) + " " +
+             (is_unchecked ? "not checked" : std::string(name_of(j)));
+      separator = ", ";
+    }
+    return out;
+  }
+  std::string advice() const { return sums_.queries > 0 ? profile::advice(sums_.prices) : ""; }
+
+ private:
+  void check(LiveQuery& live) {
+    const std::array now{descriptions_.meshes.size(), descriptions_.trees.size()};
+    if (!checker_ || now != known_) {
+      bodies_.update();
+      checker_.emplace(bodies_, profile::precision_of(descriptions_));
+      known_ = now;
+    }
+    const auto trees = profile::CapturedBodies::trees_of(live.query);
+    const auto walk = trees ? std::make_unique<profile::QueryWalk>(bodies_, live.query, *trees) : nullptr;
+    const profile::QueryVerdict verdict = checker_->check(live.query, walk.get());
+    sums_ += profile::sums_of(
+        {verdict, profile::PriceBook(bodies_).add(live.query, walk.get(), verdict.exact, false)});
+    live.verdict =
+        verdict.outcome == Judgement::unchecked ? "not checked" : std::string(name_of(verdict.outcome));
+    if (verdict.answer == Judgement::wrong || verdict.answer == Judgement::undecidable)
+      live.explanation = verdict.remark;
+    else if (!verdict.wrong.empty())
+      live.explanation =
+          sentence(verdict.wrong.front(), descriptions_.trees[(*trees)[0]], descriptions_.trees[(*trees)[1]]);
+  }
+
+  /// Drops old queries, right ones first.
+  void forget() {
+    constexpr std::size_t kLast = 200, kMaxKept = 400, kMaxEvents = 8'000'000;
+    while (kept_.size() > kLast || (events_ > kMaxEvents && kept_.size() > 1)) {
+      auto old =
+          std::find_if(kept_.begin(), kept_.end() - 1, [](const auto& q) { return q.verdict != "wrong"; });
+      const bool is_recent = kept_.end() - old <= static_cast<std::ptrdiff_t>(kLast);
+      if (is_recent && kept_.size() <= kMaxKept && events_ <= kMaxEvents) return;
+      if (is_recent) old = kept_.begin();
+      events_ -= old->query.events.size();
+      kept_.erase(old);
+    }
+  }
+
+  const capture::Capture& descriptions_;  ///< grow while the engine runs
+  profile::CapturedBodies bodies_;
+  std::optional<profile::Checker> checker_;
+  std::array<std::size_t, 2> known_{};  ///< number of meshes and trees in `bodies_`
+  std::deque<LiveQuery> kept_;
+  profile::CheckSums sums_;  ///< of the checked queries
+  std::uint64_t unchecked_ = 0, events_ = 0;
+};
 
 class Live {
  public:
   Live(const LiveOptions& options, const Globals& globals)
       : options_(options),
         globals_(globals),
-        pipe_((folder_.path / "capture").string()),
-        server_(options.port, [this](const std::string& target) { return answer(target); }),
+        pipe_path_(folder_.path / "capture"),
         stream_(options.program.front()),
         queries_(stream_.descriptions()) {
+    if (mkfifo(pipe_path_.c_str(), 0600) == 0)
+      pipe_ = open(pipe_path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (pipe_ < 0)
+      throw EnvironmentError(pipe_path_ + ": cannot make a named pipe: " + std::strerror(errno) +
+                             "; set TMPDIR");
+    fcntl(pipe_, F_SETPIPE_SZ, kPipeBytes);  // rarely makes the program wait; the system may refuse
     if (!options.record.empty()) {
       record_.open(options.record, std::ios::binary);
       if (!record_) throw EnvironmentError(printable_name(options.record) + ": cannot write the file");
     }
+    serve();
   }
+  ~Live() {
+    server_.stop();
+    if (serving_.joinable()) serving_.join();
+    close(pipe_);
+  }
+  Live(const Live&) = delete;
+  Live& operator=(const Live&) = delete;
 
   int run() {
-    setenv("LRBCAP_OUT", (folder_.path / "capture").c_str(), 1);
+    setenv("LRBCAP_OUT", pipe_path_.c_str(), 1);
     Program program(options_.program);
-    note(globals_, {"live: " + server_.url()});
+    note(globals_, {"live: http://127.0.0.1:" + std::to_string(port_) + "/"});
     // A program may continue after the end of its capture.
     while (!stop_.has_arrived() && !(is_over_ && options_.ends_with_program && program.has_ended())) {
-      wait();
-      server_.serve();
-      if (!is_over_) {
-        const bool has_ended = program.has_ended();  // before the read that must find all it wrote
-        read_pipe(has_ended);
-      }
-      check_rest();
-      send_update();
+      pollfd waiting[] = {{stop_.descriptor(), POLLIN, 0}, {pipe_, POLLIN, 0}};
+      constexpr int kMilliseconds = 100;
+      poll(waiting, is_over_ ? 1 : 2, kMilliseconds);
+      const bool has_ended = program.has_ended();  // before the read that must find all it wrote
+      read_pipe(has_ended);
     }
     program.end();
-    if (!is_over_) read_pipe(true);
+    read_pipe(true);
     return report(program);
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  static constexpr int kPipeBytes = 1 << 20;
 
-  void wait() {
-    std::vector<pollfd> waiting;
-    waiting.push_back({stop_.descriptor(), POLLIN, 0});
-    if (!is_over_) waiting.push_back({pipe_.descriptor(), POLLIN, 0});
-    server_.add_to(waiting);
-    constexpr int kMilliseconds = 100;
-    // Before its first writer a pipe is quiet; after its last one it is over.
-    poll(waiting.data(), waiting.size(), kMilliseconds);
+  /// Returns true if more than half of the pipe waits to be read.
+  bool is_behind() const {
+    int waiting = 0;
+    return ioctl(pipe_, FIONREAD, &waiting) == 0 && waiting > fcntl(pipe_, F_GETPIPE_SZ) / 2;
   }
 
+  /// Reads all that waits in the pipe. Without a writer, the capture is over if it began or the program
+  /// ended.
   void read_pipe(bool has_ended) {
-    constexpr auto kAtOnce = std::chrono::milliseconds(100);
-    const auto begin = Clock::now();
-    while (Clock::now() - begin < kAtOnce) {
-      const ssize_t n = pipe_.read(buffer_);
+    while (!is_over_ && !stop_.has_arrived()) {
+      const ssize_t n = read(pipe_, buffer_.data(), buffer_.size());
       if (n < 0) return;
-      if (n == 0) {
-        // No writer: not yet, or no longer.
-        if (stream_.has_begun() || has_ended) finish();
-        return;
-      }
+      const std::lock_guard lock(mutex_);
+      is_over_ = n == 0 && (stream_.has_begun() || has_ended);
+      if (n == 0) return;
       const auto bytes = std::span(buffer_).first(static_cast<std::size_t>(n));
-      if (record_.is_open())
-        record_.write(reinterpret_cast<const char*>(bytes.data()),
-                      static_cast<std::streamsize>(bytes.size()));
+      if (record_.is_open()) record_.write(reinterpret_cast<const char*>(bytes.data()), n);
       stream_.feed(bytes, [&](capture::Query query) {
-        unsent_.push_back(query.number);
-        queries_.add(std::move(query), options_.ends_with_program || !pipe_.is_filling());
+        queries_.add(std::move(query), options_.ends_with_program || !is_behind());
       });
     }
   }
 
-  /// Checks queries that were left out, while the program is quiet.
-  void check_rest() {
-    constexpr auto kAtOnce = std::chrono::milliseconds(50);
-    const auto begin = Clock::now();
-    while (Clock::now() - begin < kAtOnce && (is_over_ || pipe_.is_empty())) {
-      const auto checked = queries_.check_one();
-      if (!checked) return;
-      unsent_.push_back(*checked);
-    }
+  /// Serves the page on a thread: GET only, on 127.0.0.1. Requests that name another host are rejected, so
+  /// that no page of the web can read the answers by DNS rebinding.
+  void serve() {
+    server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      using Handled = httplib::Server::HandlerResponse;
+      const std::string host = request.get_header_value("Host"), end = ":" + std::to_string(port_);
+      if (request.get_header_value_count("Host") == 1 &&
+          (host == "127.0.0.1" + end || host == "localhost" + end)) {
+        const std::lock_guard lock(mutex_);
+        make_page_for(request.path);
+        return Handled::Unhandled;
+      }
+      response.status = 403;
+      return Handled::Handled;
+    });
+    server_.Get("/", [](const httplib::Request&, httplib::Response& response) {
+      const std::string style = render::page_root_css() + std::string(io::embedded_file("page.css"));
+      response.set_content(report::filled(io::embedded_file("live.html"), {{"style", style}}),
+                           "text/html; charset=utf-8");
+    });
+    server_.Get("/state", [this](const httplib::Request&, httplib::Response& response) {
+      const std::lock_guard lock(mutex_);
+      response.set_content(one_line(state()), "application/json");
+    });
+    server_.set_keep_alive_max_count(1);  // so that stop() does not wait for clients
+    server_.set_default_headers({{"Cache-Control", "no-store"}, {"X-Content-Type-Options", "nosniff"}});
+    std::filesystem::create_directory(folder_.path / "queries");
+    server_.set_mount_point("/queries", (folder_.path / "queries").string());
+    port_ = options_.port == 0                                 ? server_.bind_to_any_port("127.0.0.1")
+            : server_.bind_to_port("127.0.0.1", options_.port) ? options_.port
+                                                               : -1;
+    if (port_ < 0)
+      throw EnvironmentError("--port " + std::to_string(options_.port) +
+                             ": cannot serve there; choose another port, or 0 for any");
+    serving_ = std::thread([this] { server_.listen_after_bind(); });
+    while (!server_.is_running()) std::this_thread::yield();  // stop() needs it
   }
 
-  void finish() {
-    is_over_ = true;
-    pipe_.shut();
-    has_changed_ = true;
+  /// Makes the page of a query before the first request of a path such as "/queries/12/index.html".
+  void make_page_for(const std::string& path) {
+    constexpr std::string_view kQueries = "/queries/";
+    if (!path.starts_with(kQueries)) return;
+    const std::string number =
+        path.substr(kQueries.size(), path.find('/', kQueries.size()) - kQueries.size());
+    if (number.empty() || number.size() > 9 || number.find_first_not_of("0123456789") != std::string::npos)
+      return;
+    const std::filesystem::path folder = folder_.path / "queries" / number;
+    const LiveQuery* const query = queries_.find(static_cast<std::uint32_t>(std::stoul(number)));
+    if (query == nullptr || !is_shown(*query) || exists(folder)) return;
+    capture::Capture one = stream_.descriptions();
+    one.queries = {query->query};
+    one.cut_off = false;
+    write_query_page(one, command(), folder.string(), globals_);
+  }
+
+  static bool is_shown(const LiveQuery& q) { return q.query.trees[0] != kNull && q.query.trees[1] != kNull; }
+
+  std::string command() const {
+    std::string out;
+    for (const std::string& word : options_.program) out += (out.empty() ? "" : " ") + shell_word(word);
+    return out;
   }
 
   ordered_json state() const {
-    ordered_json out = queries_.sums_json();
-    out["program"] = joined(options_.program);
-    out["running"] = !is_over_;
-    return out;
-  }
-  static std::string joined(const std::vector<std::string>& words) {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : " ") + shell_word(word);
-    return out;
-  }
-
-  /// Returns JSON without a line break, as server-sent events need it.
-  static std::string text_of(const ordered_json& value) {
-    std::string out = one_line(value);
-    while (out.ends_with('\n')) out.pop_back();
-    return out;
-  }
-
-  /// Sends the queries since the last update, at most some times a second.
-  void send_update() {
-    constexpr auto kEvery = std::chrono::milliseconds(200);
-    if ((unsent_.empty() && !has_changed_) || Clock::now() - sent_ < kEvery) return;
-    if (server_.streams() > 0) {
-      ordered_json update{{"state", state()}, {"queries", ordered_json::array()}};
-      for (const std::uint32_t number : unsent_)
-        if (const profile::LiveQuery* query = queries_.find(number))
-          update["queries"].push_back(queries_.json_of(*query));
-      server_.send(text_of(update));
+    ordered_json out{{"program", command()},        {"engine", stream_.descriptions().engine},
+                     {"running", !is_over_},        {"summary", queries_.summary()},
+                     {"advice", queries_.advice()}, {"queries", ordered_json::array()}};
+    for (const LiveQuery& q : queries_.kept()) {
+      std::uint64_t tests = 0;
+      for (const capture::Event& e : q.query.events)
+        if (e.kind == capture::EventKind::nodes || e.kind == capture::EventKind::triangles) tests += e.tests;
+      out["queries"].push_back({{"number", q.query.number},
+                                {"verdict", q.verdict},
+                                {"us", q.query.duration_ns / 1000},
+                                {"tests", tests},
+                                {"pairs", q.query.pairs},
+                                {"explanation", q.explanation},
+                                {"run", is_shown(q)}});
     }
-    unsent_.clear();
-    has_changed_ = false;
-    sent_ = Clock::now();
-  }
-
-  HttpAnswer answer(const std::string& target) {
-    try {
-      if (target == "/") return {200, "text/html; charset=utf-8", page()};
-      if (target == "/events") {
-        ordered_json all{{"state", state()}, {"queries", ordered_json::array()}};
-        for (const profile::LiveQuery& query : queries_.kept())
-          all["queries"].push_back(queries_.json_of(query));
-        return {200, "text/event-stream", "retry: 1000\ndata: " + text_of(all) + "\n\n", true};
-      }
-      constexpr std::string_view kQueries = "/queries/";
-      if (target.starts_with(kQueries)) return file_of_query(target.substr(kQueries.size()));
-    } catch (const std::exception& e) {
-      return {500, "text/plain; charset=utf-8", std::string(e.what()) + "\n"};
-    }
-    return {404, "text/plain", "Not Found\n"};
-  }
-
-  /// Answers "12/index.html": a file of the page of query 12, which is made at the first request.
-  HttpAnswer file_of_query(const std::string& path) {
-    const HttpAnswer not_found{404, "text/plain; charset=utf-8",
-                               "The query is no longer kept, or has no events.\n"};
-    const std::size_t slash = path.find('/');
-    const std::string number = path.substr(0, slash);
-    if (slash == std::string::npos || number.empty() || number.size() > 9 ||
-        number.find_first_not_of("0123456789") != std::string::npos)
-      return not_found;
-    const fs::path folder = folder_.path / ("query-" + number);
-    if (!fs::exists(folder / "index.html")) {
-      const profile::LiveQuery* query = queries_.find(static_cast<std::uint32_t>(std::stoul(number)));
-      if (query == nullptr || !query->has_events) return not_found;
-      write_query_page(queries_.capture_of(*query), joined(options_.program), folder.string(), globals_);
-    }
-    const std::string rest = path.substr(slash + 1);
-    std::error_code error;
-    const fs::path file = fs::weakly_canonical(folder / (rest.empty() ? "index.html" : rest), error);
-    const fs::path home = fs::weakly_canonical(folder, error);
-    // Only files below the folder: no "..", and no links.
-    const auto ends = std::mismatch(home.begin(), home.end(), file.begin(), file.end());
-    if (error || ends.first != home.end() || !fs::is_regular_file(file))
-      return {404, "text/plain", "Not Found\n"};
-    return {200, type_of(file), io::read_text(file.string())};
-  }
-
-  std::string page() const {
-    return report::filled(io::embedded_file("live.html"),
-                          {{"style", render::page_root_css() + std::string(io::embedded_file("page.css")) +
-                                         std::string(io::embedded_file("live.css"))},
-                           {"script", report::script_of(std::array<std::string, 1>{"live"})}});
+    return out;
   }
 
   int report(const Program& program) {
-    const std::string name = printable_name(options_.program.front());
-    if (!stream_.has_begun()) {
-      const std::string failure = program.failure();
+    const std::string name = printable_name(options_.program.front()), failure = program.failure();
+    if (!stream_.has_begun())
       throw InputError(
           name + ": recorded nothing" + (failure.empty() ? "" : " (" + failure + ")") +
           "; compile it with -DLRBCAP_ENABLE, and open the capture with LRBCAP_OPEN(engine, NULL)");
-    }
     if (record_.is_open() && !record_.flush())
       throw EnvironmentError(printable_name(options_.record) + ": cannot write the file");
-    std::vector<std::string> notes;
     if (stream_.descriptions().cut_off)
-      notes.push_back(
-          "the capture has no end: the program did not call LRBCAP_CLOSE(), or was ended" +
-          (stream_.unfinished() > 0
-               ? "; " + render::counted(stream_.unfinished(), "query has", "queries have") + " no end"
-               : std::string()));
-    const std::string failure = program.failure();
-    const bool was_stopped = stop_.has_arrived();
-    if (!failure.empty() && !was_stopped) notes.push_back(failure);
-    note(globals_, notes);
+      note(globals_, {"the capture has no end: the program did not call LRBCAP_CLOSE(), or was ended"});
+    const bool failed = !failure.empty() && !stop_.has_arrived();
+    if (failed) note(globals_, {failure});
     const std::string& engine = stream_.descriptions().engine;
-    print((engine.empty() ? name : printable_name(engine)) + ": " + queries_.summary() + "\n" +
-          wrong_lines());
-    const auto wrong = queries_.sums().outcomes[static_cast<std::size_t>(profile::Judgement::wrong)];
-    return wrong > 0 || (!failure.empty() && !was_stopped) ? kMismatch : kOk;
-  }
-
-  std::string wrong_lines() const {
-    constexpr int kShown = 10;
-    std::string out;
+    std::string out = (engine.empty() ? name : printable_name(engine)) + ": " + queries_.summary() + "\n";
     int shown = 0;
-    for (const profile::LiveQuery& query : queries_.kept())
-      if (query.is_wrong() && ++shown <= kShown)
-        out += "  query " + std::to_string(query.query.number) + ": " +
-               query.explanation.substr(0, query.explanation.find('\n')) + "\n";
-    return out;
+    for (const LiveQuery& q : queries_.kept())
+      if (constexpr int kShown = 10; q.verdict == "wrong" && ++shown <= kShown)
+        out += "  query " + std::to_string(q.query.number) + ": " + q.explanation + "\n";
+    print(out);
+    return queries_.count(Judgement::wrong) > 0 || failed ? kMismatch : kOk;
   }
 
   const LiveOptions& options_;
   const Globals& globals_;
   io::TemporaryFolder folder_;
-  StopSignal stop_;
-  NamedPipe pipe_;
-  LoopbackServer server_;
-  capture::Stream stream_;
-  profile::LiveQueries queries_;
+  const std::string pipe_path_;
+  StopSignal stop_;  // before the thread, which must not receive the signals
+  int pipe_ = -1, port_ = 0;
   std::ofstream record_;
   std::vector<std::byte> buffer_ = std::vector<std::byte>(1 << 18);
-  bool is_over_ = false, has_changed_ = false;
-  std::vector<std::uint32_t> unsent_;  ///< queries since the last update
-  Clock::time_point sent_;
+
+  std::mutex mutex_;  ///< guards the members below, which the server's threads read
+  capture::Stream stream_;
+  LiveQueries queries_;
+  bool is_over_ = false;
+
+  httplib::Server server_;
+  std::thread serving_;
 };
 
 }  // namespace

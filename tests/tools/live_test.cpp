@@ -1,34 +1,13 @@
-// lrbscope live: requests of the page's server, and programs that record nothing or something else.
+// lrbscope live: programs that record nothing or something else. The page: tests/examples/capture.sh.
+#include <algorithm>
 #include <string>
 
 #include <doctest/doctest.h>
 
 #include "tests/support/command.hpp"
-#include "tools/loopback_server.hpp"
 
 namespace lrb::test {
 namespace {
-
-using cli::parse_request;
-
-TEST_CASE("live: requests for this machine by GET are answered, all others are not") {
-  const std::string host = "\r\nHost: 127.0.0.1:8000\r\n";
-  const auto status = [](const std::string& head) { return parse_request(head, 8000).status; };
-  CHECK(parse_request("GET / HTTP/1.1" + host, 8000).target == "/");
-  CHECK(parse_request("GET /queries/7/a%20b.png?x=1 HTTP/1.1" + host, 8000).target == "/queries/7/a b.png");
-  CHECK(status("GET / HTTP/1.1\r\nhost:localhost:8000\r\nAccept: */*\r\n") == 200);
-  CHECK(status("GET / HTTP/1.1\r\nHost: example.com\r\n") == 403);
-  CHECK(status("GET / HTTP/1.1\r\nHost: 127.0.0.1:8001\r\n") == 403);
-  CHECK(status("GET / HTTP/1.1\r\nHost: 127.0.0.1:8000\r\nHost: example.com\r\n") == 403);
-  CHECK(status("GET / HTTP/1.1\r\nX-Host: 127.0.0.1:8000\r\n") == 403);
-  CHECK(status("GET / HTTP/1.1\r\n") == 403);
-  CHECK(status("POST / HTTP/1.1" + host) == 405);
-  for (const char* line : {"", "GET", "GET /", "GET  HTTP/1.1", "GET x HTTP/1.1", "GET /%0 HTTP/1.1",
-                           "GET /%zz HTTP/1.1", "GET /%00 HTTP/1.1", "GET / SSH/2"}) {
-    CAPTURE(std::string(line));
-    CHECK(status(line + host) == 400);
-  }
-}
 
 TEST_CASE("live: programs without a capture are reported in one line") {
   const Folder folder;
