@@ -41,7 +41,6 @@ Command add_chart(App& root, const Globals& globals);
 Command add_tails(App& root, const Globals& globals);
 Command add_worst(App& root, const Globals& globals);
 Command add_completion(App& root, const Globals& globals);
-Command add_manual(App& root, const Globals& globals);
 
 namespace {
 
@@ -51,7 +50,7 @@ constexpr auto kCommands = std::to_array<Command (*)(App&, const Globals&)>({
     add_why,    add_clash,   add_manifold, add_sweep, add_build,    add_inspect,    add_close,
     add_levels, add_xray,    add_import,   add_tree,  add_check,    add_live,       add_compare,
     add_render, add_export,  add_figure,   add_paper, add_golden,   add_stability,  add_doctor,
-    add_list,   add_bench,   add_chart,    add_tails, add_worst,    add_completion, add_manual,
+    add_list,   add_bench,   add_chart,    add_tails, add_worst,    add_completion,
 });
 
 }  // namespace

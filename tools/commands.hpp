@@ -32,6 +32,11 @@ std::vector<Command> add_commands(App& root, const Globals& globals);
 /// Runs another command, given by its words without `lrbscope`. Returns its exit code.
 int run_command(const std::vector<std::string>& words, const Globals& globals);
 
+/// Prints completions of the last of these words of a command line, for the scripts of `completion`: "words",
+/// "files" or "folders" (names of files or folders are completions, too), then on each line a word, a tab and
+/// its help.
+int print_completions(const App& root, const std::vector<std::string>& words);
+
 /// Parses the command line and runs the command. Turns exceptions into one line on stderr and an exit code.
 int main(int argc, char** argv);
 

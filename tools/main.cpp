@@ -113,6 +113,8 @@ int parse_and_run(int argc, char** argv) {
                  "Folder that keeps the LRB-reps of meshes, so that they are built once [$LRBSCOPE_CACHE, or "
                  "none]");
   const std::vector<Command> commands = add_commands(app, globals);
+  if (!words.empty() && words[0] == "__complete")
+    return print_completions(app, {words.begin() + 1, words.end()});
   if (const std::optional<std::string> text = app.parse(words)) {
     print(*text);
     return kOk;

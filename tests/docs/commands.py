@@ -42,7 +42,6 @@ NOT_RUN = [
         "draws for a minute or more; tests of cli and render",
     ),
     ("docs/figures.md", r"out/mine", "tests/docs/figures.sh, with their widths"),
-    ("docs/packages.md", r"man -l|completion", "tests/completion"),
     ("docs/golden.md", r"\b(bolt|hinge|lid|valve)\b", "tests/docs/goldens.sh, with their output"),
     (
         "CONTRIBUTING.md",
