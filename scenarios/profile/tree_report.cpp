@@ -68,16 +68,10 @@ struct NodeMeasures {
     volume = beyond_parent = area;
     empty.assign(tree.size(), 0);
     for (const std::uint32_t n : index.from_root) {
-      if (tree.volume == capture::VolumeKind::kdop) {
-        const Polytope solid = volumes.polytope(n);
-        area[n] = solid.area;
-        volume[n] = solid.volume;
-        empty[n] = solid.corners.empty();
-      } else {
-        area[n] = volumes.area(n);
-        volume[n] = volumes.volume(n);
-        empty[n] = volumes.empty(n);
-      }
+      const VolumeSize size = volumes.size(n);
+      area[n] = size.area;
+      volume[n] = size.volume;
+      empty[n] = size.is_empty;
       if (const std::uint32_t p = index.parent[n]; p != kNull && !empty[n] && !empty[p])
         beyond_parent[n] = volumes.excess(n, p);
     }

@@ -69,87 +69,35 @@ std::vector<Vector3d> corners_of(const ShapeBox& box) {
   return out;
 }
 
-/// A rectangle with a radius; a sphere has a rectangle without extent.
-struct Rounded {
-  Vector3d corner;
-  std::array<Vector3d, 2> side;
+/// A volume as the points within a radius of a box: of a sphere a box without extent, of an RSS one without
+/// thickness, of an AABB or OBB itself.
+struct RoundedBox {
+  ShapeBox core;
   double radius = 0;
 
-  Vector3d point(int i, int j) const { return corner + i * side[0] + j * side[1]; }
+  double outside(const Vector3d& p) const { return std::max(0.0, outside_box(core, p) - radius); }
 };
 
 bool is_round(VolumeKind kind) {
   return kind == VolumeKind::sphere || kind == VolumeKind::rss;
 }
 
-Rounded rounded(const capture::Tree& tree, std::uint32_t node) {
+/// Returns the volume of a node of a tree without k-DOPs.
+RoundedBox rounded(const capture::Tree& tree, std::uint32_t node) {
   const auto n = tree.volume_of(node);
-  if (tree.volume == VolumeKind::sphere) return {point_at(n, 0), {Vector3d::Zero(), Vector3d::Zero()}, n[3]};
-  return {point_at(n, 0), {point_at(n, 3), point_at(n, 6)}, n[9]};
-}
-
-/// Returns the distance from a point to the rectangle.
-double distance_to(const Rounded& r, const Vector3d& p) {
-  Vector3d rest = p - r.corner;
-  const Vector3d d = rest;
-  for (const Vector3d& side : r.side) {
-    const double length_sq = side.squaredNorm();
-    if (length_sq > 0) rest -= std::clamp(d.dot(side) / length_sq, 0.0, 1.0) * side;
-  }
-  return rest.norm();
-}
-
-/// Returns the distance between the segments p + s u and q + t v, 0 <= s, t <= 1 (Ericson, Real-Time
-/// Collision Detection, section 5.1.9).
-double segment_distance(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v) {
-  const Vector3d r = p - q;
-  const double a = u.squaredNorm(), e = v.squaredNorm(), f = v.dot(r), c = u.dot(r), b = u.dot(v);
-  double s = 0, t = 0;
-  if (a > 0 && e > 0) {
-    const double d = a * e - b * b;
-    if (d > 0) s = std::clamp((b * f - c * e) / d, 0.0, 1.0);
-    t = (b * s + f) / e;
-    if (t < 0 || t > 1) {
-      t = std::clamp(t, 0.0, 1.0);
-      s = std::clamp((b * t - c) / a, 0.0, 1.0);
+  const Vector3d none = Vector3d::Zero();
+  switch (tree.volume) {
+    case VolumeKind::sphere:
+      return {{point_at(n, 0), {none, none, none}}, n[3]};
+    case VolumeKind::rss: {
+      const Vector3d u = point_at(n, 3) / 2, v = point_at(n, 6) / 2;
+      return {{point_at(n, 0) + u + v, {u, v, none}}, n[9]};
     }
-  } else if (a > 0) {
-    s = std::clamp(-c / a, 0.0, 1.0);
-  } else if (e > 0) {
-    t = std::clamp(f / e, 0.0, 1.0);
+    case VolumeKind::obb:
+      return {{point_at(n, 0), {point_at(n, 3), point_at(n, 6), point_at(n, 9)}}};
+    default:
+      return {aabb(point_at(n, 0), point_at(n, 3))};
   }
-  return (r + s * u - t * v).norm();
-}
-
-/// Returns true if the segment from p to q passes through the rectangle.
-bool pierces(const Vector3d& p, const Vector3d& q, const Rounded& r) {
-  const Vector3d normal = r.side[0].cross(r.side[1]);
-  const double above = normal.dot(p - r.corner), below = normal.dot(q - r.corner);
-  if (above * below > 0 || above == below) return false;
-  const Vector3d d = p + above / (above - below) * (q - p) - r.corner;
-  for (const Vector3d& side : r.side)
-    if (d.dot(side) < 0 || d.dot(side) > side.squaredNorm()) return false;
-  return true;
-}
-
-double rectangle_distance(const Rounded& a, const Rounded& b) {
-  // Two convex planar pieces are nearest at two edges, or at a corner of one, unless they intersect; then an
-  // edge of one passes through the other.
-  const std::array<std::array<int, 4>, 4> edges = {{{0, 0, 1, 0}, {0, 1, 1, 1}, {0, 0, 0, 1}, {1, 0, 1, 1}}};
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& e : edges) {
-    const Vector3d p = a.point(e[0], e[1]), q = a.point(e[2], e[3]);
-    const Vector3d s = b.point(e[0], e[1]), t = b.point(e[2], e[3]);
-    if (pierces(p, q, b) || pierces(s, t, a)) return 0;
-    for (const auto& f : edges) {
-      const Vector3d from = b.point(f[0], f[1]);
-      least = std::min(least, segment_distance(p, q - p, from, b.point(f[2], f[3]) - from));
-    }
-  }
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j)
-      least = std::min({least, distance_to(a, b.point(i, j)), distance_to(b, a.point(i, j))});
-  return least;
 }
 
 /// Returns true if a volume has greatest below least coordinates, or a negative radius.
@@ -289,39 +237,25 @@ Volumes::Volumes(const capture::Tree& tree) : tree_(&tree), from_products_(Matri
 
 double Volumes::outside(std::uint32_t node, const Vector3d& p) const {
   const auto n = tree_->volume_of(node);
-  switch (tree_->volume) {
-    case VolumeKind::aabb:
-      return (point_at(n, 0) - p).cwiseMax(p - point_at(n, 3)).cwiseMax(0).norm();
-    case VolumeKind::sphere:
-      return std::max(0.0, (p - point_at(n, 0)).norm() - n[3]);
-    case VolumeKind::obb:
-      return outside_box(box(node), p);
-    case VolumeKind::rss: {
-      const Rounded r = rounded(*tree_, node);
-      return std::max(0.0, distance_to(r, p) - r.radius);
-    }
-    case VolumeKind::kdop: {
-      double most = 0;
-      for (std::size_t k = 0; k < tree_->directions.size(); ++k) {
-        const Vector3d& d = tree_->directions[k];
-        const double along = d.dot(p), excess = std::max(n[2 * k] - along, along - n[2 * k + 1]);
-        if (excess > 0 && !d.isZero(0)) most = std::max(most, excess / d.norm());
-      }
-      return most;
-    }
+  if (tree_->volume == VolumeKind::aabb)
+    return (point_at(n, 0) - p).cwiseMax(p - point_at(n, 3)).cwiseMax(0).norm();
+  if (tree_->volume != VolumeKind::kdop) return rounded(*tree_, node).outside(p);
+  double most = 0;
+  for (std::size_t k = 0; k < tree_->directions.size(); ++k) {
+    const Vector3d& d = tree_->directions[k];
+    const double along = d.dot(p), excess = std::max(n[2 * k] - along, along - n[2 * k + 1]);
+    if (excess > 0 && !d.isZero(0)) most = std::max(most, excess / d.norm());
   }
-  return 0;
+  return most;
 }
 
 double Volumes::excess(std::uint32_t node, std::uint32_t beyond) const {
   if (is_round(tree_->volume)) {
-    // The distance to a rectangle is convex, so a corner is farthest. From there the radius leads further
-    // out.
-    const Rounded r = rounded(*tree_, node), other = rounded(*tree_, beyond);
+    // The distance to a box is convex, so a corner is farthest. From there the radius leads further out.
+    const RoundedBox x = rounded(*tree_, node), other = rounded(*tree_, beyond);
     double farthest = 0;
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j) farthest = std::max(farthest, distance_to(other, r.point(i, j)));
-    return std::max(0.0, farthest + r.radius - other.radius);
+    for (const Vector3d& p : corners_of(x.core)) farthest = std::max(farthest, outside_box(other.core, p));
+    return std::max(0.0, farthest + x.radius - other.radius);
   }
   const auto n = tree_->volume_of(node), m = tree_->volume_of(beyond);
   if (tree_->volume == VolumeKind::aabb)
@@ -337,72 +271,29 @@ double Volumes::excess(std::uint32_t node, std::uint32_t beyond) const {
   return most;
 }
 
-double Volumes::area(std::uint32_t node) const {
-  constexpr double kPi = std::numbers::pi;
-  const auto n = tree_->volume_of(node);
-  switch (tree_->volume) {
-    case VolumeKind::sphere:
-      return 4 * kPi * std::pow(std::max(0.0, n[3]), 2);
-    case VolumeKind::rss: {
-      // Both faces, half cylinders along the four sides, and a sphere at the corners.
-      const double a = point_at(n, 3).norm(), b = point_at(n, 6).norm(), r = std::max(0.0, n[9]);
-      return 2 * a * b + 2 * kPi * (a + b) * r + 4 * kPi * r * r;
-    }
-    case VolumeKind::kdop:
-      return polytope(node).area;
-    case VolumeKind::aabb:
-    case VolumeKind::obb:
-      break;
+VolumeSize Volumes::size(std::uint32_t node) const {
+  if (tree_->volume == VolumeKind::kdop) {
+    const Polytope solid = polytope(node);
+    return {solid.area, solid.volume, solid.corners.empty()};
   }
-  return empty(node) ? 0 : box(node).area();
-}
-
-double Volumes::volume(std::uint32_t node) const {
+  if (inverted(*tree_, node)) return {0, 0, true};
+  // Steiner's formula: the sides, quarters of cylinders along the edges, and a sphere at the corners.
   constexpr double kPi = std::numbers::pi;
-  const auto n = tree_->volume_of(node);
-  switch (tree_->volume) {
-    case VolumeKind::sphere:
-      return 4 * kPi / 3 * std::pow(std::max(0.0, n[3]), 3);
-    case VolumeKind::rss: {
-      const double a = point_at(n, 3).norm(), b = point_at(n, 6).norm(), r = std::max(0.0, n[9]);
-      return 2 * a * b * r + kPi * (a + b) * r * r + 4 * kPi / 3 * r * r * r;
-    }
-    case VolumeKind::kdop:
-      return polytope(node).volume;
-    case VolumeKind::aabb:
-    case VolumeKind::obb:
-      break;
-  }
-  const ShapeBox b = box(node);
-  return empty(node) ? 0 : 8 * b.half[0].norm() * b.half[1].norm() * b.half[2].norm();
-}
-
-bool Volumes::empty(std::uint32_t node) const {
-  return inverted(*tree_, node) || (tree_->volume == VolumeKind::kdop && polytope(node).corners.empty());
+  const RoundedBox x = rounded(*tree_, node);
+  const double a = 2 * x.core.half[0].norm(), b = 2 * x.core.half[1].norm(), c = 2 * x.core.half[2].norm(),
+               r = x.radius, sides = 2 * (a * b + b * c + c * a), edges = kPi * (a + b + c);
+  return {sides + 2 * edges * r + 4 * kPi * r * r,
+          a * b * c + sides * r + edges * r * r + 4 * kPi / 3 * r * r * r};
 }
 
 ShapeBox Volumes::box(std::uint32_t node) const {
-  const auto n = tree_->volume_of(node);
-  switch (tree_->volume) {
-    case VolumeKind::aabb:
-      return aabb(point_at(n, 0), point_at(n, 3));
-    case VolumeKind::obb:
-      return {point_at(n, 0), {point_at(n, 3), point_at(n, 6), point_at(n, 9)}};
-    case VolumeKind::sphere: {
-      const Vector3d reach = Vector3d::Constant(std::max(0.0, n[3]));
-      return aabb(point_at(n, 0) - reach, point_at(n, 0) + reach);
-    }
-    case VolumeKind::rss: {
-      const std::array<Vector3d, 3> side = {point_at(n, 3), point_at(n, 6), Vector3d::Zero()};
-      const std::array<Vector3d, 3> axes = directions_of(side);
-      ShapeBox out{point_at(n, 0) + side[0] / 2 + side[1] / 2, {}};
-      for (std::size_t k = 0; k < 3; ++k) out.half[k] = side[k] / 2 + std::max(0.0, n[9]) * axes[k];
-      return out;
-    }
-    case VolumeKind::kdop:
-      break;
+  if (tree_->volume != VolumeKind::kdop) {
+    RoundedBox x = rounded(*tree_, node);
+    if (!is_round(tree_->volume)) return x.core;
+    const std::array<Vector3d, 3> axes = directions_of(x.core.half);
+    for (std::size_t k = 0; k < 3; ++k) x.core.half[k] += std::max(0.0, x.radius) * axes[k];
+    return x.core;
   }
-  // A k-DOP.
   constexpr double kOrthogonal = 1e-9;
   const Matrix3d gram = from_products_.transpose() * from_products_;
   if (Matrix3d(gram.diagonal().asDiagonal()).isApprox(gram, kOrthogonal)) {
@@ -511,10 +402,9 @@ std::optional<double> Volumes::shared_volume(std::uint32_t node, std::uint32_t o
 
 namespace {
 
-Rounded placed(Rounded r, const Pose& pose) {
-  r.corner = pose.apply(r.corner);
-  for (Vector3d& side : r.side) side = pose.r * side;
-  return r;
+RoundedBox placed(RoundedBox x, const Pose& pose) {
+  x.core = placed(x.core, pose);
+  return x;
 }
 
 /// Returns the distance of two boxes, up to rounding.
@@ -549,14 +439,8 @@ double box_gap(const ShapeBox& a, const ShapeBox& b) {
 bool overlap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Volumes& b,
              std::uint32_t node_b, const Pose& pose_b) {
   if (inverted(a.tree(), node_a) || inverted(b.tree(), node_b)) return false;
-  const VolumeKind of_a = a.tree().volume, of_b = b.tree().volume;
-  if (is_round(of_a) && is_round(of_b)) {
-    const Rounded x = placed(rounded(a.tree(), node_a), pose_a),
-                  y = placed(rounded(b.tree(), node_b), pose_b);
-    if (of_a == VolumeKind::sphere && of_b == VolumeKind::sphere)
-      return (x.corner - y.corner).norm() <= x.radius + y.radius;
-    return rectangle_distance(x, y) <= x.radius + y.radius;
-  }
+  if (is_round(a.tree().volume) && is_round(b.tree().volume))
+    return gap(a, node_a, pose_a, b, node_b, pose_b) <= 0;
   return boxes_overlap(placed(a.box(node_a), pose_a), placed(b.box(node_b), pose_b));
 }
 
@@ -565,9 +449,9 @@ double gap(const Volumes& a, std::uint32_t node_a, const Pose& pose_a, const Vol
   if (inverted(a.tree(), node_a) || inverted(b.tree(), node_b))
     return std::numeric_limits<double>::infinity();
   if (is_round(a.tree().volume) && is_round(b.tree().volume)) {
-    const Rounded x = placed(rounded(a.tree(), node_a), pose_a),
-                  y = placed(rounded(b.tree(), node_b), pose_b);
-    return std::max(0.0, rectangle_distance(x, y) - x.radius - y.radius);
+    const RoundedBox x = placed(rounded(a.tree(), node_a), pose_a),
+                     y = placed(rounded(b.tree(), node_b), pose_b);
+    return std::max(0.0, box_gap(x.core, y.core) - x.radius - y.radius);
   }
   return box_gap(placed(a.box(node_a), pose_a), placed(b.box(node_b), pose_b));
 }

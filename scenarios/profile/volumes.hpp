@@ -31,6 +31,12 @@ struct Polytope {
   double area = 0, volume = 0;
 };
 
+/// The surface area and the volume of a bounding volume.
+struct VolumeSize {
+  double area = 0, volume = 0;
+  bool is_empty = false;  ///< it contains no point, e.g. for a negative radius
+};
+
 /// The bounding volumes of a tree, in the frame and unit of its mesh. The tree must outlive this object.
 class Volumes {
  public:
@@ -45,11 +51,9 @@ class Volumes {
   double excess(std::uint32_t node, std::uint32_t beyond) const;
   /// Returns the volume of the intersection with another volume; nullopt for RSS.
   std::optional<double> shared_volume(std::uint32_t node, std::uint32_t other) const;
-  /// Surface area. For a k-DOP, that of its polytope.
-  double area(std::uint32_t node) const;
-  double volume(std::uint32_t node) const;
-  /// Returns true if the volume contains no point, e.g. for a negative radius.
-  bool empty(std::uint32_t node) const;
+  /// Returns area and volume. For a k-DOP, those of its polytope; zeros if it is empty.
+  VolumeSize size(std::uint32_t node) const;
+  bool empty(std::uint32_t node) const { return size(node).is_empty; }
   /// Returns the smallest box of the volume's own frame that contains it; an OBB's own box. For a k-DOP, the
   /// frame is three of its directions if these are orthogonal, else the coordinate axes.
   trace::ShapeBox box(std::uint32_t node) const;

@@ -315,7 +315,7 @@ TEST_CASE("the depths, leaf sizes and SAH of a tree are those counted directly")
     std::map<std::uint64_t, std::uint64_t> sizes;
     for (std::uint32_t n = 0; n < tree.size(); ++n) {
       for (const std::uint32_t c : tree.children(n)) depth[c] = depth[n] + 1;
-      const double share = volumes.area(n) / volumes.area(0);
+      const double share = volumes.size(n).area / volumes.size(0).area;
       if (!tree.is_leaf(n)) {
         inner += share;
         continue;
