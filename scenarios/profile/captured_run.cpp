@@ -157,28 +157,6 @@ bodies::LoadedBody captured_body(const capture::Mesh& mesh) {
 
 namespace {
 
-trace::ShapeBox box_of_node(const capture::Tree& tree, const Volumes& volumes, std::uint32_t node) {
-  const std::span<const double> v = tree.volume_of(node);
-  switch (tree.volume) {
-    case capture::VolumeKind::aabb: {
-      trace::ShapeBox box;
-      for (int k = 0; k < 3; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        box.centre[k] = (v[i] + v[i + 3]) / 2;
-        box.half[i] = Eigen::Vector3d::Zero();
-        box.half[i][k] = (v[i + 3] - v[i]) / 2;
-      }
-      return box;
-    }
-    case capture::VolumeKind::obb: {
-      const auto vector = [&](std::size_t i) { return Eigen::Vector3d(v[i], v[i + 1], v[i + 2]); };
-      return {vector(0), {vector(3), vector(6), vector(9)}};
-    }
-    default:
-      return volumes.box(node);
-  }
-}
-
 /// Returns the shape of a captured tree, with each volume's own box (Volumes::box). A broken tree keeps what
 /// holds: see TreeShape::finish(); triangles that do not exist are left out. Adds a line to `notes` for each
 /// kind of fault.
@@ -198,7 +176,7 @@ trace::TreeShape captured_shape(const capture::Tree& tree, std::uint32_t triangl
       simplices.emplace_back(t);
       is_in_leaf[t] = 1;
     }
-    out.add(tree.children(n), simplices, box_of_node(tree, volumes, n));
+    out.add(tree.children(n), simplices, volumes.box(n));
   }
   const trace::TreeShape::Faults faults = out.finish();
   const auto missing = static_cast<std::uint64_t>(std::count(is_in_leaf.begin(), is_in_leaf.end(), 0));
