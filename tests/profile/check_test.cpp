@@ -181,10 +181,7 @@ TEST_CASE("lrbscope check prints verdicts, prices and advice, and fails for a wr
   o = test::run(folder, {"check", "wrong.lrbcap", "-o", "page"});
   CHECK(o.code == 1);
   CHECK(o.out.find("query 2: missed ") != std::string::npos);
-  const std::string page = slurp(folder / "page/index.html");
-  for (const char* part : {"Benefit of the visits", "Prices by query", "Prices by depth of the descent",
-                           "Where visits are wasted", "Wrong and undecidable answers", "query 2: missed "})
-    CHECK(page.find(part) != std::string::npos);
+  CHECK(slurp(folder / "page/index.html").find("query 2: missed ") != std::string::npos);
   // Only the first query is right.
   CHECK(test::run(folder, {"check", "wrong.lrbcap", "--queries", "1"}).code == 0);
   CHECK(test::run(folder, {"check", "wrong.lrbcap", "--queries", "2-2"}).code == 1);

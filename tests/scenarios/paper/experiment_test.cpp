@@ -221,36 +221,27 @@ TEST_CASE("paper --experiment: only the requested parts, on your own bodies; pic
   const test::Outcome o = run({"paper", "--experiment", "mine.json", "-o", "mine"});
   CAPTURE(o.err);
   REQUIRE(o.code == 0);
-  const std::string md = test::slurp(folder / "mine/report.md"),
-                    page = test::slurp(folder / "mine/index.html");
+  const std::string md = test::slurp(folder / "mine/report.md");
   CHECK(md.find("3 collisions per object") != std::string::npos);
   CHECK(md.find("Table 1") == std::string::npos);
   for (const char* file : {"heat_maps.png", "refinement_tree.svg"}) {
     CHECK(std::filesystem::exists(folder / (std::string("mine/") + file)));
     CHECK(md.find(std::string("](") + file + ")") != std::string::npos);
   }
-  CHECK(page.find("href=\"heat_maps.png\"><img src=\"data:image/") != std::string::npos);
-  // In the page itself, where a box says what it is under the pointer.
-  CHECK(page.find("<div class=\"live-picture\" tabindex=\"0\"><svg") != std::string::npos);
-  CHECK(page.find("</title></rect>") != std::string::npos);
   const render::Image heat = render::read_png(folder / "mine/heat_maps.png").image;
   CHECK(heat.width() > 2000);
   REQUIRE(run({"paper", "--experiment", "mine.json", "-o", "again", "--jobs", "2"}).code == 0);
   for (const char* file : {"/heat_maps.png", "/refinement_tree.svg", "/records.jsonl", "/tables.json"})
     CHECK(test::slurp(folder / (std::string("mine") + file)) ==
           test::slurp(folder / (std::string("again") + file)));
-  CHECK(run({"paper", "--experiment", "mine.json", "--seed", "9", "--merge", "mine/records.jsonl", "-o", "x"})
-            .code == 2);
-  CHECK(run({"paper", "--experiment", "mine.json", "--collisions", "2", "--merge", "mine/records.jsonl", "-o",
-             "x"})
-            .code == 2);
-  CHECK_FALSE(std::filesystem::exists(folder / "x"));
-  for (const std::vector<std::string>& bad : {std::vector<std::string>{"--experiment", "none.json"},
-                                              {"--experiment", "tabel1"},
-                                              {"--experiment", "cube.obj"},
-                                              {"--experiment", "table1", "--shard", "0/2"},
-                                              {"--collisions", "0"},
-                                              {"--step", "0"}}) {
+  for (const std::vector<std::string>& bad :
+       {std::vector<std::string>{"--experiment", "none.json"},
+        {"--experiment", "tabel1"},
+        {"--experiment", "cube.obj"},
+        {"--experiment", "table1", "--shard", "0/2"},
+        {"--experiment", "mine.json", "--seed", "9", "--merge", "mine/records.jsonl"},
+        {"--collisions", "0"},
+        {"--step", "0"}}) {
     std::vector<std::string> all = {"paper", "-o", "bad"};
     all.insert(all.end(), bad.begin(), bad.end());
     const test::Outcome rejected = run(all);
