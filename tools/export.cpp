@@ -28,7 +28,6 @@ struct ExportOptions {
   std::optional<std::uint32_t> step, event, faces, layer;
   std::optional<double> tolerance;
   PictureOptions picture;
-  exchange::FileOptions file;
 
   bool asks_for(const char* word) const { return std::find(what.begin(), what.end(), word) != what.end(); }
   bool chooses_wrapper() const { return faces || layer || tolerance; }
@@ -117,7 +116,7 @@ void save(const ExportOptions& o, const exchange::Model& model, const Globals& g
   if (model.parts.empty())
     throw InputError(printable_name(o.input) + ": nothing to write: " +
                      (o.asks_for("contacts") ? "the bodies do not intersect at this step" : "no faces"));
-  exchange::save_model(model, o.out, o.file);
+  exchange::save_model(model, o.out, o.up[0] - 'x');
   std::size_t cells = 0;
   for (const exchange::Part& part : model.parts) cells += part.cell_count();
   note(globals, {std::to_string(model.parts.size()) + (model.parts.size() == 1 ? " part, " : " parts, ") +
@@ -175,7 +174,7 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
   const bool two = run.bodies.size() == 2;
   if (o.what.empty()) {
     o.what = {"wrapper"};
-    if (two && !ends_with(o.out, ".stl")) o.what.emplace_back("contacts");  // STL has only triangles
+    if (two) o.what.emplace_back("contacts");
   }
   reject(!two && o.asks_for("contacts"), "--what contacts", "the run has only one body");
   reject(!two && !o.of.empty(), "--of", "the run has only one body");
@@ -220,12 +219,10 @@ int export_poses(const ExportOptions& o, Input kind, const Globals& globals) {
   return kOk;
 }
 
-int run_export(const ExportOptions& given, const Globals& globals) {
-  ExportOptions o = given;
-  o.file.up = o.up[0] - 'x';
+int run_export(const ExportOptions& o, const Globals& globals) {
   const Input kind = kind_of(o);
   if (o.asks_for("poses") && kind != Input::body) return export_poses(o, kind, globals);
-  exchange::check_model_file(o.out, o.file);
+  exchange::check_model_file(o.out);
   return kind == Input::body ? export_body(o, globals) : export_run(o, kind, globals);
 }
 
@@ -233,18 +230,18 @@ int run_export(const ExportOptions& given, const Globals& globals) {
 
 Command add_export(App& root, const Globals& globals) {
   App* app = root.add_subcommand(
-      "export", "Export bodies, wrappers, contacts or poses to PLY, VTP, GLB, OBJ, STL, CSV or JSON");
+      "export", "Export bodies, wrappers, contacts or poses to PLY, VTP, GLB, CSV or JSON");
   const auto o = std::make_shared<ExportOptions>();
   app->add_option(
          "INPUT", o->input,
          "Mesh or .lrb file; a run's folder or trace; a scenario; with --what poses also a file of poses")
       ->required();
   app->add_option("-o,--output", o->out, "FILE",
-                  "File to write: .ply, .vtp, .glb, .obj or .stl (faces only); poses: .csv, .json or .txt")
+                  "File to write: .ply, .vtp or .glb; poses: .csv, .json or .txt")
       ->required();
   app->add_option("--what", o->what, "body|wrapper|contacts|poses",
                   "Contents of the file [body file: body, or wrapper if one is selected; run: "
-                  "wrapper,contacts; .stl: wrapper]")
+                  "wrapper,contacts]")
       ->delimiter(',')
       ->one_of({"body", "wrapper", "contacts", "poses"});
   auto* step = app->add_option("--step", o->step, "N", "Run: state after this time step [the last]");
@@ -262,8 +259,6 @@ Command add_export(App& root, const Globals& globals) {
       ->one_of({"a", "b"});
   app->add_option("--bodies", o->bodies, "FILE", "Bodies of the trace [a.lrb and b.lrb next to it]")
       ->expected(1, 2);
-  app->add_flag("--regions", o->file.regions, "One object per region (.glb, .obj)");
-  app->add_flag("--ascii", o->file.ascii, "Write numbers as text (.ply, .vtp, .stl)");
   app->add_option("--up", o->up, "x|y|z", "Axis of the bodies that points up (.glb)")
       ->one_of({"x", "y", "z"})
       ->capture_default_str();

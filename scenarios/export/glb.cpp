@@ -60,7 +60,7 @@ void add_cell(Primitive& out, const Part& part, std::size_t cell, const Eigen::V
 
 class GlbOut {
  public:
-  GlbOut(const Model& model, const FileOptions& options) : model_(model), options_(options) {
+  GlbOut(const Model& model, int up) : model_(model), up_(up) {
     Eigen::AlignedBox3d box;
     for (const Part& part : model.parts)
       for (const Eigen::Vector3d& x : part.vertices) box.extend(x);
@@ -72,8 +72,7 @@ class GlbOut {
     json_["scene"] = 0;
     json_["scenes"] = Json::array({Json{{"nodes", Json::array({0})}}});
     json_["nodes"].push_back(root());
-    const std::vector<Part> split = options_.regions ? split_by_region(model_) : std::vector<Part>();
-    for (const Part& part : options_.regions ? split : model_.parts) add_node(part);
+    for (const Part& part : model_.parts) add_node(part);
     json_["buffers"] = Json::array({Json{{"byteLength", bin_.size()}}});
     return container();
   }
@@ -84,11 +83,11 @@ class GlbOut {
   Json root() const {
     Json out = {{"name", "lrbscope"}, {"children", Json::array()}};
     const double h = std::sqrt(0.5);
-    if (options_.up == 2) out["rotation"] = Json::array({-h, 0.0, 0.0, h});
-    if (options_.up == 0) out["rotation"] = Json::array({0.0, 0.0, h, h});
+    if (up_ == 2) out["rotation"] = Json::array({-h, 0.0, 0.0, h});
+    if (up_ == 0) out["rotation"] = Json::array({0.0, 0.0, h, h});
     Eigen::Vector3d t = centre_;
-    if (options_.up == 2) t = {centre_.x(), centre_.z(), -centre_.y()};
-    if (options_.up == 0) t = {-centre_.y(), centre_.x(), centre_.z()};
+    if (up_ == 2) t = {centre_.x(), centre_.z(), -centre_.y()};
+    if (up_ == 0) t = {-centre_.y(), centre_.x(), centre_.z()};
     out["translation"] = Json::array({t.x(), t.y(), t.z()});
     return out;
   }
@@ -211,7 +210,7 @@ class GlbOut {
   }
 
   const Model& model_;
-  const FileOptions& options_;
+  int up_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
   std::array<std::optional<std::size_t>, 3> materials_;  ///< by Material
   Json json_;
@@ -220,8 +219,8 @@ class GlbOut {
 
 }  // namespace
 
-std::string glb_bytes(const Model& model, const FileOptions& options) {
-  return GlbOut(model, options).write();
+std::string glb_bytes(const Model& model, int up) {
+  return GlbOut(model, up).write();
 }
 
 }  // namespace lrb::exchange

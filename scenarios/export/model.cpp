@@ -1,10 +1,8 @@
 #include "scenarios/export/model.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -20,35 +18,6 @@
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::exchange {
-namespace {
-
-/// Returns the part with a subset of its cells, and the vertices that they use, in order.
-Part some_cells(const Part& part, std::span<const std::size_t> cells) {
-  constexpr std::uint32_t kUnused = ~0U;
-  std::vector<std::uint32_t> number(part.vertices.size(), kUnused);
-  for (const std::size_t c : cells)
-    for (const std::uint32_t v : part.cell(c)) number[v] = 0;
-  Part out;
-  out.shape = part.shape;
-  out.values.resize(part.values.size());
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == kUnused) continue;
-    number[v] = static_cast<std::uint32_t>(out.vertices.size());
-    out.vertices.push_back(part.vertices[v]);
-  }
-  std::vector<std::uint32_t> corners;
-  std::vector<double> row(part.values.size());
-  for (const std::size_t c : cells) {
-    corners.clear();
-    for (const std::uint32_t v : part.cell(c)) corners.push_back(number[v]);
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = part.values[i][c];
-    out.add_cell(corners, part.colours[c], row);
-  }
-  return out;
-}
-
-}  // namespace
-
 void Part::add_cell(std::span<const std::uint32_t> at, render::Rgba colour, std::span<const double> row) {
   corners.insert(corners.end(), at.begin(), at.end());
   offsets.push_back(static_cast<std::uint32_t>(corners.size()));
@@ -64,59 +33,29 @@ std::size_t Model::column(std::string_view name) const {
   return static_cast<std::size_t>(at - columns.begin());
 }
 
-std::vector<Part> split_by_region(const Model& model) {
-  std::vector<Part> out;
-  for (const Part& part : model.parts) {
-    if (!part.in_regions) {
-      out.push_back(part);
-      continue;
-    }
-    const std::vector<double>& region = part.values[model.column("region")];
-    std::map<double, std::vector<std::size_t>> cells;
-    for (std::size_t c = 0; c < part.cell_count(); ++c) cells[region[c]].push_back(c);
-    for (const auto& [number, of_region] : cells) {
-      out.push_back(some_cells(part, of_region));
-      out.back().name =
-          part.name +
-          (number < 0 ? "_no_region" : "_region_" + std::to_string(static_cast<std::uint64_t>(number)));
-    }
-  }
-  return out;
-}
-
 namespace {
 
-struct Format {
-  std::string_view ending;
-  std::string (*bytes)(const Model&, const FileOptions&);
-  bool ascii, regions;  ///< whether the format supports these options
-};
-constexpr std::array kFormats = {
-    Format{".ply", ply_bytes, true, false}, Format{".vtp", vtp_bytes, true, false},
-    Format{".obj", obj_bytes, false, true}, Format{".glb", glb_bytes, false, true},
-    Format{".stl", stl_bytes, true, false}};
-
-const Format& format_of(const std::string& path, const FileOptions& options) {
+/// Returns the ending of a file's name, in lower case. Throws InputError unless it is one of a format.
+std::string format_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  const auto format =
-      std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.ending == ending; });
-  if (format == kFormats.end())
-    throw InputError(printable_name(path) + ": expected a name that ends in .ply, .vtp, .glb, .obj or .stl");
-  if (options.ascii && !format->ascii) throw InputError("--ascii: needs a .ply, .vtp or .stl file");
-  if (options.regions && !format->regions) throw InputError("--regions: needs a .glb or .obj file");
-  return *format;
+  if (ending != ".ply" && ending != ".vtp" && ending != ".glb")
+    throw InputError(printable_name(path) + ": expected a name that ends in .ply, .vtp or .glb");
+  return ending;
 }
 
 }  // namespace
 
-void save_model(const Model& model, const std::string& path, const FileOptions& options) {
-  io::write_text(path, format_of(path, options).bytes(model, options));
+void save_model(const Model& model, const std::string& path, int up) {
+  const std::string format = format_of(path);
+  io::write_text(path, format == ".ply"   ? ply_bytes(model)
+                       : format == ".vtp" ? vtp_bytes(model)
+                                          : glb_bytes(model, up));
 }
 
-void check_model_file(const std::string& path, const FileOptions& options) {
-  format_of(path, options);
+void check_model_file(const std::string& path) {
+  format_of(path);
 }
 
 namespace {
@@ -298,7 +237,6 @@ void add_contacts(Model& model, const Moment& moment, Shape shape) {
   Part out;
   out.name = shape == Shape::lines ? "contact_curves" : "contact_points";
   out.shape = shape;
-  out.in_regions = false;
   out.values.resize(model.columns.size());
   for (std::size_t i = 0; i < moment.contacts.size(); ++i) {
     const ContactRegion& region = moment.contacts[i];

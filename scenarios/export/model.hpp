@@ -44,7 +44,6 @@ struct Column {
 struct Part {
   std::string name;
   Shape shape = Shape::polygons;
-  bool in_regions = true;                    ///< its cells are faces, which have regions
   std::vector<Eigen::Vector3d> vertices;     ///< world frame
   std::vector<std::uint32_t> offsets = {0};  ///< (cells + 1), into corners
   std::vector<std::uint32_t> corners;        ///< polygons counter-clockwise seen from outside
@@ -67,31 +66,17 @@ struct Model {
   std::size_t column(std::string_view name) const;  ///< Returns its index; the model must have it.
 };
 
-/// Returns the parts with the faces of each region separated, by the column "region": NAME_region_N, and
-/// NAME_no_region for the rest.
-std::vector<Part> split_by_region(const Model& model);
-
 // Writes models in the formats of other programs. docs/formats.md describes their contents.
 
-struct FileOptions {
-  bool ascii = false;    ///< numbers as text: PLY, VTP, STL
-  bool regions = false;  ///< a group or node for each region: OBJ, GLB
-  int up = 2;            ///< the up axis of the model, for GLB, whose up axis is y
-};
+/// Return the bytes of a file. `up`: the up axis of the model; GLB's own is y.
+std::string ply_bytes(const Model& model);
+std::string vtp_bytes(const Model& model);
+std::string glb_bytes(const Model& model, int up);
 
-/// Return the bytes of a file.
-std::string ply_bytes(const Model& model, const FileOptions& options);
-std::string vtp_bytes(const Model& model, const FileOptions& options);
-std::string obj_bytes(const Model& model, const FileOptions& options);
-std::string glb_bytes(const Model& model, const FileOptions& options);
-/// Throws InputError for parts without faces, and for coordinates beyond the range of floats (binary).
-std::string stl_bytes(const Model& model, const FileOptions& options);
-
-/// Writes a model to FILE.ply, .vtp, .obj, .glb or .stl, completely or not at all. Throws InputError for
-/// other names, and for options that the format does not support.
-void save_model(const Model& model, const std::string& path, const FileOptions& options);
+/// Writes a model to FILE.ply, .vtp or .glb, completely or not at all. Throws InputError for other names.
+void save_model(const Model& model, const std::string& path, int up = 2);
 /// Throws as save_model() does, before a model is made.
-void check_model_file(const std::string& path, const FileOptions& options);
+void check_model_file(const std::string& path);
 
 // Makes models.
 

@@ -4,7 +4,6 @@
 
 #include "render/canvas.hpp"
 #include "scenarios/export/model.hpp"
-#include <lrbscope/core/strings.hpp>
 
 namespace lrb::exchange {
 namespace {
@@ -24,24 +23,9 @@ constexpr const char* type_name() {
     return "UInt8";
 }
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 class VtpOut {
  public:
-  VtpOut(const Model& model, bool ascii) : model_(model), ascii_(ascii) {}
+  explicit VtpOut(const Model& model) : model_(model) {}
 
   std::string write() {
     line("<?xml version=\"1.0\"?>");
@@ -121,24 +105,11 @@ class VtpOut {
 
   template <class T>
   void array(std::string_view name, const std::vector<T>& values, int components) {
-    line(std::string("<DataArray type=\"") + type_name<T>() + "\" Name=\"" + escaped(name) +
-         "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"" +
-         (ascii_ ? "ascii" : "binary") + "\">");
-    line(ascii_ ? as_text(values) : as_base64(values));
+    line(std::string("<DataArray type=\"") + type_name<T>() + "\" Name=\"" +
+         render::escape_markup(std::string(name)) + "\" NumberOfComponents=\"" + std::to_string(components) +
+         "\" format=\"binary\">");
+    line(as_base64(values));
     line("</DataArray>");
-  }
-
-  template <class T>
-  static std::string as_text(const std::vector<T>& values) {
-    std::string out;
-    for (const T x : values) {
-      if (!out.empty()) out += ' ';
-      if constexpr (std::is_same_v<T, double>)
-        out += io::exact_text(x);
-      else
-        out += std::to_string(x);
-    }
-    return out;
   }
 
   /// The number of bytes, followed by the bytes.
@@ -153,14 +124,13 @@ class VtpOut {
   void line(std::string_view words) { text_.append(words).append("\n"); }
 
   const Model& model_;
-  bool ascii_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string vtp_bytes(const Model& model, const FileOptions& options) {
-  return VtpOut(model, options.ascii).write();
+std::string vtp_bytes(const Model& model) {
+  return VtpOut(model).write();
 }
 
 }  // namespace lrb::exchange

@@ -51,13 +51,13 @@ case "$name" in
     refuse "missing.obj: no such file" missing.obj "$block" 0.98
     ;;
   build_and_validate)
-    "$lrbscope" -q export tolerance --what body --of a -o rock.obj >/dev/null
-    try rock.obj rock.lrb
+    "$lrbscope" -q export tolerance --what body --of a -o rock.ply >/dev/null
+    try rock.ply rock.lrb
     expect '^5120 real faces, .* 20 faces in the outermost wrapper$' '^proven: ' '^crossing: 92 pairs .* 275 exact pairs$'
     "$lrbscope" -q inspect rock.lrb >said || fail "lrbscope cannot read rock.lrb"
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >open.obj
     refuse "open.obj: an edge has only one face" open.obj open.lrb
-    refuse "no/rock.lrb: cannot create the file" rock.obj no/rock.lrb
+    refuse "no/rock.lrb: cannot create the file" rock.ply no/rock.lrb
     ;;
   clearance)
     try "$gear" "$block" 3 0.1 0.05

@@ -16,13 +16,13 @@ TEST_CASE("export: a body, its wrapper, and a run by folder, trace and scenario"
   folder.write("cube.obj", kCube);
   CHECK(run(folder, {"-q", "export", "cube.obj", "-o", "cube.ply"}).code == 0);
   CHECK(read_mesh(folder / "cube.ply").face_count() == 6);
-  CHECK(run(folder, {"-q", "export", "cube.obj", "--layer", "0", "-o", "real.obj"}).code == 0);
-  CHECK(read_mesh(folder / "real.obj").face_count() == 6);
+  CHECK(run(folder, {"-q", "export", "cube.obj", "--layer", "0", "-o", "real.ply"}).code == 0);
+  CHECK(read_mesh(folder / "real.ply").face_count() == 6);
 
   REQUIRE(run(folder, {"-q", "run", "stick_through_wall", "-o", "r"}).code == 0);
   for (const char* input : {"r", "r/trace.json", "stick_through_wall"}) {
     CAPTURE(input);
-    const Outcome o = run(folder, {"export", input, "-o", "r.vtp", "--ascii"});
+    const Outcome o = run(folder, {"export", input, "-o", "r.vtp"});
     CAPTURE(o.err);
     CHECK(o.code == 0);
     CHECK(o.out == "r.vtp\n");
@@ -59,11 +59,8 @@ TEST_CASE("export: invalid requests are rejected, and nothing is written") {
   const Command command({"-q", "export"});
   command.folder.write("p.csv", "1,2\n");
   command.check_refusals(
-      {{{"cube.obj", "-o", "cube.3ds"}, "expected a name that ends in .ply, .vtp, .glb, .obj or .stl"},
-       {{"cube.obj", "-o", "cube.obj2", "--ascii"}, ".ply, .vtp, .glb, .obj or .stl"},
-       {{"islands", "-o", "flat.stl"}, "found lines, which STL cannot store"},
-       {{"cube.obj", "-o", "c.glb", "--ascii"}, "--ascii: needs a .ply, .vtp or .stl file"},
-       {{"cube.obj", "-o", "c.ply", "--regions"}, "--regions: needs a .glb or .obj file"},
+      {{{"cube.obj", "-o", "cube.3ds"}, "expected a name that ends in .ply, .vtp or .glb"},
+       {{"cube.obj", "-o", "cube.stl"}, "expected a name that ends in .ply, .vtp or .glb"},
        {{"cube.obj", "-o", "c.ply", "--step", "1"}, "--step: needs a run"},
        {{"cube.obj", "-o", "c.ply", "--what", "contacts"}, "--what contacts: needs a run"},
        {{"cube.obj", "-o", "c.ply", "--colour-by", "hits"}, "the other quantities need a run"},
