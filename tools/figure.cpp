@@ -33,7 +33,7 @@ struct FigureOptions {
   std::string source, file, width, line_width, artifact;
   std::vector<std::string> bodies;
   std::vector<std::uint32_t> faces, events, steps;
-  bool layers = false, close_up = false, tex = false, try_views = false;
+  bool layers = false, close_up = false, try_views = false;
   std::optional<bool> wrappers;
   std::size_t views = 0;  ///< 0: chosen by the number of bodies
   PictureOptions picture;
@@ -68,9 +68,8 @@ Source run_of_scenario(const std::string& name, const run::ProgressReport& progr
 }
 
 Source open_trace(const std::string& path, const std::vector<std::string>& bodies) {
-  const std::string json = trace::load_trace_text(path);
   Source out;
-  out.recording = run::open_run(trace::trace_from_json(json, printable_name(path)), path, bodies);
+  out.recording = run::open_run(trace::load_trace(path), path, bodies);
   out.name = out.recording.trace.header.scenario;
   out.frames = spec::read_pictures(out.recording.trace.header.pictures, printable_name(path));
   return out;
@@ -114,9 +113,6 @@ figure::FigureSpec figure_spec(const FigureOptions& o, const std::string& file) 
     spec.line_width = figure::parse_length(o.line_width, "--line-width", figure::kHairline, 3);
   if (o.picture.dpi) spec.dpi = *o.picture.dpi;
   spec.choice = choice_of(o);
-  if (o.tex && spec.format != figure::FigureSpec::Format::pdf)
-    throw InputError("--tex: sets texts over a .pdf file, found \"" + file + "\"");
-  if (o.tex) spec.tex = std::filesystem::path(file).filename().string();
   spec.contact_sheet = o.try_views;
   if (o.try_views) spec.titles = true, spec.legend = false;
   return spec;
@@ -308,11 +304,6 @@ int run_figure(const FigureOptions& o, const App& app, const Globals& globals) {
     write_artifact(o, app, file, drawn.bytes);
     print(o.artifact + "\n");
   }
-  if (spec.tex.empty()) return kOk;
-  std::filesystem::path tex(file);
-  tex.replace_extension(".tex");
-  io::write_text(tex.string(), drawn.tex);
-  print(tex.string() + "\n");
   return kOk;
 }
 
@@ -384,10 +375,6 @@ void add_paper_options(App& app, FigureOptions& o) {
   app.add_flag("--legend,!--no-legend", o.figure.legend, "Show or hide the legend and colour bar [shown]");
   app.add_flag("--caption", o.figure.caption,
                "Set the caption below the panels; it is always written to FIG.caption.txt");
-  app.add_flag(
-      "--tex", o.tex,
-      "Leave texts out of the PDF, and write FIG.tex, which includes it and sets the texts in the font of the "
-      "document");
   add_style_option(app, o.picture, "print");
   app.add_flag("--occlusion", o.figure.occlusion,
                "Darken creases and gaps between 3D bodies (ambient occlusion)");

@@ -13,7 +13,6 @@
 #include "render/vector_faces.hpp"
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_panels.hpp"
-#include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/frames/framing.hpp"
 #include <lrbscope/error.hpp>
@@ -69,12 +68,7 @@ class FigureJob {
     if (!chosen_.left_out.empty()) out.notes.push_back(chosen_.left_out);
     if (!flat() && figure_.format != FigureSpec::Format::png) find_vector_faces(out.notes, progress);
     out.caption = caption();
-    const auto paint = [&](render::Canvas& canvas) {
-      if (figure_.tex.empty()) return paint_all(canvas, progress);
-      TextOverlay overlay(canvas);
-      paint_all(overlay, progress);
-      out.tex = overlay.tex(figure_.tex, figure_.width, layout_.height, figure_.font_size);
-    };
+    const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
     const std::optional<render::Rgba> background = frames_.paper();
     const std::string program = "lrbscope " + recorded_.trace->header.lrbscope;
     const render::PaperPage page{figure_.width, layout_.height, background, recorded_.title, program};

@@ -28,9 +28,6 @@ struct FigureSpec {
   bool contact_sheet = false;  ///< all views in one block of panels, for comparison; each has its own scale
   std::vector<Callout> callouts;
   std::vector<Inset> insets;
-  /// Name of the PDF for the TeX file that sets the texts over it; the PDF itself has none. Empty: no TeX
-  /// file.
-  std::string tex;
 };
 
 /// The minimum line width, in points: printing presses lose thinner lines.
@@ -42,7 +39,6 @@ double default_dpi(FigureSpec::Format format);
 
 struct Figure {
   std::string bytes;    ///< of the file
-  std::string tex;      ///< text of the TeX file, if requested
   std::string caption;  ///< text for print below the figure
   std::size_t panels = 0;
   std::vector<std::string> notes;  ///< on omitted states, faces that are an image, unseen callouts

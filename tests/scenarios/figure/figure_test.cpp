@@ -10,7 +10,6 @@
 #include "render/face_look.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/figure/figure_layout.hpp"
-#include "scenarios/figure/figure_tex.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tests/support/pixels.hpp"
@@ -122,23 +121,6 @@ TEST_CASE("panels of layers: at most 26, evenly chosen, and omissions are report
   CHECK(chosen.events.back() + 1 == many.recording.trace.events.size());
   CHECK(chosen.left_out ==
         "26 of " + std::to_string(layers + 1) + " panels are shown, evenly chosen; --events shows others");
-}
-
-TEST_CASE("titles of panels name the view if there are several") {
-  const Shipped s("stick_through_wall");
-  FigureSpec spec;
-  spec.format = FigureSpec::Format::svg;
-  spec.dpi = 40;
-  spec.choice.panels = 1;
-  spec.titles = true;
-  render::FrameSpec frames;
-  frames.views.resize(2);
-  frames.views[0].title = "First";
-  frames.views[1].title = "Second";
-  const Figure figure = draw_figure(s.run, frames, spec, run::kSilent);
-  CHECK(figure.panels == 2);
-  CHECK(count(figure.bytes, "aria-label=\"(a) First, step ") == 1);
-  CHECK(count(figure.bytes, "aria-label=\"(b) Second, step ") == 1);
 }
 
 TEST_CASE("panels of two bodies: time steps, including the first contact") {
@@ -297,29 +279,6 @@ TEST_CASE("the figure of a mesh of 4,480 faces: below 300 kB, without pixels") {
   CHECK(pdf.bytes == draw_figure(s.run, s.scenario.frames, {}, run::kSilent).bytes);
 }
 
-TEST_CASE("texts for TeX: none in the PDF, all in the overlay, escaped") {
-  const Shipped s("figure2");
-  FigureSpec spec;
-  spec.tex = "fig_1.pdf";
-  spec.titles = true;
-  render::FrameSpec black;
-  black.style = render::StyleName::print;
-  const Figure figure = draw_figure(s.run, black, spec, run::kSilent);
-  CHECK(count(figure.tex, "\\color[rgb]") == 0);
-  CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).tex, "\\color[rgb]{0.11,0.12,0.13}") > 0);
-  CHECK(count(figure.bytes, "/FontFile") == 0);
-  CHECK(count(figure.tex, "\\includegraphics{\\detokenize{fig_1.pdf}}") == 1);
-  CHECK(count(figure.tex, "\\begin{picture}(240.94,") == 1);
-  CHECK(count(figure.tex, "{\\smash{(a) outermost") == 1);
-  CHECK(count(figure.tex, "{\\smash{island, wrapper}}") == 1);
-  CHECK(escape_tex("50 % of a_b & {c}, 1\u202f000 \u2265 \\") ==
-        "50 \\% of a\\_b \\& \\{c\\}, 1\\,000 $\\geq$ \\textbackslash{}");
-  spec.tex.clear();
-  const Figure plain = draw_figure(s.run, {}, spec, run::kSilent);
-  CHECK(plain.tex.empty());
-  CHECK(count(plain.bytes, "/FontFile") > 0);
-}
-
 TEST_CASE("a contact sheet: all views in one block, titled with their options") {
   const test::Folder folder;
   test::Outcome o = test::run(folder, {"figure", "figure2_mesh", "--try-views", "-o", "views.svg"});
@@ -335,36 +294,6 @@ TEST_CASE("a contact sheet: all views in one block, titled with their options") 
   o = test::run(folder, {"figure", "figure2_mesh", "--try-views", "--up", "y", "-o", "around.svg"});
   CHECK(count(test::slurp(folder / "around.caption.txt"), "--up y --from ") == 6);
   test::check_rejected(folder, {"figure", "figure2", "--try-views", "-o", "flat.svg"});
-}
-
-TEST_CASE("--up auto: the axis on which the body is most stable, as a note") {
-  const test::Folder folder;
-  // A table: a plate on four thin legs along y.
-  std::string obj;
-  int first = 1;
-  const auto write_box = [&](const Vector3d& low, const Vector3d& high) {
-    const Mesh box = shapes::box(low, high);
-    for (const Vector3d& x : box.vertices)
-      obj += "v " + std::to_string(x.x()) + " " + std::to_string(x.y()) + " " + std::to_string(x.z()) + "\n";
-    for (FaceId f = 0; f < box.face_count(); ++f) {
-      obj += "f";
-      for (const VertexId v : box.face(f)) obj += " " + std::to_string(first + static_cast<int>(v));
-      obj += "\n";
-    }
-    first += static_cast<int>(box.vertices.size());
-  };
-  write_box({0, 1, 0}, {2, 1.2, 1.5});
-  for (const double x : {0.2, 1.7})
-    for (const double z : {0.2, 1.2}) write_box({x, 0, z}, {x + 0.1, 0.99, z + 0.1});
-  folder.write("table.obj", obj);
-  test::Outcome o =
-      test::run(folder, {"figure", "table.obj", "--up", "auto", "--panels", "1", "-o", "auto.svg"});
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
-  CHECK(o.err.find("--up auto: the body is most stable with --up y") != std::string::npos);
-  test::succeed(folder, {"figure", "table.obj", "--up", "y", "--panels", "1", "-o", "given.svg"});
-  CHECK(test::slurp(folder / "auto.svg") == test::slurp(folder / "given.svg"));
-  test::check_rejected(folder, {"inspect", "table.obj", "--render", "--up", "auto", "-o", "no.png"});
 }
 
 TEST_CASE("callouts and insets are read, and wrong ones rejected with their option") {
@@ -580,17 +509,6 @@ TEST_CASE("--occlusion darkens faces in a gap, and leaves those of a convex body
       folder, {"-q", "figure", "collision", "--occlusion", "--colour-by", "face_tests", "-o", "no.pdf"});
 }
 
-TEST_CASE("two bodies: one view unless more are requested") {
-  const test::Folder folder;
-  const auto panels = [&](const std::vector<std::string>& more) {
-    test::succeed(folder,
-                  test::joined({"figure", "stick_through_wall", "--panels", "2", "-o", "fig.svg"}, more));
-    return count(test::slurp(folder / "fig.svg"), "aria-label=\"(");
-  };
-  CHECK(panels({}) == 2);
-  CHECK(panels({"--close-up"}) > 2);
-}
-
 TEST_CASE("colours of numbers mean the same in all panels") {
   const Shipped s("collision");
   FigureSpec spec;
@@ -621,7 +539,7 @@ TEST_CASE("lrbscope figure: files, and errors before it writes anything") {
   CHECK(o.err.find("high, more than a page; use fewer panels") != std::string::npos);
   const std::vector<std::vector<std::string>> bad = {
       {"figure", "figure1", "-o", "fig.eps"},
-      {"figure", "figure1", "-o", "fig.svg", "--tex"},
+      {"figure", "figure1", "-o", "fig.pdf", "--tex"},
       {"figure", "figure1", "-o", "fig.pdf", "--width", "85"},
       {"figure", "figure1", "-o", "fig.pdf", "--width", "2mm"},
       {"figure", "figure1", "-o", "fig.pdf", "--line-width", "0.1pt"},
