@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenarios/golden/approve.hpp"
 #include "scenarios/golden/check.hpp"
 #include "scenarios/golden/golden_report.hpp"
 #include "scenarios/io/files.hpp"
@@ -131,13 +132,9 @@ Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressR
   try {
     out.golden = golden::load_golden(o.goldens, g.name);
     apply(o, out.golden->spec);
-    golden::Source source = g.source ? *g.source : golden::golden_source(o.goldens, g.name, out.golden->spec);
-    if (std::holds_alternative<spec::Crowd>(source) != out.golden->spec.is_crowd)
-      throw InputError(g.name + ": its golden is not of a " +
-                       (out.golden->spec.is_crowd ? "scenario" : "crowd") +
-                       "; approve it again, or rename one of them");
-    const std::uint32_t threads = o.jobs > 1 ? 1 : all_cores();
-    out.run = golden::record_golden(std::move(source), out.golden->spec, progress, threads);
+    const golden::Source source =
+        g.source ? *g.source : golden::golden_source(o.goldens, g.name, out.golden->spec);
+    out.run = golden::record_golden(source, out.golden->spec, progress);
     out.run->text = golden::scenario_text(o.goldens, g.name, out.golden->spec);
   } catch (const InputError& e) {
     out.rejection = e.what();
@@ -294,8 +291,7 @@ void reject_another(const GoldenOptions& o, const std::string& name, const golde
   }
   const std::filesystem::path folder = std::filesystem::path(o.goldens) / name;
   throw InputError(printable_name(word) + ": has the same name as another scenario, whose golden is in " +
-                   printable_name(folder.string()) + " (its \"" + (kept.is_crowd ? "crowd" : "scenario") +
-                   "\" is " + kept.scenario +
+                   printable_name(folder.string()) + " (its \"scenario\" is " + kept.scenario +
                    "); rename one of them, or approve into another folder with --goldens");
 }
 
@@ -313,7 +309,6 @@ golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& na
     golden::set_default_size(spec, golden::frames_of(source));
     spec.scenario = golden::scenario_reference(o.goldens, name, word);
   }
-  spec.is_crowd = std::holds_alternative<spec::Crowd>(source);
   if (!o.size.empty()) {
     PictureOptions picture;
     picture.size = o.size;
@@ -362,16 +357,17 @@ int run_approve(const GoldenOptions& o, const Globals& globals) {
         code = kMismatch;
         continue;
       }
-    golden::Source source =
+    const golden::Source source =
         golden::has_golden(o.goldens, word)
             ? golden::golden_source(o.goldens, word, golden::read_golden_spec(o.goldens, word))
             : golden::open_source(word);
     const std::string name = golden::name_of(source);
     const golden::GoldenSpec spec = spec_to_approve(o, name, source, word);
-    golden::GoldenRun run =
-        golden::play_golden(std::move(source), spec, progress_report(globals.quiet), all_cores());
+    golden::GoldenRun run = golden::play_golden(source, spec, progress_report(globals.quiet));
     run.text = golden::scenario_text(o.goldens, name, spec);
-    const std::vector<std::string> done = golden::approve_golden(o.goldens, spec, run, o.variant, o.dry);
+    const std::vector<std::string> done = o.variant.empty()
+                                              ? golden::approve_golden(o.goldens, spec, run, o.dry)
+                                              : golden::approve_variant(o.goldens, run, o.variant, o.dry);
     for (const std::string& line : done) print(line + "\n");
     if (done.empty()) print("unchanged " + name + "\n");
   }
@@ -397,8 +393,7 @@ void add_folder(App& app, const std::shared_ptr<GoldenOptions>& o) {
 App* add_part(App& golden, const std::string& name, const std::string& what,
               const std::shared_ptr<GoldenOptions>& o, const std::string& none) {
   App* app = golden.add_subcommand(name, what);
-  app->add_option("SCENARIO", o->scenarios,
-                  "Shipped scenarios and crowds, JSON files, or captures [" + none + "]");
+  app->add_option("SCENARIO", o->scenarios, "Shipped scenarios, JSON files, or captures [" + none + "]");
   add_folder(*app, o);
   return app;
 }
@@ -478,9 +473,9 @@ Command add_golden(App& root, const Globals& globals) {
   rectangles("--only", o->only,
              "A rectangle of pixels that is compared, instead of whole pictures; repeatable");
   approve->add_option(
-      "--from", o->from, "DIR|ZIP",
+      "--from", o->from, "DIR",
       "Approve what a test found, on this machine or another one, instead of running the scenarios: its "
-      "output folder or a ZIP archive of it");
+      "output folder");
   approve->add_flag("--dry-run", o->dry, "Change nothing; print which files would be approved or removed");
   add_comparison(*approve, o);
   // Results of a test are approved as they were drawn and compared there.

@@ -4,8 +4,6 @@
 #include <memory>
 
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/crowd/crowd_report.hpp"
-#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
@@ -32,8 +30,6 @@ struct RenderOptions {
   bool close_up = false, hide_rest = false;
   std::vector<std::string> regions, layers;
 };
-
-constexpr const char* kFromTrace = "Drawn from a recorded run.";
 
 std::string output_folder(const RenderOptions& o) {
   return o.folder.empty()
@@ -116,53 +112,10 @@ spec::Show show_of(const trace::Trace& trace, std::size_t bodies) {
   return bodies == 2 ? spec::Show::collision : spec::Show::refinement;
 }
 
-/// Throws for options that frames of a crowd do not support.
-void reject_for_crowd(const RenderOptions& o) {
-  using At = render::FrameSpec::At;
-  const auto& at = o.picture.at;
-  const std::pair<bool, const char*> none[] = {
-      {!o.events.empty(), "--events"},
-      {o.montage > 0, "--montage"},
-      {o.columns > 0, "--columns"},
-      {!o.regions.empty(), "--region"},
-      {!o.layers.empty(), "--layer"},
-      {o.hide_rest, "--no-ghost"},
-      {o.picture.svg.value_or(false), "--format svg"},
-      {o.picture.colour_by.has_value(), "--colour-by"},
-      {o.picture.colour_per.has_value(), "--colour-per"},
-      {o.picture.node_boxes.has_value(), "--node-boxes"},
-      {at == At::refinement || at == At::pass || at == At::every, "--frames refinement, pass or event"}};
-  for (const auto& [given, name] : none)
-    if (given) throw InputError(std::string(name) + ": not supported for the trace of a crowd; leave it out");
-}
-
-int render_crowd(const RenderOptions& o, const Globals& globals, const std::string& text) {
-  reject_for_crowd(o);
-  crowd::CrowdTrace trace = crowd::read_crowd_trace(text, o.trace);
-  trace.crowd.purpose = kFromTrace;
-  trace.crowd.frames = frame_spec(o, spec::Show::collision);
-  run::check_frame_size(trace.crowd.frames);
-  std::vector<std::string> names;
-  for (const spec::CrowdKind& kind : trace.crowd.kinds) names.push_back(kind.name + ".lrb");
-  const run::ProgressReport progress = progress_report(globals.quiet);
-  const crowd::CrowdRun run =
-      crowd::replay_crowd(trace, run::find_bodies(o.trace, o.bodies, names), all_cores(), progress);
-  note(globals, run.notes);
-  const std::string folder = output_folder(o);
-  crowd::redraw_crowd(trace.crowd, run, folder, globals.command_line, o.trace, progress);
-  animate_frames(o.picture, folder);
-  print(folder + "/index.html\n");
-  return kOk;
-}
-
 int run_render(const RenderOptions& given, const Globals& globals) {
   RenderOptions o = given;
   o.trace = run::trace_of(given.trace);
-  std::string json = trace::load_trace_text(o.trace);
-  if (crowd::is_crowd_trace(json)) return render_crowd(o, globals, json);
-  trace::Trace read = trace::trace_from_json(json, printable_name(o.trace));
-  json = {};
-  const run::Recording recording = run::open_run(std::move(read), o.trace, o.bodies);
+  const run::Recording recording = run::open_run(trace::load_trace(o.trace), o.trace, o.bodies);
   const trace::Trace& trace = recording.trace;
   const std::vector<bodies::LoadedBody>& bodies = recording.bodies;
   const run::RecordedRun p = run::recorded_run_of(trace.header.scenario, {}, recording);
@@ -185,8 +138,11 @@ int run_render(const RenderOptions& given, const Globals& globals) {
   const report::Folder locked(folder);
   const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string file = std::filesystem::relative(o.trace, folder).generic_string();
-  run::ReportText report{
-      trace.header.scenario, kFromTrace, globals.command_line, file, {run::trace_link(file)}};
+  run::ReportText report{trace.header.scenario,
+                         "Drawn from a recorded run.",
+                         globals.command_line,
+                         file,
+                         {run::trace_link(file)}};
   if (o.bodies.empty()) report.why = "lrbscope why --run " + shell_word(o.trace);
   run::run_page(p, drawn, folder, report).write(locked);
   animate_frames(o.picture, folder);
@@ -201,9 +157,8 @@ Command add_render(App& root, const Globals& globals) {
   const auto o = std::make_shared<RenderOptions>();
   app->add_option("TRACE", o->trace, "A run's folder, trace.json or trace.json.gz")->required();
   app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/NAME-render]");
-  app->add_option("--bodies", o->bodies, "FILE",
-                  "Bodies of the trace [a.lrb and b.lrb next to it; crowd: KIND.lrb for each kind]")
-      ->expected(1, static_cast<int>(spec::kMaxCrowdBodies));
+  app->add_option("--bodies", o->bodies, "FILE", "Bodies of the trace [a.lrb and b.lrb next to it]")
+      ->expected(1, 2);
   app->add_option("--events", o->events, "N,N,...", "Draw a frame after each of these events")
       ->delimiter(',');
   app->add_option("--montage", o->montage, "N", "Number of panels of the montage [as in the run]")

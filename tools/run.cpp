@@ -1,8 +1,7 @@
 #include <iostream>
 #include <memory>
 
-#include "scenarios/crowd/crowd_report.hpp"
-#include "scenarios/crowd/crowd_trace.hpp"
+#include "scenarios/crowd/crowd_pairs.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -21,51 +20,46 @@ struct CrowdOptions {
   std::string crowd = "crowd", folder, pair;
   std::uint32_t jobs = 0;  ///< 0: all cores
   std::optional<std::uint32_t> steps;
-  std::optional<trace::Clock> clock;
   bool no_frames = false, json = false;
 };
 
-/// Records two bodies of a recorded crowd as a run of their own.
-int run_pair(const CrowdOptions& o, const Globals& globals) {
-  const std::string path = run::trace_of(o.crowd);
-  const std::string text = trace::load_trace_text(path);
-  if (!crowd::is_crowd_trace(text))
-    throw InputError(printable_name(o.crowd) + ": expected a recorded crowd (folder or trace) for --pair");
-  const crowd::CrowdTrace trace = crowd::read_crowd_trace(text, path);
-  const lrb::BodyPair pair = crowd::find_pair(trace, o.pair);
-  spec::Scenario scenario = crowd::scenario_of_pair(trace, pair, path);
+/// Records two bodies of a crowd as a run of their own.
+int run_pair(const CrowdOptions& o, const spec::Crowd& crowd, const Globals& globals) {
+  const lrb::BodyPair pair = crowd::find_pair(crowd, o.pair);
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  std::vector<bodies::LoadedBody> kinds = crowd::make_kinds(crowd, progress);
+  const crowd::CrowdMotion motion(crowd, kinds);
+  spec::Scenario scenario = crowd::scenario_of_pair(crowd, motion, pair);
   scenario.frames.montage = 6;
   scenario.frames.views = run::whole_and_contact();
   if (o.no_frames) scenario.frames.at = render::FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
-  const run::ProgressReport progress = progress_report(globals.quiet);
-  std::vector<bodies::LoadedBody> bodies =
-      run::find_bodies(path, {scenario.bodies[0].file, scenario.bodies[1].file}, {"A", "B"});
-  run::Recording recording = run::record(scenario, std::move(bodies), progress);
-  crowd::check_answers(trace, pair, recording);
+  run::Recording recording =
+      run::record(scenario, {kinds[motion.kind(pair.i)], kinds[motion.kind(pair.j)]}, progress);
   choose_views({}, scenario, recording);
   return report_outcome(run::write_run(scenario, recording, folder, globals.command_line, progress), folder,
                         o.json, globals);
 }
 
 int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
-  if (!o.pair.empty()) return run_pair(o, globals);
   spec::Crowd crowd = spec::open_crowd(o.crowd);
+  note(globals, crowd.notes);
+  if (o.steps && !crowd.poses.empty() && *o.steps > crowd.poses.size())
+    throw InputError("--steps: the crowd has poses for " + std::to_string(crowd.poses.size()) + " steps");
   if (o.steps) crowd.steps = *o.steps;
-  if (o.clock) crowd.clock = *o.clock;
-  if (o.no_frames) crowd.frames.at = render::FrameSpec::At::none;
-  const std::string folder = o.folder.empty() ? "out/" + crowd.name : o.folder;
-  if (o.folder.empty()) io::reject_run_of_another(folder, o.crowd);
+  if (!o.pair.empty()) return run_pair(o, crowd, globals);
   const std::uint32_t jobs = o.jobs > 0 ? o.jobs : all_cores();
-  const run::ProgressReport progress = progress_report(globals.quiet);
-  const crowd::CrowdRun run = crowd::run_crowd(crowd, jobs, progress);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, jobs, progress_report(globals.quiet));
   note(globals, run.notes);
   note(globals, {crowd::crowd_speed(run)});
-  const std::string summary = crowd::write_crowd(crowd, run, folder, globals.command_line, progress);
-  if (const crowd::CostliestPair pair = crowd::costliest_pair(run); !pair.names.empty())
-    note(globals, {pair.text + "; their run: " + shell_line({"crowd", folder, "--pair", pair.names})});
-  if (o.folder.empty()) io::mark_run(folder, o.crowd);
-  print(o.json ? summary : folder + "/index.html\n");
+  constexpr std::size_t kMostLines = 20;
+  print(o.json ? crowd::crowd_summary(crowd, run) : crowd::pair_table(run, kMostLines));
+  if (const std::vector<crowd::PairHistory> pairs = crowd::pair_histories(run); !pairs.empty()) {
+    const lrb::BodyPair& costliest = pairs.front().bodies;
+    note(globals,
+         {"the run of the first pair: " +
+          shell_line({"crowd", o.crowd, "--pair", run.names[costliest.i] + "," + run.names[costliest.j]})});
+  }
   return kOk;
 }
 
@@ -73,29 +67,25 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
 
 Command add_crowd(App& root, const Globals& globals) {
   App* app = root.add_subcommand(
-      "crowd", "Move many bodies; per step, query each pair of bodies whose boxes overlap, on all cores");
+      "crowd", "Move many bodies, query each pair of bodies whose boxes overlap, and list the pairs by cost");
   const auto o = std::make_shared<CrowdOptions>();
-  app->add_option("CROWD", o->crowd, "NAME|FILE|DIR",
-                  "Shipped crowd (see lrbscope list), JSON file, or with --pair a recorded crowd")
+  app->add_option("CROWD", o->crowd, "NAME|FILE", "Shipped crowd (see lrbscope list) or JSON file")
       ->capture_default_str();
-  app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/NAME]");
+  Option* pair =
+      app->add_option("--pair", o->pair, "BODY,BODY",
+                      "Instead, record these two bodies as a run with a page, frames and a trace, for `why`, "
+                      "`export`, `figure` and `compare`");
+  app->add_option("-o,--output", o->folder, "DIR",
+                  "Output folder of the two bodies' run [out/NAME-BODY-BODY]")
+      ->needs(pair);
   app->add_option("--jobs", o->jobs, "N", "Number of threads [all cores]; the result does not depend on it")
-      ->in_range(1u, 1024u);
+      ->in_range(1u, 1024u)
+      ->excludes(pair);
   app->add_option("--steps", o->steps, "N", "Number of time steps [as in the crowd's file]")
       ->in_range(1u, 100000u);
-  add_choice<trace::Clock>(
-      *app, "--clock", o->clock,
-      "Time in the trace. event: independent of the number of threads, one track per body; wall: wall-clock "
-      "time, one track per thread");
-  app->add_option(
-         "--pair", o->pair, "BODY,BODY",
-         "Record these two bodies of a recorded crowd (CROWD is its folder or trace) as a run of two "
-         "bodies, for `why`, `export`, `figure` and `compare`")
-      ->excludes(app->get_option("--jobs"))
-      ->excludes(app->get_option("--steps"))
-      ->excludes(app->get_option("--clock"));
-  app->add_flag("--no-frames", o->no_frames, "Do not draw frames");
-  app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
+  app->add_flag("--no-frames", o->no_frames, "With --pair: do not draw frames")->needs(pair);
+  app->add_flag("--json", o->json,
+                "Print the steps and all pairs, or with --pair the run's summary, as JSON");
   return {app, [o, &globals] { return run_crowd_command(*o, globals); }};
 }
 

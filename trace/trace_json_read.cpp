@@ -311,8 +311,8 @@ class Reader {
     if (begin.find("\"lrbscope crowd\"") != std::string_view::npos)
       throw InputError(
           name_ +
-          ": expected a run of one or two bodies, found the trace of a crowd; draw it with lrbscope "
-          "render, or record two of its bodies with lrbscope crowd --pair");
+          ": expected a run of one or two bodies, found the trace of a crowd, which 2.0 does not read; "
+          "record two of its bodies with lrbscope crowd FILE --pair");
   }
 
   void take_event(const TraceNode& node) {

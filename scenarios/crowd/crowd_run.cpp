@@ -7,9 +7,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "render/pictures/panel.hpp"
-#include "scenarios/record/moments.hpp"
-#include "scenarios/spec/scenario.hpp"
 #include <lrbscope/core/random.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/parallel.hpp>
@@ -22,34 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const run::ProgressReport& progress) {
-  std::vector<bodies::LoadedBody> kinds;
-  for (const spec::CrowdKind& kind : crowd.kinds) {
-    progress("build", kinds.size(), crowd.kinds.size());
-    kinds.push_back(run::make_body(kind.body));
-    if (kinds.back().rep.dim() != kinds[0].rep.dim())
-      throw InputError("crowd " + crowd.name + ": " + kind.name + " is " +
-                       std::to_string(kinds.back().rep.dim()) + "D and " + crowd.kinds[0].name + " is " +
-                       std::to_string(kinds[0].rep.dim()) + "D; expected bodies of the same dimension");
-  }
-  return kinds;
-}
-
-std::vector<const LrbRep*> reps_of(const std::vector<bodies::LoadedBody>& kinds) {
-  std::vector<const LrbRep*> out;
-  for (const bodies::LoadedBody& kind : kinds) out.push_back(&kind.rep);
-  return out;
-}
-
 class Player {
  public:
   Player(const spec::Crowd& crowd, CrowdRun& run)
-      : crowd_(crowd),
-        run_(run),
-        workers_(run.threads),
-        workspaces_(workers_.count()),
-        scene_(run.threads),
-        began_(Clock::now()) {
+      : crowd_(crowd), run_(run), workers_(run.threads), workspaces_(workers_.count()), scene_(run.threads) {
     std::vector<Body> kinds;  // the run has the LRB-reps, and outlives the player
     for (const bodies::LoadedBody& kind : run.kinds)
       kinds.push_back(Body::from(std::shared_ptr<const LrbRep>(std::shared_ptr<void>(), &kind.rep)));
@@ -58,42 +31,32 @@ class Player {
       keys_.push_back(scene_.add(kinds[run.motion.kind(body)]));
   }
 
-  /// Runs a step; `moment` receives the data for a picture of it, unless it is null.
-  CrowdStep play(std::uint32_t number, CrowdMoment* moment) {
+  CrowdStep play(std::uint32_t number) {
     CrowdStep step;
-    const std::uint64_t begin = now();
+    const Clock::time_point begin = Clock::now();
     move_bodies(number);
     const std::vector<BodyPair> pairs = near();
     step.broad_phase = scene_.work().broad_phase;
-    const std::uint64_t swept = now();
+    const Clock::time_point swept = Clock::now();
     std::vector<PosedPair> questions;
     for (const BodyPair& p : pairs)
       questions.push_back({&run_.rep(p.i), pose(p.i), &run_.rep(p.j), pose(p.j)});
-    std::vector<CollideResult> results(moment != nullptr ? pairs.size() : 0);
     step.queries.resize(pairs.size());
     keep_answers(pairs, step);
     const std::vector<std::size_t> order = order_by_bodies(questions);
     workers_.for_each(pairs.size(), [&](std::size_t k, unsigned thread) {
-      const std::size_t at = order[k];
-      CrowdQuery& query = step.queries[at];
-      if (query.is_kept && moment == nullptr) return;
-      CrowdQuery repeated;  // for the picture
-      CollideResult& result = ask(pairs[at], questions[at], thread, query.is_kept ? repeated : query);
-      // Otherwise its memory is reused.
-      if (moment != nullptr) results[at] = std::move(result);
+      CrowdQuery& query = step.queries[order[k]];
+      query.bodies = pairs[order[k]];
+      if (!query.is_kept) ask(questions[order[k]], workspaces_[thread], query);
     });
-    limit_contact_faces(number, step);
-    step.begin_ns = begin;
-    step.broad_phase_ns = swept - begin;
-    step.queries_ns = now() - swept;
-    if (moment != nullptr) remember(pairs, results, *moment);
+    step.broad_phase_ns = nanoseconds(swept - begin);
+    step.queries_ns = nanoseconds(Clock::now() - swept);
     return step;
   }
 
  private:
-  std::uint64_t now() const {
-    return static_cast<std::uint64_t>(
-        std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - began_).count());
+  static std::uint64_t nanoseconds(Clock::duration d) {
+    return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(d).count());
   }
 
   void move_bodies(std::uint32_t number) {
@@ -118,7 +81,6 @@ class Player {
       step.queries[i] = *last;
       step.queries[i].result.counters = {};
       step.queries[i].is_kept = true;
-      step.queries[i].begin_ns = step.queries[i].end_ns = now();
     }
   }
 
@@ -138,46 +100,17 @@ class Player {
   /// Returns the current pose.
   const Pose& pose(std::uint32_t body) const { return scene_.pose(keys_[body]); }
 
-  /// Returns the result in the thread's workspace.
-  CollideResult& ask(const BodyPair& pair, const PosedPair& question, std::uint32_t thread,
-                     CrowdQuery& query) {
-    query.bodies = pair;
-    query.thread = thread;
-    query.begin_ns = now();
+  void ask(const PosedPair& question, Workspace& workspace, CrowdQuery& query) const {
     try {
-      CollideResult& r = collide(*question.a, question.pose_a, *question.b, question.pose_b, crowd_.request,
-                                 workspaces_[thread])
-                             .value();
+      const CollideResult& r =
+          collide(*question.a, question.pose_a, *question.b, question.pose_b, crowd_.request, workspace)
+              .value();
       query.result = {r.relation, r.interiors_overlap, r.pairs.size(), fingerprint(r.pairs), r.counters};
-      query.contact_regions = r.regions.size();
-      measure(question, workspaces_[thread], query.result);
-      query.end_ns = now();
-      if (keeps_contact_faces_)
-        for (const SimplexPair& p : r.pairs) {
-          query.contact_faces[0].push_back(question.a->face_of_simplex(p.a).value());
-          query.contact_faces[1].push_back(question.b->face_of_simplex(p.b).value());
-        }
-      for (std::vector<std::uint32_t>& faces : query.contact_faces) {
-        std::sort(faces.begin(), faces.end());
-        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-      }
-      return r;
+      measure(question, workspace, query.result);
     } catch (const InputError& e) {
-      throw InputError("crowd " + crowd_.name + ", " + run_.names[pair.i] + " (A) and " + run_.names[pair.j] +
-                       " (B): " + e.what());
+      throw InputError("crowd " + crowd_.name + ", " + run_.names[query.bodies.i] + " (A) and " +
+                       run_.names[query.bodies.j] + " (B): " + e.what());
     }
-  }
-
-  /// Counts the faces in contact. Discards those of a step that exceeds the limit, and of all later ones.
-  void limit_contact_faces(std::uint32_t number, CrowdStep& step) {
-    if (!keeps_contact_faces_) return;
-    for (const CrowdQuery& q : step.queries)
-      contact_faces_ += q.contact_faces[0].size() + q.contact_faces[1].size();
-    keeps_contact_faces_ = contact_faces_ <= kMaxContactFaces;
-    if (keeps_contact_faces_)
-      run_.contact_steps = number + 1;
-    else
-      for (CrowdQuery& q : step.queries) q.contact_faces = {};
   }
 
   /// Adds the distance, the clash and the near pairs, if requested.
@@ -197,29 +130,6 @@ class Player {
     }
   }
 
-  void remember(const std::vector<BodyPair>& pairs, std::vector<CollideResult>& results,
-                CrowdMoment& moment) const {
-    moment.opened.resize(keys_.size());
-    moment.in_contact.resize(keys_.size());
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const std::uint32_t body[2] = {pairs[k].i, pairs[k].j};
-      for (const int side : {0, 1}) {
-        const std::vector<RegionId>& opened = results[k].opened[static_cast<std::size_t>(side)];
-        std::vector<RegionId>& all = moment.opened[body[side]];
-        all.insert(all.end(), opened.begin(), opened.end());
-        std::vector<std::uint8_t>& marks = moment.in_contact[body[side]];
-        const LrbRep& rep = run_.rep(body[side]);
-        if (!results[k].pairs.empty()) marks.resize(rep.real_face_count());
-        for (const SimplexPair& p : results[k].pairs) marks[rep.face_of_simplex(side == 0 ? p.a : p.b)] = 1;
-      }
-      std::move(results[k].regions.begin(), results[k].regions.end(), std::back_inserter(moment.contacts));
-    }
-    for (std::vector<RegionId>& all : moment.opened) {
-      std::sort(all.begin(), all.end());
-      all.erase(std::unique(all.begin(), all.end()), all.end());
-    }
-  }
-
   const spec::Crowd& crowd_;
   CrowdRun& run_;
   Workers workers_;
@@ -227,9 +137,6 @@ class Player {
   Scene scene_;
   std::vector<BodyKey> keys_;  ///< by body, ascending
   std::vector<bool> moved_;    ///< by body, in the current step
-  std::size_t contact_faces_ = 0;
-  bool keeps_contact_faces_ = true;
-  Clock::time_point began_;
 };
 
 }  // namespace
@@ -241,37 +148,29 @@ std::vector<std::string> body_names(const spec::Crowd& crowd) {
   return names;
 }
 
-std::vector<std::uint32_t> drawn_steps(const render::FrameSpec& spec, std::uint32_t steps) {
-  std::vector<std::uint32_t> all;
-  if (spec.at == render::FrameSpec::At::none) return all;
-  for (std::uint32_t s = 0; s < steps; ++s)
-    if (s % spec.every == 0 || s + 1 == steps) all.push_back(s);
-  std::vector<std::uint32_t> out;
-  for (const std::size_t i : run::evenly(all.size(), spec.most)) out.push_back(all[i]);
-  return out;
+std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const run::ProgressReport& progress) {
+  std::vector<bodies::LoadedBody> kinds;
+  for (const spec::CrowdKind& kind : crowd.kinds) {
+    progress("build", kinds.size(), crowd.kinds.size());
+    kinds.push_back(run::make_body(kind.body));
+    if (kinds.back().rep.dim() != kinds[0].rep.dim())
+      throw InputError("crowd " + crowd.name + ": " + kind.name + " is " +
+                       std::to_string(kinds.back().rep.dim()) + "D and " + crowd.kinds[0].name + " is " +
+                       std::to_string(kinds[0].rep.dim()) + "D; expected bodies of the same dimension");
+  }
+  return kinds;
 }
 
 CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::ProgressReport& progress) {
   std::vector<bodies::LoadedBody> kinds = make_kinds(crowd, progress);
-  CrowdMotion motion(crowd, reps_of(kinds));
-  return play_crowd(crowd, std::move(kinds), std::move(motion), threads, progress);
-}
-
-CrowdRun play_crowd(const spec::Crowd& crowd, std::vector<bodies::LoadedBody> kinds, CrowdMotion motion,
-                    std::uint32_t threads, const run::ProgressReport& progress) {
-  CrowdRun run{std::move(kinds), {}, std::move(motion), {}, {}, {}, threads, 0};
+  CrowdMotion motion(crowd, kinds);
+  CrowdRun run{std::move(kinds), body_names(crowd), std::move(motion), {}, {}, threads};
   for (std::size_t k = 0; k < run.kinds.size(); ++k)
     for (const std::string& note : run.kinds[k].notes) run.notes.push_back(crowd.kinds[k].name + ": " + note);
-  run.names = body_names(crowd);
-  const std::vector<std::uint32_t> drawn = drawn_steps(crowd.frames, crowd.steps);
   Player player(crowd, run);
   for (std::uint32_t step = 0; step < crowd.steps; ++step) {
     progress("query", step, crowd.steps);
-    const bool is_drawn = std::binary_search(drawn.begin(), drawn.end(), step);
-    CrowdMoment moment;
-    moment.step = step;
-    run.steps.push_back(player.play(step, is_drawn ? &moment : nullptr));
-    if (is_drawn) run.moments.push_back(std::move(moment));
+    run.steps.push_back(player.play(step));
   }
   return run;
 }
@@ -334,20 +233,17 @@ std::vector<std::uint32_t> kinds_of_bodies(const spec::Crowd& crowd) {
 
 }  // namespace
 
-CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::vector<std::vector<Pose>> poses)
-    : kinds_(kinds_of_bodies(crowd)), given_(std::move(poses)) {}
-
-CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::span<const LrbRep* const> reps)
+CrowdMotion::CrowdMotion(const spec::Crowd& crowd, std::span<const bodies::LoadedBody> kinds)
     : kinds_(kinds_of_bodies(crowd)), given_(crowd.poses) {
   for (std::vector<Pose>& step : given_)
     for (std::size_t body = 0; body < step.size(); ++body)
       step[body] = spec::then(crowd.kinds[kinds_[body]].body.pose, step[body]);
   if (!given_.empty()) return;
-  const int dim = reps[0]->dim();
+  const int dim = kinds[0].rep.dim();
   Random random(crowd.seed);
   for (std::uint32_t k = 0; k < crowd.kinds.size(); ++k) {
     const Pose& own = crowd.kinds[k].body.pose;
-    const double radius = radius_of(*reps[k], own);
+    const double radius = radius_of(kinds[k].rep, own);
     for (std::uint32_t i = 0; i < crowd.kinds[k].count; ++i) {
       Mover m;
       m.own = own;

@@ -12,25 +12,6 @@
 
 namespace lrb::golden {
 
-/// Approves a run as the golden. Does not rewrite files with the same content; where a picture has changed,
-/// removes its old variants. With `variant` the trace must equal the approved one, and differing pictures are
-/// added beside the approved ones. Returns one line for each changed file. `dry`: changes nothing, and
-/// returns the files that would change. Throws InputError.
-std::vector<std::string> approve_golden(const std::string& goldens, const GoldenSpec& spec,
-                                        const GoldenRun& run, const std::string& variant, bool dry = false);
-
-/// Writes the complete golden of a run, which approve_from() approves, into goldens/NAME. Replaces what it
-/// wrote before.
-void write_golden(const std::string& goldens, const GoldenSpec& spec, const GoldenRun& run);
-
-/// Approves goldens that a test wrote, possibly on another machine: of its output folder or a ZIP archive of
-/// it, those with these names, or all of them. Throws InputError, before anything is changed, if a file of
-/// them is missing or damaged. Returns and `dry` as approve_golden().
-std::vector<std::string> approve_from(const std::string& goldens, const std::string& from,
-                                      const std::vector<std::string>& names, bool dry);
-/// The folder, in the output folder of a test, with the goldens that failures may be approved from.
-inline const char* const kApprovable = "approve";
-
 struct ImageVerdict {
   std::string file;  ///< the nearest approved picture; for a frame without one, its own name
   bool passed = false;
@@ -41,6 +22,10 @@ struct ImageVerdict {
   std::size_t variant = 0;  ///< index into Golden::frames[frame]; meaningless if has_expected is false
   bool has_expected = false, has_actual = false;
 };
+
+/// Compares a picture with the approved variants of its frame.
+ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::PaintedFrame& actual,
+                         std::size_t frame, const GoldenSpec& spec);
 
 struct GoldenVerdict {
   std::string rejection;          ///< why the test could not run; all other fields are then empty

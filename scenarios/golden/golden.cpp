@@ -56,11 +56,7 @@ std::uint64_t mesh_hash(const Mesh& mesh) {
 }
 
 std::string kept_file(std::size_t body, int dim) {
-  constexpr std::size_t kLetters = 26;
-  std::string name;
-  for (std::size_t n = body + 1; n > 0; n = (n - 1) / kLetters)
-    name.insert(name.begin(), static_cast<char>('a' + (n - 1) % kLetters));
-  return name + (dim == 2 ? ".obj" : ".ply");
+  return std::string(1, static_cast<char>('a' + body)) + (dim == 2 ? ".obj" : ".ply");
 }
 
 std::string mesh_difference(const Mesh& x, const Mesh& y) {
@@ -229,11 +225,12 @@ std::string spec_file(const std::string& goldens, const std::string& name) {
 GoldenSpec read_spec(const io::JsonNode& root) {
   root.object({"scenario", "crowd", "size", "frames", "compare", "tolerance", "ignore", "only", "meshes",
                "contact_lengths", "renderer", "inputs"});
+  if (root.has("crowd"))
+    root.fail_key(
+        "crowd",
+        "goldens of crowds are of 1.x: remove this one, and keep the output of lrbscope crowd --json");
   GoldenSpec spec;
-  spec.is_crowd = root.has("crowd");
-  if (spec.is_crowd && root.has("scenario"))
-    root.fail_key("crowd", "expected either a scenario or a crowd; remove one");
-  spec.scenario = root.at(spec.is_crowd ? "crowd" : "scenario").string();
+  spec.scenario = root.at("scenario").string();
   const std::vector<io::JsonNode> size = root.at("size").items();
   if (size.size() != 2) root.at("size").fail("expected [width, height]");
   spec.width = static_cast<int>(size[0].integer(64, 8192));
@@ -293,15 +290,6 @@ std::string golden_image_file(std::size_t frame, const std::string& variant) {
          std::string(kPng);
 }
 
-bool is_golden_file(const std::string& file) {
-  const fs::path path(file);
-  const std::string stem = path.stem().string();  // of a kept mesh: a, b, ..., aa, ...
-  if ((path.extension() == ".ply" || path.extension() == ".obj") && !stem.empty() &&
-      std::all_of(stem.begin(), stem.end(), [](char c) { return c >= 'a' && c <= 'z'; }))
-    return true;
-  return file == kGoldenSpec || file == kGoldenTrace || frame_of_file(file).has_value();
-}
-
 std::vector<std::string> image_files_of(const std::string& folder, std::size_t frame) {
   return image_files(folder, [frame](std::size_t f) { return f == frame; });
 }
@@ -338,9 +326,8 @@ GoldenSpec read_golden_spec(const std::string& goldens, const std::string& name)
 
 void write_golden_spec(const std::string& goldens, const std::string& name, const GoldenSpec& spec,
                        const GoldenFacts& facts) {
-  nlohmann::ordered_json json = {{spec.is_crowd ? "crowd" : "scenario", spec.scenario},
-                                 {"size", {spec.width, spec.height}},
-                                 {"frames", spec.frames}};
+  nlohmann::ordered_json json = {
+      {"scenario", spec.scenario}, {"size", {spec.width, spec.height}}, {"frames", spec.frames}};
   if (spec.levels != GoldenSpec{}.levels) {
     json["compare"] = nlohmann::ordered_json::array();
     for (const EnumName<Level>& w : kEnumNames<Level>)
@@ -378,7 +365,6 @@ Source open_source(const std::string& name_or_path) {
                        ": no such file; record it again: LRBCAP_OUT=" + printable_name(name_or_path));
     return CapturedQueries{fs::path(name_or_path).stem().string(), name_or_path, profile::captured_frames()};
   }
-  if (spec::is_crowd(name_or_path)) return spec::open_crowd(name_or_path);
   return spec::open_scenario(name_or_path);
 }
 
@@ -392,32 +378,25 @@ const render::FrameSpec& frames_of(const Source& source) {
 
 namespace {
 
-/// Returns the name of a shipped scenario or crowd, or a path from the current folder.
+/// Returns the name of a shipped scenario, or a path from the current folder.
 std::string scenario_of(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
   const bool shipped = spec.scenario.find_first_of("./\\") == std::string::npos;
   return shipped ? spec.scenario : (fs::path(goldens) / name / spec.scenario).lexically_normal().string();
-}
-
-const char* noun_of(const GoldenSpec& spec) {
-  return spec.is_crowd ? "crowd" : spec.is_capture() ? "capture" : "scenario";
 }
 
 }  // namespace
 
 std::string scenario_text(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
   if (spec.is_capture()) return {};
-  const std::string_view ending = spec.is_crowd ? spec::kCrowdEnding : spec::kScenarioEnding;
-  return spec::open_named(scenario_of(goldens, name, spec), ending, noun_of(spec)).text;
+  return spec::open_named(scenario_of(goldens, name, spec), spec::kScenarioEnding, "scenario").text;
 }
 
 Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec) {
   const std::string file = scenario_of(goldens, name, spec);
-  Source source = spec.is_crowd       ? Source(spec::open_crowd(file))
-                  : spec.is_capture() ? open_source(file)
-                                      : Source(spec::open_scenario(file));
+  Source source = open_source(file);
   if (name_of(source) != name)
     throw InputError(printable_name(folder_of(goldens, name)) + ": " + kGoldenSpec + " refers to a " +
-                     noun_of(spec) + " with the name " + name_of(source) +
+                     (spec.is_capture() ? "capture" : "scenario") + " with the name " + name_of(source) +
                      "; rename the folder, or remove it and approve the scenario again");
   return source;
 }
@@ -429,12 +408,8 @@ Golden load_golden(const std::string& goldens, const std::string& name) {
   const io::JsonText json(io::read_small_text(about), about);
   golden.spec = read_spec(io::JsonNode(json));
   golden.facts = read_facts(io::JsonNode(json));
-  const std::string file = folder + "/" + kGoldenTrace, text = trace::load_trace_text(file);
-  if (golden.spec.is_crowd)
-    golden.crowd = crowd::read_crowd_trace(text, file);
-  else
-    golden.trace = trace::trace_from_json(text, printable_name(file));
-  golden.meshes = read_meshes(folder, golden.crowd ? golden.crowd->bodies : golden.trace.header.bodies);
+  golden.trace = trace::load_trace(folder + "/" + kGoldenTrace);
+  golden.meshes = read_meshes(folder, golden.trace.header.bodies);
   for (const std::string& image : image_files_from(folder, 0)) {
     const std::size_t frame = *frame_of_file(image);
     if (frame >= kMaxFrames) continue;
@@ -449,15 +424,8 @@ void remove_golden(const std::string& goldens, const std::string& name) {
     throw InputError(printable_name(name) + ": no golden of this name in " + printable_name(goldens));
   const std::string folder = (fs::path(goldens) / name).string();
   std::vector<std::string> files = image_files_from(folder, 0);
-  std::size_t bodies = 2;
-  try {
-    const std::string about = spec_file(goldens, name);
-    bodies = std::max(
-        bodies, read_facts(io::JsonNode(io::JsonText(io::read_small_text(about), about))).meshes.size());
-  } catch (const InputError&) {  // damaged
-  }
   for (const int dim : {2, 3})
-    for (std::size_t body = 0; body < bodies; ++body) files.push_back(kept_file(body, dim));
+    for (const std::size_t body : {0, 1}) files.push_back(kept_file(body, dim));
   files.push_back(kGoldenTrace);
   files.push_back(kGoldenSpec);  // last: until then it can be tried again
   for (const std::string& file : files) fs::remove(fs::path(folder) / file);

@@ -1,10 +1,10 @@
 #pragma once
-/// Reads and writes goldens: what has been approved of a scenario's run, of a crowd's, or of a capture. A
-/// folder of goldens has a folder for each of these, with
+/// Reads and writes goldens: what has been approved of a scenario's run, or of a capture. A folder of goldens
+/// has a folder for each of these, with
 ///
 ///   golden.json            which scenario, drawn how, compared how
 ///   trace.json.gz          the run, on the event clock
-///   a.ply, b.ply, ...      the bodies' meshes, if they came from files (2D: .obj); of a crowd's kinds
+///   a.ply, b.ply           the bodies' meshes, if they came from files (2D: .obj)
 ///   frame_1.png ...        its pictures
 ///   frame_1.VARIANT.png    further pictures that are right as well, of other processors or drivers
 
@@ -16,8 +16,6 @@
 #include <variant>
 #include <vector>
 
-#include "scenarios/crowd/crowd_trace.hpp"
-#include "scenarios/spec/crowd_spec.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
@@ -30,7 +28,7 @@ namespace lrb::golden {
 /// Parts of a run that are compared with the approved one.
 enum class Level : std::uint8_t {
   answers,   ///< for each step: relation, pairs, overlap of interiors, and proofs of an approximate query
-  events,    ///< bodies, request, poses, every event (crowd: every query) and every counter
+  events,    ///< bodies, request, poses, every event and every counter
   pictures,  ///< frames, within a tolerance
   work,      ///< the sum of each counter over all steps: it may decrease, or increase within a tolerance
 };
@@ -49,7 +47,6 @@ inline constexpr std::string_view kCaptureEnding = ".lrbcap";
 struct GoldenSpec {
   /// Name of a shipped one, or a file, also a capture, relative to the golden's folder.
   std::string scenario;
-  bool is_crowd = false;  ///< `scenario` is a crowd
   int width = 0, height = 0;
   std::uint32_t frames = 3;  ///< maximum number of pictures, evenly chosen from the scenario's frames
   /// (kLevels) the levels that are compared
@@ -69,7 +66,7 @@ struct GoldenSpec {
 
 /// Facts of the run recorded in golden.json but not in the trace, to explain later differences.
 struct GoldenFacts {
-  std::vector<std::uint64_t> meshes;  ///< (bodies, or kinds of a crowd) mesh_hash(); empty: not recorded
+  std::vector<std::uint64_t> meshes;  ///< (bodies) mesh_hash(); empty: not recorded
   /// (steps) the length of contact, in the scenario's unit; empty: not requested, or not recorded
   std::vector<double> contact_lengths;
   std::string scenario;  ///< its JSON, without white space; empty: not recorded
@@ -92,9 +89,9 @@ struct CapturedQueries {
 };
 
 /// The file that a golden belongs to.
-using Source = std::variant<spec::Scenario, spec::Crowd, CapturedQueries>;
+using Source = std::variant<spec::Scenario, CapturedQueries>;
 
-/// Opens a scenario or a crowd, a shipped one by name, or a file; or a capture. Throws InputError.
+/// Opens a scenario, a shipped one by name, or a file; or a capture. Throws InputError.
 Source open_source(const std::string& name_or_path);
 const std::string& name_of(const Source& source);
 const render::FrameSpec& frames_of(const Source& source);
@@ -103,9 +100,8 @@ struct Golden {
   std::string name;  ///< name of the scenario and of its folder
   GoldenSpec spec;
   GoldenFacts facts;
-  trace::Trace trace;                            ///< empty if `crowd` is set
-  std::optional<crowd::CrowdTrace> crowd;        ///< of a crowd's run
-  std::vector<std::optional<Mesh>> meshes;       ///< of the bodies (crowd: of the kinds); nullopt if not kept
+  trace::Trace trace;
+  std::vector<std::optional<Mesh>> meshes;       ///< of the bodies; nullopt if not kept
   std::vector<std::vector<GoldenImage>> frames;  ///< the variants of each frame; the unnamed one first
 };
 
@@ -121,10 +117,10 @@ Golden load_golden(const std::string& goldens, const std::string& name);
 /// Removes a golden: the files that approving wrote, and its folder unless other files are in it. Throws
 /// InputError for a golden that does not exist.
 void remove_golden(const std::string& goldens, const std::string& name);
-/// Returns the scenario, the crowd or the capture of a golden.
+/// Returns the scenario or the capture of a golden.
 Source golden_source(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
-/// Returns the JSON text of the scenario or the crowd of a golden; of a capture an empty text.
+/// Returns the JSON text of the scenario of a golden; of a capture an empty text.
 std::string scenario_text(const std::string& goldens, const std::string& name, const GoldenSpec& spec);
 
 /// Returns the reference in golden.json to the scenario `name`, opened as `name_or_path`.
@@ -135,8 +131,6 @@ void write_golden_spec(const std::string& goldens, const std::string& name, cons
 
 /// Returns "frame_2.png", or "frame_2.avx512.png". `frame` counts from 0, names from 1.
 std::string golden_image_file(std::size_t frame, const std::string& variant = {});
-/// Returns true for the name of a file that a golden may have.
-bool is_golden_file(const std::string& file);
 /// Returns the picture files of one frame.
 std::vector<std::string> image_files_of(const std::string& folder, std::size_t frame);
 /// Returns the picture files of this frame and all later ones, which a shorter run no longer has.
@@ -151,8 +145,8 @@ inline const char* const kGoldenTrace = "trace.json.gz";
 /// Returns a hash of all fields but the name.
 std::uint64_t mesh_hash(const Mesh& mesh);
 
-/// Returns the file name, in the golden's folder, of the kept mesh of a body, A (0) or B (1), or of a kind of
-/// a crowd: a.ply, b.ply, ..., z.ply, aa.ply, ...; a.obj for a 2D body.
+/// Returns the file name, in the golden's folder, of the kept mesh of a body, A (0) or B (1): a.ply or b.ply;
+/// a.obj or b.obj for a 2D body.
 std::string kept_file(std::size_t body, int dim);
 
 /// Names the keys in which two scenarios, as JSON, differ: "frames.views[0].from: [1,0,0] -> [0,1,0]"; at

@@ -10,6 +10,7 @@
 #include "render/gl.hpp"
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/framing.hpp"
+#include "scenarios/golden/approve.hpp"
 #include "scenarios/golden/golden_run.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/moments.hpp"
@@ -27,7 +28,6 @@ namespace lrb::golden {
 namespace {
 
 constexpr int kWidth = 1000, kHeight = 560;
-constexpr const char* kActualTrace = "actual.trace.json.gz";
 
 const CollideResult* find_result(const GoldenRun& run, std::size_t step) {
   return step < run.recording.results.size() ? &run.recording.results[step] : nullptr;
@@ -114,11 +114,6 @@ bool same_bodies(const trace::Trace& x, const trace::Trace& y) {
 DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
                                    const trace::Divergence& divergence) {
   DivergencePictures out;
-  if (run.crowd) {
-    out.note = "lrbscope crowd TRACE --pair \"A,B\" shows two bodies of the found run, whose trace is " +
-               std::string(kActualTrace) + ".";
-    return out;
-  }
   const trace::Trace &expected = golden.trace, &actual = run.recording.trace;
   if (!same_bodies(expected, actual)) {
     out.note = "A body itself has changed: the approved run cannot be replayed on it.";
@@ -221,13 +216,11 @@ std::string answers_text(const GoldenResult& r) {
   return "differ in " + std::to_string(steps.size()) + " of " + render::counted(r.steps, "step", "steps");
 }
 
-/// Returns "132 events equal", of a crowd "132 queries equal".
+/// Returns "132 events equal".
 std::string events_text(const GoldenResult& r) {
   if (!r.verdict.rejection.empty()) return r.verdict.rejection;
   if (!r.spec.compares(Level::events)) return "not compared";
-  return (r.spec.is_crowd ? render::counted(r.events, "query", "queries")
-                          : render::counted(r.events, "event", "events")) +
-         (r.verdict.divergence ? " differ" : " equal");
+  return render::counted(r.events, "event", "events") + (r.verdict.divergence ? " differ" : " equal");
 }
 
 /// Returns why a test failed, on one line; empty if it passed.
@@ -291,8 +284,8 @@ GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::
   result.purpose = run.scenario.purpose;
   result.spec = golden.spec;
   result.verdict = check_golden(golden, run);
-  result.steps = run.crowd ? run.crowd->trace.answers.size() : run.recording.trace.steps.size();
-  result.events = run.crowd ? query_count(run.crowd->trace) : run.recording.trace.events.size();
+  result.steps = run.recording.trace.steps.size();
+  result.events = run.recording.trace.events.size();
   result.approve = approve;
   if (result.verdict.divergence) add_divergence(result, golden, run);
   for (const ImageVerdict& v : result.verdict.images)
@@ -377,7 +370,7 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
   doc.verdict(failed == 0 ? "passed" : render::counted(failed, "failure", "failures"), failed == 0)
       .command(command)
       .number({"Scenarios", std::to_string(results.size()), std::to_string(failed) + " failed"})
-      .number({"Events compared", render::group_digits(events), "each field, exactly; of crowds, queries"})
+      .number({"Events compared", render::group_digits(events), "each field, exactly"})
       .number({"Images", std::to_string(images), std::to_string(images_failed) + " failed"})
       .table(scenarios);
   std::vector<report::Comparison> comparisons;

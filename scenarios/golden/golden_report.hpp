@@ -17,7 +17,7 @@ struct GoldenResult {
   std::string name, purpose;
   GoldenSpec spec;
   GoldenVerdict verdict;
-  std::size_t steps = 0, events = 0;      ///< of a crowd: queries
+  std::size_t steps = 0, events = 0;
   double seconds = 0;                     ///< duration of the test: the run, its pictures and the comparison
   std::uint32_t repeats = 0, passes = 0;  ///< of a failed test that was repeated
   std::string approve;                    ///< the command that approves the run

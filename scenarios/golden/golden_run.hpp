@@ -3,59 +3,35 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "scenarios/crowd/crowd_run.hpp"
-#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/record/recorded_run.hpp"
-#include <lrbscope/trace/divergence.hpp>
 
 namespace lrb::golden {
 
-/// A crowd that has been run.
-struct CrowdRecord {
-  spec::Crowd crowd;
-  crowd::CrowdRun run;
-  crowd::CrowdTrace trace;  ///< of the run, as read from its file
-};
-
-/// A scenario, a crowd or a capture, run and drawn with its golden's settings.
+/// A scenario or a capture, run and drawn with its golden's settings.
 struct GoldenRun {
-  spec::Scenario scenario;   ///< of a crowd: its name, purpose, hash and frames, and a body for each kind
-  std::string text;          ///< its JSON, see scenario_text(); empty: not recorded in the golden
-  run::Recording recording;  ///< empty if `crowd` is set
-  std::optional<CrowdRecord> crowd;
+  spec::Scenario scenario;
+  std::string text;  ///< its JSON, see scenario_text(); empty: not recorded in the golden
+  run::Recording recording;
   std::vector<run::PaintedFrame> frames;
-
-  /// Returns the bodies, of a crowd one for each kind.
-  const std::vector<bodies::LoadedBody>& bodies() const {
-    return crowd ? crowd->run.kinds : recording.bodies;
-  }
 };
 
-/// Runs a scenario or a crowd, always on the event clock, regardless of its setting, or reads a capture,
-/// without its times. Draws nothing.
-/// `threads` affects only the time of a crowd. Thread-safe.
-GoldenRun record_golden(Source source, const GoldenSpec& spec, const run::ProgressReport& progress,
-                        std::uint32_t threads = 1);
+/// Runs a scenario, always on the event clock, regardless of its setting, or reads a capture, without its
+/// times. Draws nothing. Thread-safe.
+GoldenRun record_golden(const Source& source, const GoldenSpec& spec, const run::ProgressReport& progress);
 /// Draws its pictures, if these are compared.
 void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress);
 /// Runs and draws.
-GoldenRun play_golden(Source source, const GoldenSpec& spec, const run::ProgressReport& progress,
-                      std::uint32_t threads = 1);
-
-/// Writes the trace of a run to a file, compressed if its name ends in ".gz".
-void save_run_trace(const GoldenRun& run, const std::string& path);
+GoldenRun play_golden(const Source& source, const GoldenSpec& spec, const run::ProgressReport& progress);
 
 /// Returns the facts of a run for golden.json.
 GoldenFacts facts_of(const GoldenRun& run);
 
-/// Returns a run of two bodies for its pictures.
+/// Returns the run for its pictures.
 run::RecordedRun recorded_run_of(const GoldenRun& run);
 
 /// Returns the metadata of an approved picture: scenario, event and camera, which explain a later difference.
@@ -76,7 +52,7 @@ struct Effect {
   /// If only answers are compared, they alone decide whether a run passes.
   enum class Kind : std::uint8_t { answer, measure, work };
   std::uint32_t step = 0;  ///< number of the step in the scenario
-  std::string what;        ///< e.g. "relation", "pairs", "face tests", "gear 1 and rock 3: pairs"
+  std::string what;        ///< e.g. "relation", "pairs", "face tests"
   std::string expected, found;
   Kind kind = Kind::answer;
 };
@@ -92,20 +68,5 @@ std::vector<Effect> find_more_work(const Golden& golden, const GoldenRun& run);
 /// Returns the total length of the contact curves of each step, in the scenario's unit. Returns an empty list
 /// if the run did not request contacts.
 std::vector<double> contact_lengths(const run::Recording& recording);
-
-// Differences of two runs of a crowd, by their traces.
-
-/// Returns the number of queries in all steps.
-std::size_t query_count(const crowd::CrowdTrace& trace);
-
-/// Returns the first difference: bodies and request, then per step poses, answers and counters. Returns
-/// nullopt if the runs are equal.
-std::optional<trace::Divergence> first_divergence(const crowd::CrowdTrace& expected,
-                                                  const crowd::CrowdTrace& found);
-
-/// Return a line about changed kinds or numbers of bodies, and about the first pose that differs. Empty: they
-/// are equal.
-std::string kinds_cause(const crowd::CrowdTrace& expected, const crowd::CrowdTrace& found);
-std::string crowd_pose_cause(const crowd::CrowdTrace& expected, const crowd::CrowdTrace& found);
 
 }  // namespace lrb::golden

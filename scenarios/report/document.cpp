@@ -384,11 +384,6 @@ Document& Document::scene(const std::string& json) {
   return view(json, "scene");
 }
 
-Document& Document::crowd_view(const std::string& json) {
-  of_run_ = true;
-  return view(json, "crowd");
-}
-
 Document& Document::tree_view(const std::string& json) {
   return view(json, "tree");
 }

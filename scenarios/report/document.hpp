@@ -31,7 +31,7 @@ struct Table {
   std::string note = {};
   /// The items that the rows are about, for as many of the first rows: a click on such a row selects the item
   /// in the view of the run. "step NUMBER", "region SIDE NUMBER" (side 0 or 1), "boxes DEPTH" (of tree
-  /// nodes), "pair STEP A B" (simplices of A and B), "bodies STEP A B" (of a crowd), or empty.
+  /// nodes), "pair STEP A B" (simplices of A and B), or empty.
   std::vector<std::string> targets = {};
 };
 
@@ -175,7 +175,6 @@ class Document {
   Document& views(const std::vector<View>& views);  ///< with one camera and one time step
   Document& scene(const std::string& json);         ///< a run, for the 3D view
   Document& tree_view(const std::string& json);     ///< a body and its tree, for the 3D view
-  Document& crowd_view(const std::string& json);    ///< the run of a crowd, for the 3D view
   /// Pictures of a sequence, whose files are in `folder`. `budget`: see inline_pngs().
   Document& frames(const std::vector<Frame>& frames, const std::string& folder,
                    std::size_t budget = kInlineBudget);

@@ -133,16 +133,6 @@ std::vector<std::string> crowd_query_keys() {
   return keys;
 }
 
-/// Reads frames of a crowd, which support part of the settings for two bodies.
-FrameSpec read_crowd_frames(const io::JsonNode& node) {
-  FrameSpec frames = read_frames(node, {});
-  for (const char* key : {"events", "colour_by", "node_boxes", "explode", "montage", "format"})
-    if (node.has(key)) node.fail_key(key, "not supported for a crowd; remove it");
-  if (frames.at != FrameSpec::At::step && frames.at != FrameSpec::At::none)
-    node.at("at").fail("expected step or none for the frames of a crowd");
-  return frames;
-}
-
 }  // namespace
 
 std::uint32_t Crowd::body_count() const {
@@ -178,13 +168,10 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
     c.request = read_query(*n, &c.more);
     if (!n->has("contacts")) c.request.contacts = false;  // they take most of the time of a step
   }
-  if (const auto trace = root.get("trace")) {
-    trace->object({"clock", "max_events"});
-    if (const auto n = trace->get("clock")) c.clock = n->choice<trace::Clock>();
-    if (const auto n = trace->get("max_events"))
-      c.max_events = static_cast<std::uint32_t>(n->integer(1, 50'000'000));
-  }
-  if (const auto n = root.get("frames")) c.frames = read_crowd_frames(*n);
+  for (const char* key : {"trace", "frames"})
+    if (root.has(key))
+      c.notes.push_back(printable_name(file) + ": " + key +
+                        " has no effect: a crowd is not drawn; --pair draws two of its bodies");
   Fnv64 hash;
   hash.add_bytes(text.data(), text.size());
   for (const std::vector<Pose>& step : c.poses)
@@ -203,17 +190,6 @@ std::vector<std::string> shipped_crowds() {
 Crowd open_crowd(const std::string& name_or_path) {
   const NamedText crowd = open_named(name_or_path, kCrowdEnding, "crowd");
   return parse_crowd(crowd.text, crowd.file);
-}
-
-bool is_crowd(const std::string& name_or_path) {
-  try {
-    const NamedText named = open_named(name_or_path, kCrowdEnding, "crowd");
-    const io::JsonText json(named.text, named.file);
-    const auto bodies = io::JsonNode(json).get("bodies");
-    return bodies && bodies->is_array();
-  } catch (const InputError&) {
-    return false;
-  }
 }
 
 }  // namespace lrb::spec

@@ -41,11 +41,9 @@ struct Crowd {
   /// By step and body, applied after a body's own pose; empty: the bodies have constant velocities.
   std::vector<std::vector<Pose>> poses;
   CollideRequest request;
-  StepQuestions more;  ///< distance, clash and near, of each pair that is queried
-  trace::Clock clock = trace::Clock::event;
-  std::uint32_t max_events = 1'000'000;  ///< maximum number of query slices in the trace; a query takes two
-  FrameSpec frames;
-  std::uint64_t hash = 0;  ///< FNV-1a hash (64 bits) of the file's bytes, and of given poses
+  StepQuestions more;              ///< distance, clash and near, of each pair that is queried
+  std::vector<std::string> notes;  ///< keys of 1.x without effect; to be printed
+  std::uint64_t hash = 0;          ///< FNV-1a hash (64 bits) of the file's bytes, and of given poses
 
   std::uint32_t body_count() const;
 };
@@ -62,9 +60,5 @@ Crowd parse_crowd(const std::string& text, const std::string& file);
 /// Reads a shipped crowd by name, or a crowd from a file. Throws InputError.
 Crowd open_crowd(const std::string& name_or_path);
 std::vector<std::string> shipped_crowds();
-
-/// Returns true for the name of a shipped crowd, and for a JSON file whose bodies are a list, as those of a
-/// crowd. Returns false if there is no such file, or it is not JSON.
-bool is_crowd(const std::string& name_or_path);
 
 }  // namespace lrb::spec

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# browser.sh LRBSCOPE: makes pages of runs, of a tree and of a crowd, opens them in headless Chromium, and drives them (drive.js,
-# drive_tree.js, drive_crowd.js, drive_compare.js). Fails if a page disagrees with the trace or the tree, and on any error in the
+# browser.sh LRBSCOPE: makes pages of runs and of a tree, opens them in headless Chromium, and drives them (drive.js,
+# drive_tree.js, drive_compare.js). Fails if a page disagrees with the trace or the tree, and on any error in the
 # browser's console. measure.sh measures pages of each kind. Skipped (77) without Chromium.
 set -euo pipefail
 lrbscope=$(realpath "$1")
@@ -89,19 +89,4 @@ drive 1400 1000 'page.html?drive=open' "${webgl[@]}"
 "$lrbscope" --quiet tree "$work/out/a.lrb" -o "$work/tree" >/dev/null
 with_scripts "$work/tree/index.html" drive_tree.js >"$work/page.html"
 drive 1400 1000 page.html "${webgl[@]}"
-"$lrbscope" --quiet crowd "$here/few.crowd.json" -o "$work/crowd" >/dev/null
-{
-  sed '/^<\/body>$/,$d' "$work/crowd/index.html"
-  for data in summary trace; do
-    echo "<script type=\"application/json\" id=\"$data-data\">"
-    sed 's/</\\u003c/g' "$work/crowd/$data.json"
-    echo '</script>'
-  done
-  echo '</body>'
-} >"$work/crowd.html"
-with_scripts "$work/crowd.html" drive_crowd.js >"$work/page.html"
-for size in "1400 1000" "1920 1080" "600 900"; do
-  # shellcheck disable=SC2086
-  drive $size page.html "${webgl[@]}"
-done
 exit "$failed"

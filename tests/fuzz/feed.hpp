@@ -24,7 +24,6 @@ bool feed_poses(std::string_view bytes);
 bool feed_scenario(std::string_view bytes);
 bool feed_crowd(std::string_view bytes);
 bool feed_experiment(std::string_view bytes);
-bool feed_crowd_trace(std::string_view bytes);
 bool feed_trace(std::string_view bytes);
 /// The first byte, if below 8, limits the queries that are read; the rest is the file.
 bool feed_capture(std::string_view bytes);

@@ -1,6 +1,6 @@
-#include "scenarios/crowd/crowd_trace.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/paper/experiment.hpp"
+#include "scenarios/spec/crowd_spec.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tests/fuzz/feed.hpp"
 
@@ -41,21 +41,6 @@ bool feed_crowd(std::string_view bytes) {
     judge_name(c.name);
     for (const spec::CrowdKind& kind : c.kinds) judge_name(kind.name);
     if (!c.room.allFinite() || c.body_count() == 0) throw std::logic_error("a crowd that cannot be");
-  });
-}
-
-bool feed_crowd_trace(std::string_view bytes) {
-  return accepted("t.json", [&] {
-    const crowd::CrowdTrace t = crowd::read_crowd_trace(bytes, "t.json");
-    for (const spec::CrowdKind& kind : t.crowd.kinds) judge_name(kind.name);
-    const std::uint32_t bodies = t.crowd.body_count();
-    if (t.poses.size() != t.crowd.steps || t.answers.size() != t.crowd.steps || t.crowd.steps == 0)
-      throw std::logic_error("a trace of a crowd that cannot be replayed");
-    for (const std::vector<Pose>& step : t.poses)
-      if (step.size() != bodies) throw std::logic_error("a body without a pose");
-    for (const std::vector<crowd::CrowdTrace::Answer>& step : t.answers)
-      for (const crowd::CrowdTrace::Answer& a : step)
-        if (a.bodies.i >= bodies || a.bodies.j >= bodies) throw std::logic_error("a query of no body");
   });
 }
 

@@ -2,7 +2,7 @@
 # tests/fuzz/run.sh [--runs N | --seconds N] [FORMAT...]: builds the fuzzers (clang, address and undefined-behaviour
 # sanitizers: the preset asan-ubsan) and runs each for 20 seconds, N seconds or N inputs; --runs 1000000 is the full run.
 # Formats: mesh (OBJ, STL, PLY and OFF) lrb fields (an .lrb, damaged field by field) body (folded polygons, built)
-# poses scenario crowd crowd_trace experiment trace capture motion. New inputs are kept in build/asan-ubsan/fuzz/corpus. An input that
+# poses scenario crowd experiment trace capture motion. New inputs are kept in build/asan-ubsan/fuzz/corpus. An input that
 # crashes, or takes over 10 s (motion, body and fields: 100 s), is left in .../found and ends the script; earlier findings are in
 # tests/fuzz/corpus.
 set -euo pipefail
@@ -14,7 +14,7 @@ case "${1:-}" in
   -*) sed -n '2,7s/^# //p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
 esac
 formats=("$@")
-[ ${#formats[@]} -gt 0 ] || formats=(mesh lrb fields body poses scenario crowd crowd_trace experiment trace capture motion)
+[ ${#formats[@]} -gt 0 ] || formats=(mesh lrb fields body poses scenario crowd experiment trace capture motion)
 build=build/asan-ubsan
 dir=$build/fuzz
 cmake --preset asan-ubsan -DLRB_BUILD_TESTS=ON >/dev/null

@@ -156,18 +156,6 @@ std::vector<std::string> motions() {
   return out;
 }
 
-std::vector<std::string> crowd_traces() {
-  return {R"({"traceEvents": [
-{"name":"step","cat":"step","ph":"X","ts":0,"dur":3,"pid":1,"tid":1,"args":{"time step":0,"bodies":2,"bodies in contact":0,"queries":1}},
-{"name":"ball 2","cat":"separate","ph":"X","ts":1,"dur":2,"pid":1,"tid":3,"args":{"time step":0,"A":"ball 1","B":"ball 2","relation":"separate","pairs":0,"fingerprint":"cbf29ce484222325"}},
-{"name":"ball 1","cat":"separate","ph":"X","ts":1,"dur":2,"pid":1,"tid":4,"args":{"time step":0,"A":"ball 1","B":"ball 2","relation":"separate","pairs":0,"fingerprint":"cbf29ce484222325"}}],
-"metadata": {"lrbscope": "0.1.0", "format": "lrbscope crowd", "version": 2, "clock": "event", "crowd": {"name": "x", "hash": "0123456789abcdef"},
-"request": {"mode": "all", "recursion": "complete", "predicates": "exact", "wrapper": "regularised", "contacts": true, "interiors_overlap": false},
-"room": [1.0, 2.0, 3.0], "kinds": [{"name": "ball", "count": 2, "body": {"name": "b", "source": "s", "hash": "0123456789abcdef", "dim": 3, "closed": true, "real_faces": 8, "total_faces": 8, "outer_faces": 8, "regions": 0, "layers": 0, "real_simplices": 8, "simplices": 8}}],
-"steps": 1, "poses": [[[1.0, 0.0, 0.0, 5.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, -0.0, 0.0, 1.0, 0.0, 0.5, 0.0, 0.0, 1.0, 1e-300]]],
-"query_slices": {"stored": 2, "seen": 2, "truncated": false}}})"};
-}
-
 }  // namespace
 
 std::vector<Format> formats() {
@@ -181,8 +169,7 @@ std::vector<Format> formats() {
           {"experiment", feed_experiment, shipped(".experiment.json")},
           {"trace", feed_trace, traces()},
           {"capture", feed_capture, captures()},
-          {"motion", feed_motion, motions()},
-          {"crowd_trace", feed_crowd_trace, crowd_traces()}};
+          {"motion", feed_motion, motions()}};
 }
 
 }  // namespace lrb::fuzz

@@ -154,40 +154,6 @@ TEST_CASE("run --format svg: frames, montage and caption; files of the previous 
     CHECK_FALSE(std::filesystem::exists(folder / gone));
 }
 
-TEST_CASE("render: a crowd's trace, with the applicable flags") {
-  const Folder folder;
-  folder.write("c.json", R"({"name": "few", "purpose": "p", "room": [2, 2, 2],
-    "bodies": [{"name": "bead", "body": {"generator": "ball", "parameters": {"frequency": 2, "radius": 0.5}}, "count": 4},
-               {"name": "bowl", "body": {"generator": "bowl", "parameters": {"segments": 10, "rows": 4}}}],
-    "motion": {"steps": 3, "speed": 0.1, "spin": 5}, "frames": {"size": [320, 240]}})");
-  succeed(folder, {"crowd", "c.json", "-o", "run"});
-  const Outcome same = succeed(folder, {"render", "run/trace.json", "-o", "again", "--size", "320x240"});
-  CHECK(same.out == "again/index.html\n");
-  for (int i = 0; i < 3; ++i) {
-    const std::string frame = "/frames/frame_000" + std::to_string(i) + ".png";
-    CHECK(render::read_png(folder / ("again" + frame)).image ==
-          render::read_png(folder / ("run" + frame)).image);
-  }
-  REQUIRE(
-      run(folder, {"render", "run/trace.json", "-o", "close", "--size", "640x240", "--close-up", "--every",
-                   "2", "--transparent", "--up", "y", "--bodies", "run/bead.lrb", "run/bowl.lrb"})
-          .code == 0);
-  CHECK(std::filesystem::exists(folder / "close/frames/frame_0001.png"));
-  CHECK(!std::filesystem::exists(folder / "close/frames/frame_0002.png"));
-  for (const std::vector<std::string>& flags : {std::vector<std::string>{"--montage", "2"},
-                                                {"--events", "3"},
-                                                {"--region", "1"},
-                                                {"--no-ghost"},
-                                                {"--format", "svg"},
-                                                {"--colour-by", "layer"},
-                                                {"--frames", "refinement"},
-                                                {"--frames", "event"},
-                                                {"--size", "8000x8000", "--dpi", "2400"},
-                                                {"--bodies", "run/bead.lrb"},
-                                                {"--bodies", "run/bowl.lrb", "run/bead.lrb"}})
-    check_rejected(folder, joined({"--quiet", "render", "run/trace.json", "-o", "out"}, flags));
-}
-
 TEST_CASE(
     "run: colours and boxes of a traversal are rejected if no trees are traversed, before anything is written") {
   const Folder folder;

@@ -1,22 +1,17 @@
 // Crowds: pairs culled by the broad phase are separate, the others agree with brute force, and
 // the number of threads shows in times alone.
-#include <atomic>
 #include <filesystem>
-#include <map>
 #include <set>
 #include <string>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/crowd/crowd_frames.hpp"
-#include "scenarios/crowd/crowd_report.hpp"
-#include "scenarios/crowd/crowd_trace.hpp"
+#include "scenarios/crowd/crowd_pairs.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/json_schema.hpp"
-#include "tests/support/trace_schema.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>
@@ -37,8 +32,7 @@ json good() {
       {"name": "bowl", "body": {"generator": "bowl", "parameters": {"segments": 10, "rows": 4}}, "count": 2},
       {"name": "stick", "body": {"generator": "stick", "parameters": {"segments": 6, "rows": 3},
                                  "pose": {"position": [0, 0, 0.4], "axis": [1, 0, 0], "degrees": 20}}, "count": 3}],
-    "motion": {"steps": 5, "speed": [0.05, 0.2], "spin": 7},
-    "frames": {"at": "step", "every": 4, "size": [320, 240], "supersampling": 1}})");
+    "motion": {"steps": 5, "speed": [0.05, 0.2], "spin": 7}})");
 }
 
 json good_2d() {
@@ -46,8 +40,7 @@ json good_2d() {
     "bodies": [
       {"name": "island", "body": {"generator": "island", "parameters": {"levels": 2, "radius": 0.8}}, "count": 5},
       {"name": "cog", "body": {"generator": "cog2d", "parameters": {"radius": 0.6}}, "count": 6}],
-    "motion": {"steps": 4, "speed": 0.1, "spin": [2, 9]},
-    "frames": {"at": "step", "every": 3, "size": [320, 240], "supersampling": 1}})");
+    "motion": {"steps": 4, "speed": 0.1, "spin": [2, 9]}})");
 }
 
 spec::Crowd crowd_of(const json& j) {
@@ -75,20 +68,6 @@ bool schema_accepts(const json& j) {
   return test::schema_faults(document, j, scenario).empty();
 }
 
-/// As write_crowd() left them.
-std::vector<bodies::LoadedBody> saved_kinds(const spec::Crowd& crowd, const std::string& folder) {
-  std::vector<bodies::LoadedBody> out;
-  for (const spec::CrowdKind& kind : crowd.kinds)
-    out.push_back(bodies::load_body(folder + "/" + kind.name + ".lrb"));
-  return out;
-}
-
-std::string trace_of(const spec::Crowd& crowd, const crowd::CrowdRun& run) {
-  trace::StringSink sink;
-  crowd::write_crowd_trace(crowd, run, sink);
-  return sink.text;
-}
-
 void check_against_brute_force(const crowd::CrowdRun& run, std::set<Relation>& seen) {
   const std::uint32_t n = run.motion.body_count();
   for (std::uint32_t step = 0; step < run.steps.size(); ++step) {
@@ -114,211 +93,61 @@ void check_against_brute_force(const crowd::CrowdRun& run, std::set<Relation>& s
 }  // namespace
 
 TEST_CASE("all pairs of a crowd agree with brute force") {
-  std::set<Relation> seen;
-  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good()), 2, run::kSilent);
-  check_against_brute_force(run, seen);
-  CHECK(seen.contains(Relation::crossing));
-  CHECK(seen.contains(Relation::b_inside_a));  // or the test shows little
-  std::size_t queried = 0;
-  for (const crowd::CrowdStep& s : run.steps) queried += s.queries.size();
-  CHECK(queried < run.steps.size() * 12 * 11 / 2);
+  for (const json& j : {good(), good_2d()}) {
+    std::set<Relation> seen;
+    const crowd::CrowdRun run = crowd::run_crowd(crowd_of(j), 2, run::kSilent);
+    check_against_brute_force(run, seen);
+    CHECK(seen.contains(Relation::crossing));
+    if (j == good()) CHECK(seen.contains(Relation::b_inside_a));  // or the test shows little
+    std::size_t queried = 0;
+    for (const crowd::CrowdStep& s : run.steps) queried += s.queries.size();
+    const std::uint32_t n = run.motion.body_count();
+    CHECK(queried < run.steps.size() * n * (n - 1) / 2);
+  }
 }
 
-TEST_CASE("a crowd of 2D bodies") {
-  std::set<Relation> seen;
-  const crowd::CrowdRun run = crowd::run_crowd(crowd_of(good_2d()), 2, run::kSilent);
-  check_against_brute_force(run, seen);
-  CHECK(seen.contains(Relation::crossing));
-}
-
-TEST_CASE("trace, numbers and pictures do not depend on the number of threads") {
+TEST_CASE("answers and work do not depend on the number of threads") {
   for (const json& j : {good(), good_2d()}) {
     const spec::Crowd crowd = crowd_of(j);
-    const test::Folder scratch;
-    const auto& folder = scratch.path;
-    std::string trace, summary;
-    std::vector<std::string> frames;
-    for (const std::uint32_t threads : {1U, 2U, 5U}) {
-      const crowd::CrowdRun run = crowd::run_crowd(crowd, threads, run::kSilent);
-      const std::string out = (folder / std::to_string(threads)).string();
-      const std::string text = crowd::write_crowd(crowd, run, out, "lrbscope crowd", run::kSilent);
-      std::vector<std::string> files;
-      for (const char* f : {"frame_0000.png", "frame_0001.png"})
-        files.push_back(io::read_text(out + "/frames/" + f));
-      if (threads == 1) {
-        trace = io::read_text(out + "/trace.json");
-        summary = text;
-        frames = files;
-      }
-      CHECK(io::read_text(out + "/trace.json") == trace);
-      CHECK(text == summary);
-      CHECK((files == frames));
-      CHECK(io::read_text(out + "/index.html").find("<html") != std::string::npos);
-    }
+    const std::string one = crowd::crowd_summary(crowd, crowd::run_crowd(crowd, 1, run::kSilent));
+    for (const std::uint32_t threads : {2U, 5U})
+      CHECK(crowd::crowd_summary(crowd, crowd::run_crowd(crowd, threads, run::kSilent)) == one);
   }
 }
 
-TEST_CASE("a crowd is redrawn from its trace, pixel by pixel") {
-  const test::Folder scratch;
-  const auto& folder = scratch.path;
-  for (const json& j : {good(), good_2d()})
-    for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
-      spec::Crowd crowd = crowd_of(j);
-      crowd.clock = clock;
-      const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, run::kSilent);
-      const std::string first = (folder / "run").string(), again = (folder / "again").string();
-      crowd::write_crowd(crowd, run, first, "lrbscope crowd", run::kSilent);
-      const std::string text = io::read_text(first + "/trace.json");
-      REQUIRE(crowd::is_crowd_trace(text));
-      crowd::CrowdTrace trace = crowd::read_crowd_trace(text, "t.json");
-      CHECK(trace.steps == crowd.steps);
-      CHECK(trace.crowd.steps == crowd.steps);
-      trace.crowd.frames = crowd.frames;
-      const crowd::CrowdRun replayed = crowd::replay_crowd(trace, saved_kinds(crowd, first), 1, run::kSilent);
-      CHECK(replayed.notes.empty());
-      CHECK(crowd::crowd_summary(trace.crowd, replayed).size() > 1000);
-      for (std::uint32_t step = 0; step < crowd.steps; ++step)
-        for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
-          REQUIRE(trace::equal(replayed.motion.pose(i, step), run.motion.pose(i, step)));
-      crowd::redraw_crowd(trace.crowd, replayed, again, "lrbscope render", first + "/trace.json",
-                          run::kSilent);
-      for (const char* f : {"/frames/frame_0000.png", "/frames/frame_0001.png"})
-        CHECK((io::read_text(again + f) == io::read_text(first + f)));
-      const std::string page = io::read_text(again + "/index.html");
-      CHECK(page.find("../run/trace.json") != std::string::npos);
-      CHECK(page.find("summary.json") == std::string::npos);
-    }
-}
-
-TEST_CASE("truncated, damaged, old and foreign traces of crowds") {
-  spec::Crowd crowd = crowd_of(good());
-  crowd.frames.at = render::FrameSpec::At::none;
+TEST_CASE("pairs are listed by their cost, with the sums over all steps") {
+  const spec::Crowd crowd = crowd_of(good());
   const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
-  const std::string text = trace_of(crowd, run);
-  const auto kinds = [&] {
-    std::vector<bodies::LoadedBody> out;
-    for (const spec::CrowdKind& kind : crowd.kinds) out.push_back(run::make_body(kind.body));
-    return out;
-  };
-  const auto error = [&](const std::string& damaged, std::vector<bodies::LoadedBody> bodies) -> std::string {
-    try {
-      static_cast<void>(crowd::replay_crowd(crowd::read_crowd_trace(damaged, "t.json"), std::move(bodies), 1,
-                                            run::kSilent));
-    } catch (const InputError& e) {
-      CHECK(std::string(e.what()).find('\n') == std::string::npos);
-      return e.what();
-    }
-    return {};
-  };
-  CHECK(error(text, kinds()).empty());
-  crowd.max_events = 150;
-  const crowd::CrowdTrace cut = crowd::read_crowd_trace(trace_of(crowd, run), "t.json");
-  CHECK(cut.steps == 5);
-  CHECK(cut.crowd.steps > 0);
-  CHECK(cut.crowd.steps < 5);
-  const crowd::CrowdRun part = crowd::replay_crowd(cut, kinds(), 1, run::kSilent);
-  CHECK(part.steps.size() == cut.crowd.steps);
-  CHECK(part.notes.at(0).find(" of 5 steps (trace.max_events)") != std::string::npos);
-  crowd.max_events = 3;
-  CHECK(error(trace_of(crowd, run), kinds()) ==
-        "t.json: contains no complete step; run the crowd again with a larger trace.max_events");
-
-  const json whole = json::parse(text);
-  const auto changed = [&](const std::string& pointer, const json& value) {
-    json j = whole;
-    j[json::json_pointer(pointer)] = value;
-    return error(j.dump(), kinds());
-  };
-  std::vector<bodies::LoadedBody> swapped = kinds();
-  std::swap(swapped[0], swapped[2]);
-  CHECK(error(text, std::move(swapped)).find("trace: body ball: expected ") == 0);
-  std::vector<bodies::LoadedBody> few = kinds();
-  few.pop_back();
-  CHECK(error(text, std::move(few)) == "t.json: has 4 kinds of bodies, found 3");
-  CHECK(changed("/metadata/poses/2/0/3", 1.25).find("t.json: step 2, ball 1 and ") == 0);
-  CHECK(changed("/metadata/version", 1).find("run the crowd again") != std::string::npos);
-  CHECK(changed("/metadata/version", 3).find("written in format 3") != std::string::npos);
-  CHECK(changed("/metadata/kinds/0/name", "../x").find("/metadata/kinds/0/name: ") != std::string::npos);
-  CHECK(changed("/metadata/kinds/0/name", "bal").find("a query refers to ball 1, which does not exist") !=
-        std::string::npos);
-  CHECK(changed("/metadata/kinds/1/name", "ball").find("/metadata/kinds/1/name: ") != std::string::npos);
-  CHECK(changed("/metadata/kinds/1/count", 100000).find("/metadata/kinds/1/count: ") != std::string::npos);
-  CHECK(changed("/metadata/kinds/1/body/dim", 2).find("bodies of the same dimension") != std::string::npos);
-  CHECK(changed("/metadata/poses/0/1", json::array({1, 2})).find("/metadata/poses/0/1: expected 12") !=
-        std::string::npos);
-  CHECK(changed("/metadata/poses/0/1/3", 1e300).find("/metadata/poses/0/1: ") != std::string::npos);
-  CHECK(changed("/metadata/poses/0", json::array()).find("12 poses, one per body") != std::string::npos);
-  CHECK(changed("/metadata/room", json::array({1, 2, -1})).find("/metadata/room/2: ") != std::string::npos);
-  json other = whole;
-  for (json& e : other["traceEvents"])
-    if (e["args"].contains("fingerprint") && e["args"]["relation"] == "crossing")
-      e["args"]["fingerprint"] = "0000000000000000";
-  CHECK(error(other.dump(), kinds()).find(": expected crossing in ") != std::string::npos);
-}
-
-TEST_CASE("traces of crowds satisfy the schema of traces, on either clock; broken ones do not") {
-  for (json text : {good(), good_2d()}) {
-    for (const char* clock : {"event", "wall"}) {
-      text["trace"] = {{"clock", clock}};
-      const spec::Crowd c = crowd_of(text);
-      const json trace = json::parse(trace_of(c, crowd::run_crowd(c, 2, run::kSilent)));
-      CHECK(test::trace_faults(trace) == "");
-      const auto broken = [&](const char* pointer, const json& value) {
-        json bad = trace;
-        bad[json::json_pointer(pointer)] = value;
-        CAPTURE(pointer);
-        CHECK(test::trace_faults(bad) != "");
-      };
-      broken("/metadata/clock", "sun");
-      broken("/metadata/version", 3);
-      broken("/metadata/colour", 1);
-      broken("/metadata/kinds/0/body/dim", 4);
-      broken("/metadata/poses/0/0", json::array({1, 2}));
-      broken("/traceEvents/0/ph", "B");
-      for (std::size_t i = 0; i < trace["traceEvents"].size(); ++i) {
-        if (!trace["traceEvents"][i]["args"].contains("relation")) continue;
-        const std::string event = "/traceEvents/" + std::to_string(i);
-        broken((event + "/args/relation").c_str(), "near");
-        broken((event + "/args/colour").c_str(), "red");
-        broken((event + "/cat").c_str(), "test");
-        broken((event + "/tid").c_str(), 2);
-        break;
+  const std::vector<crowd::PairHistory> pairs = crowd::pair_histories(run);
+  REQUIRE(pairs.size() > 3);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const crowd::PairHistory& p = pairs[i];
+    if (i > 0) CHECK(pairs[i - 1].face_tests >= p.face_tests);
+    std::uint64_t tests = 0, most = 0;
+    std::uint32_t steps = 0;
+    for (const crowd::CrowdStep& s : run.steps)
+      for (const crowd::CrowdQuery& q : s.queries) {
+        if (q.bodies != p.bodies) continue;
+        tests += q.result.counters.face_tests;
+        steps += q.meets();
+        most = std::max(most, q.result.pair_count);
       }
-    }
+    CHECK(p.face_tests == tests);
+    CHECK(p.steps == steps);
+    CHECK(p.most_pairs == most);
   }
-}
-
-TEST_CASE("slices of a track do not overlap, and contain query and answer") {
-  spec::Crowd crowd = crowd_of(good());
-  for (const trace::Clock clock : {trace::Clock::event, trace::Clock::wall}) {
-    crowd.clock = clock;
-    const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, run::kSilent);
-    const json trace = json::parse(trace_of(crowd, run));
-    std::size_t queries = 0, slices = 0;
-    for (const crowd::CrowdStep& s : run.steps) queries += s.queries.size();
-    std::map<int, double> ends;
-    for (const json& e : trace["traceEvents"]) {
-      for (const char* key : {"name", "cat", "ph", "ts", "pid", "tid", "args"}) REQUIRE(e.contains(key));
-      if (e["ph"] != "X") continue;
-      const int track = e["tid"];
-      CHECK(e["ts"].get<double>() >= doctest::Approx(ends[track]));
-      ends[track] = e["ts"].get<double>() + e["dur"].get<double>();
-      if (!e["args"].contains("relation")) continue;
-      ++slices;
-      CHECK(e["args"]["fingerprint"].get<std::string>().size() == 16);
-    }
-    CHECK(slices == queries * (clock == trace::Clock::event ? 2 : 1));
-    CHECK(trace["metadata"]["query_slices"]["truncated"] == false);
-  }
-  crowd.max_events = 3;
-  const json cut = json::parse(trace_of(crowd, crowd::run_crowd(crowd, 1, run::kSilent)));
-  CHECK(cut["metadata"]["query_slices"]["truncated"] == true);
-  CHECK(cut["metadata"]["query_slices"]["stored"] == 3);
+  const std::string table = crowd::pair_table(run, 2);
+  CHECK(std::count(table.begin(), table.end(), '\n') == 4);  // titles, two pairs, and how many are left out
+  CHECK(table.find(run.names[pairs[0].bodies.i]) != std::string::npos);
+  const json summary = json::parse(crowd::crowd_summary(crowd, run));
+  CHECK(summary["pairs_by_cost"].size() == pairs.size());
+  CHECK(summary["pairs_by_cost"][0]["face_tests"] == pairs[0].face_tests);
 }
 
 TEST_CASE("times of a crowd have units that people read") {
-  crowd::CrowdRun run{{}, {}, crowd::CrowdMotion(spec::Crowd{}, std::vector<std::vector<Pose>>{}), {}, {},
-                      {}, 2};
+  spec::Crowd none;
+  none.poses.emplace_back();  // or it has motions
+  crowd::CrowdRun run{{}, {}, crowd::CrowdMotion(none, {}), {}, {}, 2};
   crowd::CrowdStep step;
   step.broad_phase_ns = 1'600'000;
   step.queries_ns = 1'150'000'000;
@@ -333,7 +162,6 @@ TEST_CASE("bodies stay in the arena if they fit") {
   for (const json& j : {good(), good_2d()}) {
     spec::Crowd crowd = crowd_of(j);
     crowd.speed = {0.5, 2};
-    crowd.frames.at = render::FrameSpec::At::none;
     crowd.steps = 1;
     const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
     for (std::uint32_t step = 0; step < 40; ++step)
@@ -374,15 +202,16 @@ TEST_CASE("schema and reader agree on valid and invalid crowds") {
                         with("/query/max_tests", 10),
                         with("/query/separation", true),
                         with("/trace", {{"clock", "wall"}, {"max_events", 10}}),
-                        with("/trace/gzip", true),
-                        with("/frames/at", "none"),
-                        with("/frames/at", "refinement"),
-                        with("/frames/montage", {{"panels", 3}}),
-                        with("/frames/views", json::array({{{"camera", "orbit"}, {"turn_degrees", 90}}}))};
+                        with("/frames", {{"at", "none"}}),
+                        with("/frames", 1)};
   for (const json& j : texts) {
     CAPTURE(j.dump());
     CHECK(schema_accepts(j) == error_of(j).empty());
   }
+  CHECK(crowd_of(good()).notes.empty());
+  const std::vector<std::string> notes = crowd_of(with("/trace/clock", "wall")).notes;
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("c.json: trace has no effect") != std::string::npos);
 }
 
 TEST_CASE("bodies of a crowd follow poses from files, one for all steps or one for each") {
@@ -432,7 +261,6 @@ TEST_CASE("bodies of a crowd follow poses from files, one for all steps or one f
   const Pose& pose = all[crowd.body_count()];
   CHECK(shifted.motion.pose(0, 1).t == pose.r * Eigen::Vector3d(1, 0, 0) + pose.t);
   CHECK(shifted.motion.pose(10, 1).t == all[crowd.body_count() + 10].t);
-  CHECK_NOTHROW(crowd::write_crowd(read, shifted, folder / "out", "lrbscope crowd", run::kSilent));
 
   const auto error = [&](const json& motion) -> std::string {
     given["motion"] = motion;
@@ -479,19 +307,15 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
       poses.push_back(moves ? all.motion.pose(body, step) : crowd.poses[step - 1][body]);
     }
   }
-  const auto play = [&](const spec::Crowd& c) {
-    std::vector<bodies::LoadedBody> kinds = all.kinds;
-    return crowd::play_crowd(c, std::move(kinds), crowd::CrowdMotion(c, c.poses), 2, run::kSilent);
-  };
-  crowd.frames.at = render::FrameSpec::At::none;
-  const crowd::CrowdRun run = play(crowd);
+  for (spec::CrowdKind& kind : crowd.kinds) kind.body.pose = {};  // the poses contain it
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, run::kSilent);
   std::size_t kept = 0, queried = 0;
   for (std::uint32_t step = 0; step < crowd.steps; ++step) {
     CAPTURE(step);
     spec::Crowd alone = crowd;
     alone.steps = 1;
     alone.poses = {crowd.poses[step]};
-    const crowd::CrowdRun anew = play(alone);
+    const crowd::CrowdRun anew = crowd::run_crowd(alone, 2, run::kSilent);
     const auto &found = run.steps[step].queries, &expected = anew.steps[0].queries;
     REQUIRE(found.size() == expected.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -505,8 +329,6 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
       CHECK(result.counters == (x.is_kept ? Counters() : y.result.counters));
       result.counters = y.result.counters;
       CHECK(result == y.result);
-      CHECK(x.contact_regions == y.contact_regions);
-      CHECK(x.contact_faces == y.contact_faces);
       (x.is_kept ? kept : queried) += 1;
     }
   }
@@ -514,46 +336,42 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
   CHECK(queried > 20);
   CHECK(std::all_of(run.steps[5].queries.begin(), run.steps[5].queries.end(),
                     [](const crowd::CrowdQuery& q) { return q.is_kept; }));
-  // Pictures do not change which answers are kept.
-  crowd.frames.at = render::FrameSpec::At::step;
-  CHECK(crowd::crowd_summary(crowd, play(crowd)) == crowd::crowd_summary(crowd, run));
 }
 
-TEST_CASE("two bodies of a recorded crowd are a run of their own, with the same answers") {
+TEST_CASE("two bodies of a crowd are a run of their own, with the same answers") {
   for (const json& j : {good(), good_2d()}) {
-    const test::Folder folder;
     const spec::Crowd crowd = crowd_of(j);
     const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
-    crowd::write_crowd(crowd, run, folder / "c", "lrbscope crowd", run::kSilent);
-    const std::string path = folder / "c/trace.json";
-    crowd::CrowdTrace trace = crowd::read_crowd_trace(io::read_text(path), path);
     std::set<BodyPair> pairs = {{0, 1}};
     for (const crowd::CrowdQuery& q : run.steps[0].queries) pairs.insert(q.bodies);
     for (const BodyPair& pair : pairs) {
       // The names in either order.
-      CHECK((crowd::find_pair(trace, run.names[pair.j] + "," + run.names[pair.i]) == pair));
-      spec::Scenario scenario = crowd::scenario_of_pair(trace, pair, path);
-      scenario.frames.at = render::FrameSpec::At::none;
-      run::Recording recording = run::record(scenario, run::kSilent);
-      CHECK_NOTHROW(crowd::check_answers(trace, pair, recording));
+      CHECK((crowd::find_pair(crowd, run.names[pair.j] + "," + run.names[pair.i]) == pair));
+      const spec::Scenario scenario = crowd::scenario_of_pair(crowd, run.motion, pair);
+      const run::Recording recording = run::record(scenario, run::kSilent);
       REQUIRE(recording.trace.steps.size() == crowd.steps);
-      CHECK(trace::equal(recording.trace.steps[1].pose_a, run.motion.pose(pair.i, 1)));
-      CHECK(trace::equal(recording.trace.steps[1].pose_b, run.motion.pose(pair.j, 1)));
-      recording.results.back().pairs.push_back({});
-      CHECK_THROWS_AS(crowd::check_answers(trace, pair, recording), InputError);
-    }
-    const auto error = [&](const char* names) -> std::string {
-      try {
-        static_cast<void>(crowd::find_pair(trace, names));
-      } catch (const InputError& e) {
-        return e.what();
+      for (std::uint32_t step = 0; step < crowd.steps; ++step) {
+        CHECK(trace::equal(recording.trace.steps[step].pose_a, run.motion.pose(pair.i, step)));
+        CHECK(trace::equal(recording.trace.steps[step].pose_b, run.motion.pose(pair.j, step)));
+        const CollideResult& found = recording.results[step];
+        const auto& queries = run.steps[step].queries;
+        const auto query = std::find_if(queries.begin(), queries.end(),
+                                        [&](const crowd::CrowdQuery& q) { return q.bodies == pair; });
+        // A pair that was not queried has disjoint boxes.
+        CHECK(found.relation == (query == queries.end() ? Relation::separate : query->result.relation));
+        CHECK(fingerprint(found.pairs) ==
+              (query == queries.end() ? fingerprint({}) : query->result.fingerprint));
       }
-      return {};
-    };
-    CHECK(error("ball 1").find("expected the names of two bodies") != std::string::npos);
-    CHECK(error("").find("expected the names of two bodies") != std::string::npos);
-    CHECK(error((run.names[1] + "," + run.names[1]).c_str()).find("twice") != std::string::npos);
-    CHECK(error((run.names[1] + ",cat 1").c_str()).find("has no body cat 1") != std::string::npos);
+    }
+    for (const auto& [names, expected] :
+         {std::pair{std::string("ball 1"), "expected the names of two bodies"},
+          {"", "expected the names of two bodies"},
+          {run.names[1] + "," + run.names[1], "twice"},
+          {run.names[1] + ",cat 1", "has no body cat 1"}}) {
+      CAPTURE(names);
+      CHECK_THROWS_WITH_AS(static_cast<void>(crowd::find_pair(crowd, names)), doctest::Contains(expected),
+                           InputError);
+    }
   }
 }
 
@@ -623,30 +441,11 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
   CHECK(deep > 5);
   CHECK(near_by > 0);
 
-  // Trace, summary, page and the run of two bodies.
-  const test::Folder folder;
-  const json summary = json::parse(crowd::write_crowd(crowd, run, folder / "c", "command", run::kSilent));
-  const json& first = summary["steps"][0]["queries"][0];
+  const json first = json::parse(crowd::crowd_summary(crowd, run))["steps"][0]["queries"][0];
   CHECK(first["distance"]["upper"] == run.steps[0].queries[0].result.distance->upper);
   CHECK(first["clash"]["kind"] == std::string(name_of(run.steps[0].queries[0].result.clash->kind)));
   CHECK(first["near"]["pairs"] == run.steps[0].queries[0].result.near->pairs);
-  const std::string text = io::read_text(folder / "c/trace.json");
-  CHECK(test::trace_faults(json::parse(text)) == "");
-  const std::string page = io::read_text(folder / "c/index.html");
-  for (const char* shown :
-       {"smallest distance", "largest depth", "contact kind there", "most near pairs",
-        "Smallest distance of separate bodies by step", "Largest penetration depth by step"})
-    CHECK(page.find(shown) != std::string::npos);
-  const crowd::CrowdTrace trace = crowd::read_crowd_trace(text, "t.json");
-  CHECK(trace.crowd.more.distance);
-  CHECK(trace.crowd.more.clash);
-  CHECK(trace.crowd.more.near == kWithin);
-  const crowd::CrowdRun replayed =
-      crowd::replay_crowd(trace, saved_kinds(crowd, folder / "c"), 1, run::kSilent);
-  for (std::size_t step = 0; step < run.steps.size(); ++step)
-    for (std::size_t q = 0; q < run.steps[step].queries.size(); ++q)
-      REQUIRE(replayed.steps[step].queries[q].result == run.steps[step].queries[q].result);
-  const spec::Scenario pair = crowd::scenario_of_pair(trace, {0, 1}, folder / "c/trace.json");
+  const spec::Scenario pair = crowd::scenario_of_pair(crowd, run.motion, {0, 1});
   CHECK(pair.more.clash);
   CHECK(pair.more.near == kWithin);
 
@@ -667,16 +466,15 @@ TEST_CASE("the geometry of contacts is computed only on request") {
   CHECK(crowd_of(crowd).request.contacts);
 }
 
-TEST_CASE("commands for runs of two bodies name the trace of a crowd as such") {
+TEST_CASE("commands for runs of two bodies name the trace of a crowd of 1.x as such") {
   const test::Folder folder;
-  const spec::Crowd crowd = crowd_of(good());
-  crowd::write_crowd(crowd, crowd::run_crowd(crowd, 1, run::kSilent), folder / "c", "command", run::kSilent);
+  folder.write("trace.json",
+               R"({"traceEvents": [], "metadata": {"format": "lrbscope crowd", "version": 2}})");
   const std::string expected =
-      (folder / "c/trace.json") +
-      ": expected a run of one or two bodies, found the trace of a crowd; draw it with lrbscope "
-      "render, or record two of its bodies with lrbscope crowd --pair";
-  CHECK_THROWS_WITH_AS(static_cast<void>(run::open_run(folder / "c")), expected.c_str(), InputError);
-  CHECK_THROWS_WITH_AS(static_cast<void>(run::open_step(folder / "c", 0)), expected.c_str(), InputError);
+      (folder / "trace.json") +
+      ": expected a run of one or two bodies, found the trace of a crowd, which 2.0 does not read; record two "
+      "of its bodies with lrbscope crowd FILE --pair";
+  CHECK_THROWS_WITH_AS(static_cast<void>(run::open_run(folder / "trace.json")), expected.c_str(), InputError);
 }
 
 TEST_CASE("errors in crowds are reported with their location") {

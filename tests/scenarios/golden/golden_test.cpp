@@ -12,7 +12,6 @@
 
 #include "scenarios/golden/check.hpp"
 #include "scenarios/golden/golden_report.hpp"
-#include "scenarios/io/zip.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
 #include <lrbscope/render/image.hpp>
@@ -202,18 +201,6 @@ TEST_CASE("goldens: approved twice, they are the same bytes") {
           slurp(y / (std::string("goldens/balls/") + file)));
 }
 
-TEST_CASE("goldens: any number of rasterizer threads gives equal pictures") {
-  const Approved folder;
-  for (const char* threads : {"0", "1", "3", "7"}) {
-    setenv("LP_NUM_THREADS", threads, 1);
-    const Outcome o = test::run(folder, {"golden", "test", "--json"});
-    unsetenv("LP_NUM_THREADS");
-    const auto answer = nlohmann::json::parse(o.out);
-    CHECK(answer["passed"] == true);
-    for (const auto& image : answer["images"]) CHECK(image["equal"] == true);
-  }
-}
-
 TEST_CASE("goldens: a moved camera is reported as such") {
   const Approved folder;
   folder.write("balls.scenario.json", two_balls(R"(, "views": [{"from": [0.62, -0.6, 0.42]}])"));
@@ -342,34 +329,40 @@ TEST_CASE("goldens: lost and added contacts are reported as such") {
   CHECK(added.diagnosis.starts_with("event " + std::to_string(e) + " added: " + contact));
 }
 
-TEST_CASE("goldens: counters, poses and bodies are part of the run") {
+TEST_CASE("goldens: inputs and counters are part of the run; a changed input is the cause") {
   const golden::GoldenRun run = play();
+  struct Change {
+    void (*apply)(golden::Golden&);
+    const char *difference, *cause;
+  };
+  const Change changes[] = {
+      {[](golden::Golden& g) { ++g.trace.steps[2].result.counters.box_tests; },
+       "step 2: counter box_tests: expected ", "but the program runs differently"},
+      {[](golden::Golden& g) { g.trace.header.request.contacts = false; },
+       "request: contacts: expected false, found true", "the query request changed: contacts"},
+      {[](golden::Golden& g) { g.trace.header.request.interiors_overlap = true; },
+       "request: interiors_overlap: expected true, found false",
+       "the query request changed: interiors_overlap"},
+      {[](golden::Golden& g) { g.trace.steps[1].pose_b.t.x() += 1; }, "step 1: pose of B",
+       "step 1: body B moved: its origin is displaced by 1"},
+      {[](golden::Golden& g) { ++g.trace.header.bodies[0].hash; }, "hash of body A",
+       "the mesh is unchanged, but its LRB-rep was built differently"},
+      {[](golden::Golden& g) { ++g.trace.header.bodies[0].hash, ++g.facts.meshes[0]; }, "hash of body A",
+       "its mesh changed: "},
+      {[](golden::Golden& g) { ++g.trace.header.bodies[0].hash, g.facts.meshes.clear(); }, "hash of body A",
+       "its mesh or its LRB-rep changed"}};
+  for (const Change& change : changes) {
+    CAPTURE(change.cause);
+    golden::Golden golden = golden_of(run);
+    change.apply(golden);
+    const golden::GoldenVerdict v = golden::check_golden(golden, run);
+    REQUIRE(v.divergence);
+    CHECK(has(v.divergence->message(), change.difference));
+    CHECK(has(v.causes.at(0), change.cause));
+  }
   golden::Golden golden = golden_of(run);
-  ++golden.trace.steps[2].result.counters.box_tests;
-  golden::GoldenVerdict v = golden::check_golden(golden, run);
-  REQUIRE(v.divergence);
-  CHECK(has(v.divergence->message(), "step 2: counter box_tests: expected "));
-
-  golden = golden_of(run);
-  golden.trace.header.request.contacts = false;
-  CHECK(has(golden::check_golden(golden, run).divergence.value().message(),
-            "request: contacts: expected false, found true"));
-  golden = golden_of(run);
-  golden.trace.header.request.interiors_overlap = true;
-  CHECK(has(golden::check_golden(golden, run).divergence.value().message(),
-            "request: interiors_overlap: expected true, found false"));
-
-  golden = golden_of(run);
-  golden.trace.steps[1].pose_b.t.x() += 1;
-  v = golden::check_golden(golden, run);
-  REQUIRE(v.divergence);
-  CHECK(has(v.divergence->message(), "step 1: pose of B"));
-
-  golden = golden_of(run);
   ++golden.trace.header.bodies[1].hash;
   const golden::GoldenResult body = golden::test_golden(golden, run, "approve", false);
-  REQUIRE(body.verdict.divergence);
-  CHECK(has(body.verdict.divergence->message(), "hash of body B"));
   REQUIRE(body.comparisons.size() == 1);
   CHECK(has(body.comparisons[0].text, "cannot be replayed"));
 }
@@ -516,25 +509,6 @@ TEST_CASE("goldens: a failure names the moved vertex and its distance first, the
   CHECK_FALSE(has(junit, "FAIL"));
 }
 
-TEST_CASE("goldens: a differently built body is distinguished from another mesh") {
-  golden::GoldenRun run = play();
-  golden::Golden golden = golden_of(run);
-  ++golden.trace.header.bodies[0].hash;
-  CHECK(has(golden::check_golden(golden, run).causes.at(0),
-            "the mesh is unchanged, but its LRB-rep was built differently"));
-  ++golden.facts.meshes[0];
-  CHECK(has(golden::check_golden(golden, run).causes.at(0), "its mesh changed: "));
-  golden.facts.meshes.clear();
-  CHECK(has(golden::check_golden(golden, run).causes.at(0), "its mesh or its LRB-rep changed"));
-  golden = golden_of(run);
-  golden.trace.steps[1].pose_b.t.x() += 1;
-  CHECK(has(golden::check_golden(golden, run).causes.at(0),
-            "step 1: body B moved: its origin is displaced by 1"));
-  golden = golden_of(run);
-  golden.trace.header.request.contacts = false;
-  CHECK(has(golden::check_golden(golden, run).causes.at(0), "the query request changed: contacts"));
-}
-
 TEST_CASE("goldens: the compared parts are set by the golden or by the call") {
   ApprovedFiles folder;
   golden::GoldenRun run = play();
@@ -639,57 +613,45 @@ TEST_CASE("goldens: ignored and selected rectangles, and FLIP, decide which pict
     CHECK(test::run(folder, {"golden", "approve", std::string("--ignore=") + bad, "balls"}).code == 2);
 }
 
-TEST_CASE("goldens: approved from the results of a test, as a folder or an archive, without running") {
+TEST_CASE("goldens: approved from the results of a test, without running") {
   const Approved folder;
   const std::string approved = slurp(folder / "goldens/balls/trace.json.gz");
   folder.change();
   REQUIRE(folder.test().code == 1);
   fs::remove(folder / "balls.scenario.json");  // nothing runs
-  std::vector<io::ZipEntry> files;
-  for (const auto& file : fs::recursive_directory_iterator(folder / "out/golden"))
-    if (file.is_regular_file())
-      files.push_back({"results/" + file.path().lexically_relative(folder / "out/golden").generic_string(),
-                       slurp(file.path().string())});
-  const std::string archive = io::zip(files);
-  folder.write("results.zip", archive);
   const auto approve = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"golden", "approve"});
+    words.insert(words.begin(), {"golden", "approve", "--from"});
     return test::run(folder, words);
   };
-  const Outcome dry = approve({"--from", "results.zip", "--dry-run"});
+  const Outcome dry = approve({"out/golden", "--dry-run"});
   CHECK(dry.code == 0);
   CHECK(has(dry.out, "would be approved goldens/balls/trace.json.gz\n"));
   CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
-  CHECK(approve({"--from", "results.zip", "others"}).code == 2);
-  CHECK(approve({"--from", "results.zip", "--frames", "1"}).code == 2);
 
-  // A broken file: nothing is approved.
-  const auto broken = [&](const std::string& bytes, const char* why) {
-    folder.write("broken.zip", bytes);
-    const Outcome o = approve({"--from", "broken.zip"});
+  // Nothing is approved from what is damaged or something else.
+  fs::copy(folder / "out/golden", folder / "damaged", fs::copy_options::recursive);
+  const std::string png = slurp(folder / "damaged/approve/balls/frame_1.png");
+  folder.write("damaged/approve/balls/frame_1.png", png.substr(0, png.size() / 2));
+  folder.write("results.zip", "PK");
+  for (const auto& [words, why] : {std::pair{std::vector<std::string>{"damaged"}, "nothing was approved"},
+                                   {{"results.zip"}, "unpack an archive first"},
+                                   {{"."}, "has no failures of goldens"},
+                                   {{"out/golden", "others"}, "has no failure of a golden others"},
+                                   {{"out/golden", "--frames", "1"}, "--frames"}}) {
+    const Outcome o = approve(words);
     CAPTURE(o.err);
     CHECK(o.code == 2);
     CHECK(o.error_lines() == 1);
     CHECK(has(o.err, why));
     CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
-  };
-  broken(archive.substr(0, archive.size() / 2), "is not a ZIP archive, or is truncated");
-  std::string flipped = archive;
-  flipped[archive.find("frame_1.png") + 500] ^= 1;
-  broken(flipped, "damaged");
-  std::vector<io::ZipEntry> truncated = files;
-  for (io::ZipEntry& e : truncated)
-    if (e.name.ends_with("approve/balls/frame_1.png")) e.bytes.resize(e.bytes.size() / 2);
-  broken(io::zip(truncated), "nothing was approved");
-  broken(io::zip({}), "has no failures of goldens");
-  broken("no archive", "is not a ZIP archive");
+  }
 
-  CHECK(approve({"--from", "results.zip", "balls"}).code == 0);
+  CHECK(approve({"out/golden", "balls"}).code == 0);
   CHECK(slurp(folder / "goldens/balls/trace.json.gz") != approved);
   folder.change();  // the scenario that was approved
   CHECK(folder.test().code == 0);
   CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged balls\n");
-  CHECK(approve({"--from", "out/golden"}).code == 2);  // passed: nothing is left to approve
+  CHECK(approve({"out/golden"}).code == 2);  // passed: nothing is left to approve
 }
 
 TEST_CASE("goldens: approving all approves no broken golden, and none without a scenario") {
@@ -787,94 +749,15 @@ TEST_CASE("goldens: jobs change only the time; one that cannot run fails alone; 
   CHECK(line["bytes"].get<int>() > 1000);
 }
 
-namespace {
-
-/// Balls and a tetrahedron from a file. The first two bodies intersect in both steps, the third in the
-/// second.
-struct ApprovedCrowd : Folder {
-  ApprovedCrowd() {
-    write_tip(1);
-    write_poses(0.9);
-    write_crowd("");
-    const Outcome o = test::run(*this, {"golden", "approve", "--frames", "2", "three.crowd.json"});
-    REQUIRE_MESSAGE(o.code == 0, o.err);
-  }
-  void write_tip(double height) const {
-    write("tip.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 0 " + std::to_string(height) +
-                         "\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-  }
-  /// `x`: position of the tetrahedron at step 1.
-  void write_poses(double x) const {
-    const auto pose = [](double at) { return "1 0 0 " + std::to_string(at) + " 0 1 0 0 0 0 1 0\n"; };
-    write("poses.txt", pose(0) + pose(1.5) + pose(9) + pose(0) + pose(1.5) + pose(x));
-  }
-  void write_crowd(const std::string& query) const {
-    write("three.crowd.json", R"({"name": "three", "purpose": "Two balls and a tetrahedron.",
- "bodies": [{"name": "ball", "body": {"generator": "ball", "parameters": {"frequency": 3}}, "count": 2},
-            {"name": "tip", "body": {"file": "tip.obj"}}],
- "motion": {"poses": "poses.txt"}, "query": {)" +
-                                  query + R"(}, "frames": {"at": "step", "size": [480, 320]}})");
-  }
-  Outcome test() const { return test::run(*this, {"golden", "test"}); }
-};
-
-}  // namespace
-
-TEST_CASE("goldens: a crowd is approved, tested and listed like a scenario") {
-  const ApprovedCrowd folder;
-  const std::vector<std::string> files = {"goldens/three/b.ply", "goldens/three/frame_1.png",
-                                          "goldens/three/frame_2.png", "goldens/three/golden.json",
-                                          "goldens/three/trace.json.gz"};
-  std::vector<std::string> tree = folder.tree();
-  for (const std::string& file : files) CHECK(std::find(tree.begin(), tree.end(), file) != tree.end());
-  CHECK(nlohmann::json::parse(slurp(folder / "goldens/three/golden.json"))["crowd"] ==
-        "../../three.crowd.json");
+TEST_CASE("goldens: one of a crowd, of 1.x, fails alone with one line, and can be removed") {
+  const Approved folder;
+  folder.write("goldens/three/golden.json",
+               R"({"crowd": "../../three.crowd.json", "size": [480, 320], "frames": 2})");
   const Outcome o = folder.test();
-  CAPTURE(o.out);
-  CHECK(o.out == "ok    three: 4 queries equal; images: 2 equal\n");
-  CHECK(test::run(folder, {"golden", "approve"}).out == "unchanged three\n");
-  CHECK(has(test::run(folder, {"golden", "list"}).out,
-            "three: ../../three.crowd.json; compares answers, events"));
-  CHECK(test::run(folder, {"golden", "report", "three.crowd.json"}).code == 0);
+  CHECK(o.code == 1);
+  CHECK(has(o.out, "FAIL  three: goldens/three/golden.json:1:"));
+  CHECK(has(o.out, "/crowd: goldens of crowds are of 1.x: remove this one"));
+  CHECK(has(o.out, "ok    balls: "));
   CHECK(test::run(folder, {"golden", "remove", "three"}).code == 0);
   CHECK_FALSE(fs::exists(folder / "goldens/three"));
-}
-
-TEST_CASE("goldens: a failure of a crowd names the changed mesh, the moved body and the pair of bodies") {
-  const ApprovedCrowd folder;
-  folder.write_tip(1.5);
-  Outcome o = folder.test();
-  CAPTURE(o.out);
-  CHECK(o.code == 1);
-  CHECK(has(o.out, "cause: tip (tip.obj): its mesh changed: vertex 3 moved by 0.5 ("));
-  CHECK(has(o.out, "first difference: run: tip: hash: expected "));
-  CHECK(has(o.out, "step 1: ball 2 and tip 1: "));
-  CHECK_FALSE(has(o.out, "ball 1 and ball 2"));
-  CHECK(fs::exists(folder / "out/golden/approve/three/trace.json.gz"));
-  CHECK(has(slurp(folder / "out/golden/index.html"), "three: differences"));
-
-  folder.write_tip(1);
-  folder.write_poses(4.5);  // the tetrahedron no longer reaches the balls, and its box is far from them
-  o = folder.test();
-  CHECK(o.code == 1);
-  CHECK(has(o.out, "cause: step 1: tip 1 moved: its origin is displaced by 3.6\n"));
-  CHECK(has(o.out, "step 1: ball 2 and tip 1: query: expected crossing, found none: the boxes are disjoint"));
-  CHECK(has(o.out, "first difference: step 1: tip 1: pose: expected as approved"));
-
-  folder.write_poses(0.9);
-  folder.write_crowd("\"distance\": true");
-  o = folder.test();
-  CHECK(has(o.out, "cause: the requested measures changed: none -> distance"));
-  CHECK(has(o.out, "step 0: ball 1 and ball 2: distance: expected none, found "));
-}
-
-TEST_CASE("goldens: a golden of a scenario does not fit a crowd of the same name") {
-  const ApprovedCrowd folder;
-  const std::string spec = slurp(folder / "goldens/three/golden.json");
-  folder.write("goldens/three/golden.json",
-               std::regex_replace(spec, std::regex("\"crowd\""), "\"scenario\""));
-  const Outcome o = folder.test();
-  CAPTURE(o.out);
-  CHECK(o.code == 1);
-  CHECK(has(o.out, "FAIL  three: "));
 }
