@@ -52,8 +52,8 @@ int run_crowd_command(const CrowdOptions& o, const Globals& globals) {
   const crowd::CrowdRun run = crowd::run_crowd(crowd, jobs, progress_report(globals.quiet));
   note(globals, run.notes);
   note(globals, {crowd::crowd_speed(run)});
-  constexpr std::size_t kMostLines = 20;
-  print(o.json ? crowd::crowd_summary(crowd, run) : crowd::pair_table(run, kMostLines));
+  constexpr std::size_t kMaxLines = 20;
+  print(o.json ? crowd::crowd_summary(crowd, run) : crowd::pair_table(run, kMaxLines));
   if (const std::vector<crowd::PairHistory> pairs = crowd::pair_histories(run); !pairs.empty()) {
     const lrb::BodyPair& costliest = pairs.front().bodies;
     note(globals,
