@@ -19,63 +19,6 @@
 
 namespace lrb::run {
 
-FrameSequence::FrameSequence(const render::Look& look, std::vector<render::Overlay> overlays, Framing framing)
-    : look_(look), overlays_(std::move(overlays)), framing_(std::move(framing)) {
-  if (look_.views.empty()) look_.views.emplace_back();
-  std::vector<render::OverlayLayout> layouts;
-  for (render::Overlay& overlay : overlays_) {
-    leave_out_texts(overlay, look_);
-    layouts.push_back(render::lay_out(overlay, look_.width, look_.height, static_cast<float>(look_.scale())));
-  }
-  place_ = render::common_picture(layouts);
-}
-
-double FrameSequence::progress(std::size_t i) const {
-  return overlays_.size() > 1 ? static_cast<double>(i) / static_cast<double>(overlays_.size() - 1) : 0;
-}
-
-render::Image FrameSequence::picture(std::size_t i, const ListOf& list_of) {
-  std::vector<Panel> panels;
-  for (const render::Look::View& view : look_.views) {
-    const auto camera = [&, i](double width, double height) {
-      return camera_for(view, framing_, width, height, progress(i));
-    };
-    panels.push_back({list_of(view), camera, view.title});
-  }
-  return draw_row(rasterizer_, panels, look_, place_);
-}
-
-render::Image FrameSequence::frame(std::size_t i, const ListOf& list_of) {
-  return render::compose_frame(picture(i, list_of), place_, overlays_[i], look_.width, look_.height,
-                               look_.background(), static_cast<float>(look_.scale()));
-}
-
-std::vector<render::Camera> FrameSequence::cameras(std::size_t i) const {
-  const std::vector<render::PixelRect> places = panel_places(place_, look_.views.size(), look_.scale());
-  std::vector<render::Camera> out;
-  for (std::size_t view = 0; view < places.size(); ++view)
-    out.push_back(
-        camera_for(look_.views[view], framing_, places[view].width, places[view].height, progress(i)));
-  return out;
-}
-
-std::vector<std::string> FrameSequence::svgs(std::size_t i, const ListOf& list_of,
-                                             const std::string& title) const {
-  const std::vector<render::PixelRect> places = panel_places(place_, look_.views.size(), look_.scale());
-  const std::vector<render::Camera> cameras = this->cameras(i);
-  std::vector<std::string> out;
-  for (std::size_t view = 0; view < places.size(); ++view) {
-    render::SvgOptions options;
-    options.width = places[view].width;
-    options.height = places[view].height;
-    options.title = title;
-    options.units_per_pixel = look_.scale();
-    options.background = look_.paper();
-    out.push_back(render::svg(list_of(look_.views[view]), cameras[view], options));
-  }
-  return out;
-}
-
 namespace {
 
 std::vector<render::Overlay> overlays_of(FrameState& state, const std::vector<trace::EventId>& events,
@@ -93,28 +36,90 @@ std::vector<render::Overlay> overlays_of(FrameState& state, const std::vector<tr
   return out;
 }
 
-FrameSequence sequence_of(FrameState& state, const std::vector<trace::EventId>& events, const RecordedRun& p,
-                          const render::FrameSpec& spec, const Framing* framing) try {
-  return FrameSequence(spec, overlays_of(state, events, p.title),
-                       framing != nullptr ? *framing : frame_sequence(p, spec));
-} catch (const InputError& e) {
-  throw InputError(std::string(e.what()) + " (--no-title, --no-legend); for print, use `lrbscope figure`");
-}
-
-/// The frames of a run. There must be at least one event.
-struct FrameJob {
-  FrameState state;
-  FrameSequence sequence;
-
+/// Draws the frames of a run: pictures of one size, with texts above and below them.
+class FrameJob {
+ public:
+  /// Lays out the texts of all frames, which determine the size of the pictures; `events` is not empty.
+  /// Throws InputError if they do not fit.
   FrameJob(const RecordedRun& p, const render::FrameSpec& spec, const std::vector<trace::EventId>& events,
            const Framing* framing = nullptr)
       : state(p, spec, spec.at != render::FrameSpec::At::step),
-        sequence(sequence_of(state, events, p, spec, framing)) {}
-
-  /// Returns the draw lists of the current state. `plain`: see FrameState::scene().
-  FrameSequence::ListOf lists(bool plain = false) const {
-    return [this, plain](const render::Look::View& view) { return state.scene(view.wrapper, plain).list; };
+        look_(spec),
+        framing_(framing != nullptr ? *framing : frame_sequence(p, spec)),
+        overlays_(overlays_of(state, events, p.title)) {
+    if (look_.views.empty()) look_.views.emplace_back();
+    const auto scale = static_cast<float>(look_.scale());
+    std::vector<render::OverlayLayout> layouts;
+    try {
+      for (render::Overlay& overlay : overlays_) {
+        leave_out_texts(overlay, look_);
+        layouts.push_back(render::lay_out(overlay, look_.width, look_.height, scale));
+      }
+    } catch (const InputError& e) {
+      throw InputError(std::string(e.what()) +
+                       " (--no-title, --no-legend); for print, use `lrbscope figure`");
+    }
+    place_ = render::common_picture(layouts);
   }
+
+  /// Draws the views of the current state as frame i. `plain`: see FrameState::scene().
+  render::Image picture(std::size_t i, bool plain = false) {
+    std::vector<Panel> panels;
+    for (const render::Look::View& view : look_.views) {
+      const auto camera = [&, i](double width, double height) {
+        return camera_for(view, framing_, width, height, progress(i));
+      };
+      panels.push_back({list(view, plain), camera, view.title});
+    }
+    return draw_row(rasterizer_, panels, look_, place_);
+  }
+  /// Draws frame i with its texts.
+  render::Image frame(std::size_t i) {
+    return render::compose_frame(picture(i), place_, overlays_[i], look_.width, look_.height,
+                                 look_.background(), static_cast<float>(look_.scale()));
+  }
+  /// Returns the camera of each view.
+  std::vector<render::Camera> cameras(std::size_t i) const {
+    const std::vector<render::PixelRect> places = panel_places(place_, look_.views.size(), look_.scale());
+    std::vector<render::Camera> out;
+    for (std::size_t view = 0; view < places.size(); ++view)
+      out.push_back(
+          camera_for(look_.views[view], framing_, places[view].width, places[view].height, progress(i)));
+    return out;
+  }
+  /// Returns each view as SVG (2D).
+  std::vector<std::string> svgs(std::size_t i, bool plain = false) {
+    const std::vector<render::PixelRect> places = panel_places(place_, look_.views.size(), look_.scale());
+    const std::vector<render::Camera> all = cameras(i);
+    std::vector<std::string> out;
+    for (std::size_t view = 0; view < places.size(); ++view) {
+      render::SvgOptions options;
+      options.width = places[view].width;
+      options.height = places[view].height;
+      options.title = state.caption();
+      options.units_per_pixel = look_.scale();
+      options.background = look_.paper();
+      out.push_back(render::svg(list(look_.views[view], plain), all[view], options));
+    }
+    return out;
+  }
+
+  FrameState state;
+
+ private:
+  render::DrawList list(const render::Look::View& view, bool plain) const {
+    return state.scene(view.wrapper, plain).list;
+  }
+  /// Returns the share of the sequence that has passed at frame i, for orbits.
+  double progress(std::size_t i) const {
+    return overlays_.size() > 1 ? static_cast<double>(i) / static_cast<double>(overlays_.size() - 1) : 0;
+  }
+
+  render::Look look_;
+  Framing framing_;
+  std::vector<render::Overlay> overlays_;
+  render::PixelRect place_;
+  render::Rasterizer rasterizer_;
 };
 
 /// The panels of a montage, collected while the frames are drawn.
@@ -229,8 +234,7 @@ std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
     job.state.seek(events[i]);
-    out.push_back(
-        {job.sequence.frame(i, job.lists()), job.state.caption(), events[i], job.sequence.cameras(i)});
+    out.push_back({job.frame(i), job.state.caption(), events[i], job.cameras(i)});
   }
   return out;
 }
@@ -257,15 +261,13 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
     state.seek(events[i]);
-    if (spec.svg)
-      write_svgs(job.sequence.svgs(i, job.lists(), state.caption()), folder + "/" + numbered_frame(i));
+    if (spec.svg) write_svgs(job.svgs(i), folder + "/" + numbered_frame(i));
     render::PngOptions png{text, spec.dpi};
     png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
-    writer.push(folder + "/" + frame_file(i), job.sequence.frame(i, job.lists()), png);
+    writer.push(folder + "/" + frame_file(i), job.frame(i), png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
-      together.panels.push_back({job.sequence.picture(i, job.lists(true)), state.short_caption()});
-      if (spec.svg && spec.views.size() <= 1)
-        together.svgs.push_back(job.sequence.svgs(i, job.lists(true), state.caption()).front());
+      together.panels.push_back({job.picture(i, true), state.short_caption()});
+      if (spec.svg && spec.views.size() <= 1) together.svgs.push_back(job.svgs(i, true).front());
     }
     out.frames.push_back({frame_file(i), state.caption(), events[i], state.step()});
   }

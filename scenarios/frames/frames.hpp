@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,36 +61,6 @@ struct PaintedFrame {
   std::string caption;
   trace::EventId event = 0;
   std::vector<render::Camera> cameras;  ///< one for each view
-};
-
-/// Draws the frames of a sequence: pictures of one size, with texts above and below them.
-class FrameSequence {
- public:
-  /// Returns the draw list of a view.
-  using ListOf = std::function<render::DrawList(const render::Look::View&)>;
-
-  /// Lays out the texts of all frames, which determine the size of the pictures. Throws InputError if they
-  /// do not fit. `look`: in pixels of the file.
-  FrameSequence(const render::Look& look, std::vector<render::Overlay> overlays, Framing framing);
-
-  /// Draws the views of frame i.
-  render::Image picture(std::size_t i, const ListOf& list_of);
-  /// Draws frame i with its texts.
-  render::Image frame(std::size_t i, const ListOf& list_of);
-  /// Returns the camera of each view.
-  std::vector<render::Camera> cameras(std::size_t i) const;
-  /// Returns each view as SVG (2D).
-  std::vector<std::string> svgs(std::size_t i, const ListOf& list_of, const std::string& title) const;
-
- private:
-  /// Returns the share of the sequence that has passed at frame i, for orbits.
-  double progress(std::size_t i) const;
-
-  render::Look look_;
-  std::vector<render::Overlay> overlays_;
-  Framing framing_;
-  render::PixelRect place_;
-  render::Rasterizer rasterizer_;
 };
 
 /// Throws InputError if frames exceed the maximum number of pixels.
