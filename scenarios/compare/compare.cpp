@@ -128,63 +128,51 @@ std::string both(std::uint32_t x, std::uint32_t y) {
   return both(group_digits(x), group_digits(y));
 }
 
-std::string difference_line(const RegionComparison& c, const MatchedRegions& m) {
-  const RegionFacts &x = c.facts[0][m.of[0]], &y = c.facts[1][m.of[1]];
-  std::string out = "  region " + group_digits(m.of[0]) + " | " + group_digits(m.of[1]) + ", " +
-                    render::percent(m.overlap()) + " of " + group_digits(m.either()) + " real faces: lids " +
-                    both(x.lids, y.lids) + ", floor " + both(x.floor, y.floor) + ", bound " +
-                    both(short_number(x.bound), short_number(y.bound));
-  if (c.has_attempts) out += ", rejected " + both(run::rejected(x.verdicts), run::rejected(y.verdicts));
-  return out + "\n";
-}
-
-report::Table different_table(const RegionComparison& c, const Runs& runs) {
+/// Returns a table of the regions that differ: those at the same place in both, then those of one alone. A
+/// row's target selects the regions in both views.
+report::Table region_table(const RegionComparison& c, const Runs& runs) {
   constexpr std::size_t kMaxRows = 300;
-  report::Table t{"Regions at the same place that differ",
+  report::Table t{"Regions that differ",
                   {"region, " + runs.names[0], "region, " + runs.names[1], "overlap", "real faces", "lids",
                    "floor", "bound", "volume"}};
   if (c.has_attempts)
     for (const std::string& name : runs.names) t.columns.push_back("rejected, " + name);
-  for (const std::size_t i : c.different) {
-    if (t.rows.size() == kMaxRows) break;
-    const MatchedRegions& m = c.matching.pairs[i];
-    const RegionFacts &x = c.facts[0][m.of[0]], &y = c.facts[1][m.of[1]];
-    t.rows.push_back({group_digits(m.of[0]), group_digits(m.of[1]), render::percent(m.overlap()),
-                      both(m.below[0], m.below[1]), both(x.lids, y.lids), both(x.floor, y.floor),
-                      both(short_number(x.bound), short_number(y.bound)),
-                      both(short_number(x.volume), short_number(y.volume))});
-    if (c.has_attempts)
-      for (const RegionFacts* f : {&x, &y}) t.rows.back().push_back(trace::rejection_text(f->verdicts));
-    t.targets.push_back("regions " + std::to_string(m.of[0]) + " " + std::to_string(m.of[1]));
-  }
-  t.note =
-      "Two regions are at the same place if at least half of the real faces below either are below both; overlap is that share. "
-      "A cell with two numbers has that of " +
-      runs.names[0] + " first. Bound: proven largest deviation of the lids from the body, mesh units.";
-  if (c.different.size() > kMaxRows)
-    t.note += " The first " + std::to_string(kMaxRows) + " of " + group_digits(c.different.size()) + ".";
-  return t;
-}
-
-report::Table unmatched_table(const RegionComparison& c, const Runs& runs) {
-  constexpr std::size_t kMaxRows = 300;
-  report::Table t{"Regions without a counterpart", {"in", "region", "lids", "floor", "bound", "volume"}};
-  if (c.has_attempts) t.columns.insert(t.columns.end(), {"rejected", "reasons"});
-  for (std::size_t i = 0; i < 2; ++i) {
-    std::size_t rows = 0;
-    for (const RegionId r : c.matching.unmatched[i]) {
-      if (++rows > kMaxRows) break;
-      const RegionFacts& f = c.facts[i][r];
-      t.rows.push_back({runs.names[i], group_digits(r), group_digits(f.lids), group_digits(f.floor),
-                        short_number(f.bound), short_number(f.volume)});
-      if (c.has_attempts) {
-        t.rows.back().push_back(group_digits(run::rejected(f.verdicts)));
-        t.rows.back().push_back(trace::rejection_text(f.verdicts));
-      }
-      t.targets.push_back(i == 0 ? "regions " + std::to_string(r) + " -" : "regions - " + std::to_string(r));
+  std::size_t count = 0;
+  const auto add = [&](const std::array<std::optional<RegionId>, 2>& of, const MatchedRegions* match) {
+    if (++count > kMaxRows) return;
+    std::array<const RegionFacts*, 2> facts{};
+    std::string target = "regions";
+    std::vector<std::string> row;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (of[i]) facts[i] = &c.facts[i][*of[i]];
+      row.push_back(of[i] ? group_digits(*of[i]) : "");
+      target += " " + (of[i] ? std::to_string(*of[i]) : std::string("-"));
     }
-    if (rows > kMaxRows) t.note = "The first " + std::to_string(kMaxRows) + " of each.";
+    const RegionFacts &x = *(facts[0] != nullptr ? facts[0] : facts[1]),
+                      &y = *(facts[1] != nullptr ? facts[1] : facts[0]);
+    row.push_back(match != nullptr ? render::percent(match->overlap()) : "");
+    row.push_back(match != nullptr ? both(match->below[0], match->below[1]) : "");
+    row.insert(row.end(), {both(x.lids, y.lids), both(x.floor, y.floor),
+                           both(short_number(x.bound), short_number(y.bound)),
+                           both(short_number(x.volume), short_number(y.volume))});
+    if (c.has_attempts)
+      for (const RegionFacts* f : facts)
+        row.push_back(f != nullptr ? trace::rejection_text(f->verdicts) : "");
+    t.rows.push_back(std::move(row));
+    t.targets.push_back(target);
+  };
+  for (const std::size_t i : c.different) {
+    const MatchedRegions& m = c.matching.pairs[i];
+    add({m.of[0], m.of[1]}, &m);
   }
+  for (const RegionId r : c.matching.unmatched[0]) add({r, std::nullopt}, nullptr);
+  for (const RegionId r : c.matching.unmatched[1]) add({std::nullopt, r}, nullptr);
+  t.note =
+      "Two regions are at the same place if at least half of the real faces below either are below both; "
+      "overlap is that share. A cell with two numbers has that of " +
+      runs.names[0] + " first. Bound: proven largest deviation of the lids from the body, mesh units.";
+  if (count > kMaxRows)
+    t.note += " The first " + std::to_string(kMaxRows) + " of " + group_digits(count) + ".";
   return t;
 }
 
@@ -273,29 +261,6 @@ std::string regions_sentence(const RegionComparison& c, const Runs& runs) {
     out += " " + group_digits(c.rejected[i]) + " in " + runs.names[i] + (i == 0 ? "," : ".");
   return out;
 }
-
-/// Returns the comparison in a few lines of text: counts, then the largest differences.
-std::string regions_text(const RegionComparison& c, const Runs& runs) {
-  constexpr std::size_t kMaxLines = 10;
-  const auto& pairs = c.matching.pairs;
-  std::string out = "regions: " + regions_sentence(c, runs) + "\n";
-  for (std::size_t k = 0; k < std::min(kMaxLines, c.different.size()); ++k)
-    out += difference_line(c, pairs[c.different[k]]);
-  if (c.different.size() > kMaxLines)
-    out += "  and " + group_digits(c.different.size() - kMaxLines) + " more, on the page\n";
-  return out;
-}
-
-/// Returns the comparison as tables: places where both have a region and those differ, and regions without a
-/// counterpart. A row's target selects the regions in both views.
-std::vector<report::Table> region_tables(const RegionComparison& c, const Runs& runs) {
-  std::vector<report::Table> out = {different_table(c, runs), unmatched_table(c, runs)};
-  std::erase_if(out, [](const report::Table& t) { return t.rows.empty(); });
-  return out;
-}
-
-using render::group_digits;
-using render::short_number;
 
 const LrbRep& rep_of(const Runs& runs, std::size_t i) {
   return runs.of[i]->bodies[0].rep;
@@ -471,9 +436,9 @@ Difference write_comparison(const Runs& runs, const std::string& command, const 
     doc.chart(faces_chart(runs)).table(body_table(runs));
     if (const report::Table passes = pass_table(runs); !passes.rows.empty()) doc.table(passes);
     if (const auto regions = compare_regions(runs)) {
-      out.regions = regions_text(*regions, runs);
+      out.regions = "regions: " + regions_sentence(*regions, runs) + "\n";
       doc.text({"Regions", regions_sentence(*regions, runs)});
-      doc.each(region_tables(*regions, runs), &report::Document::table);
+      if (const report::Table t = region_table(*regions, runs); !t.rows.empty()) doc.table(t);
     } else if (rep_of(runs, 0).region_count() + rep_of(runs, 1).region_count() > 0) {
       out.regions = "regions are not compared: the bodies' own faces differ\n";
       doc.text({"Regions", "Not compared: the bodies' own faces differ."});

@@ -48,7 +48,7 @@ struct Difference {
   /// Where the runs begin to differ: their bodies and requests, and the first differing event or answer;
   /// nullopt if they are equal.
   std::optional<std::string> first;
-  std::string regions;  ///< of runs of one body: lines on their regions; else empty
+  std::string regions;  ///< of runs of one body: a line on their regions; else empty
 };
 
 /// Writes folder/index.html and folder/compare.png: the first difference, answers and work step by step, and
