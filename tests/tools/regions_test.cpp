@@ -118,15 +118,6 @@ TEST_CASE("inspect --regions lists all in JSON, the worst in text, and draws ten
   check_rejected(folder, {"inspect", "open.obj", "--regions"});
 }
 
-TEST_CASE("regions of a 2D body are listed and drawn") {
-  const Folder folder;
-  write_mesh(gear(9), folder / "gear.obj");
-  const json j =
-      run_json(folder, {"inspect", "gear.obj", "--regions", "--render", "-o", "g.png", "--size", "200x160"});
-  CHECK(j["region_figures"].size() > 3);
-  CHECK(render::read_png(folder / "g.png").image.width() > 3 * 200);
-}
-
 TEST_CASE("inspect --try: trials match build, and only better settings are advised") {
   const Folder folder;
   write_mesh(thin_disc(), folder / "disc.obj");
@@ -231,22 +222,6 @@ TEST_CASE("an isolated region is drawn once, in a close-up with its name") {
             .starts_with("region " + std::to_string(last) + " of B: layer "));
   CHECK(run::region_text(rep, std::vector{RegionId(0), RegionId(1)}, "")
             .starts_with("2 regions (0, 1): layer"));
-}
-
-TEST_CASE("an exploded body is drawn completely") {
-  const Folder folder;
-  for (const char* generator : {"bowl", "cog2d"}) {
-    CAPTURE(std::string(generator));
-    folder.write(
-        "s.json",
-        R"({"name": "x", "purpose": "y", "show": "refinement", "bodies": {"a": {"generator": ")" +
-            std::string(generator) +
-            R"("}}, "frames": {"at": "refinement", "every": 1000000, "explode": 2, "size": [320, 300]}})");
-    const render::Image image =
-        drawn(folder, "run/frames/frame_0000.png", {"run", "s.json", "-o", "run"}).image;
-    for (int y = image.height() / 4; y < image.height() * 3 / 4; ++y)
-      for (const int x : {0, image.width() - 1}) CHECK(image.at(x, y) == render::kWhite);
-  }
 }
 
 TEST_CASE("a view direction is rejected for 2D bodies") {

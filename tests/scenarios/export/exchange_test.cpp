@@ -112,25 +112,6 @@ TEST_CASE("models: the body's faces keep their numbers, the wrapper's are its bo
   CHECK(check_mesh(mesh_of(lids)).bounds_solid);
 }
 
-TEST_CASE("models: the distance of a lid is valid for its corners") {
-  const Wrapper wrapper(ball());
-  const Model model = make_model(moment_of(ball(), &wrapper), {false, true, false, {true, true}});
-  const Part& part = model.parts.at(0);
-  const double largest_face = 1;  // of a ball of radius 1, no corner of a face is as far from a point of it
-  for (std::size_t c = 0; c < part.cell_count(); ++c) {
-    const double distance = column(model, part, "distance")[c];
-    REQUIRE(distance > 0);
-    for (const std::uint32_t v : part.cell(c)) {
-      double nearest = 1e300;
-      for (FaceId f = 0; f < ball().real_face_count(); ++f)
-        for (const VertexId real : ball().face(f))
-          nearest = std::min(nearest, (ball().vertices()[real] - part.vertices[v]).norm());
-      CHECK(nearest <= distance + largest_face);
-      CHECK(part.vertices[v].norm() - 1 <= distance + 1e-9);  // the ball's surface lies within radius 1
-    }
-  }
-}
-
 TEST_CASE("models: a mirrored body is outward-oriented") {
   Pose mirror;
   mirror.r(0, 0) = -1;
