@@ -41,8 +41,8 @@ std::string pair_table(const CrowdRun& run, std::size_t most) {
   for (std::size_t i = 0; i < std::min(pairs.size(), most); ++i) {
     const PairHistory& p = pairs[i];
     const bool meets = p.steps > 0;
-    rows.push_back({run.names[p.bodies.i], run.names[p.bodies.j], render::group_digits(p.face_tests),
-                    std::to_string(p.steps), meets ? render::group_digits(p.most_pairs) : "",
+    rows.push_back({run.names[p.bodies.i], run.names[p.bodies.j], std::to_string(p.face_tests),
+                    std::to_string(p.steps), meets ? std::to_string(p.most_pairs) : "",
                     meets ? std::to_string(p.at) : ""});
   }
   std::array<std::size_t, 6> widths{};
