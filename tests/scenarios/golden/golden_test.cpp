@@ -738,6 +738,7 @@ TEST_CASE("goldens: jobs change only the time; one that cannot run fails alone; 
 
 TEST_CASE("goldens: one of a crowd, of 1.x, fails alone with one line, and can be removed") {
   const Approved folder;
+  fs::create_directory(folder / "goldens/three");
   folder.write("goldens/three/golden.json",
                R"({"crowd": "../../three.crowd.json", "size": [480, 320], "frames": 2})");
   const Outcome o = folder.test();
