@@ -229,8 +229,8 @@ int run_export(const ExportOptions& o, const Globals& globals) {
 }  // namespace
 
 Command add_export(App& root, const Globals& globals) {
-  App* app = root.add_subcommand(
-      "export", "Export bodies, wrappers, contacts or poses to PLY, VTP, GLB, CSV or JSON");
+  App* app = root.add_subcommand("export",
+                                 "Export bodies, wrappers, contacts or poses to PLY, VTP, GLB, CSV or JSON");
   const auto o = std::make_shared<ExportOptions>();
   app->add_option(
          "INPUT", o->input,
