@@ -1,4 +1,4 @@
-# Toolchain of tests/portability/aarch64.sh: Debian's cross compiler, libraries unpacked in the folder LRB_ROOT, QEMU.
+# Toolchain of portability.sh: Debian's cross compiler, libraries unpacked in the folder LRB_ROOT, QEMU.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)

@@ -1,4 +1,4 @@
-# Toolchain of tests/portability/mingw.sh: Debian's MinGW-w64, header-only libraries unpacked in the folder LRB_ROOT, Wine.
+# Toolchain of portability.sh: Debian's MinGW-w64, header-only libraries unpacked in the folder LRB_ROOT, Wine.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR AMD64)
 set(CMAKE_CXX_COMPILER x86_64-w64-mingw32-g++-posix)
