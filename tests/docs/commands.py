@@ -8,11 +8,14 @@ import json
 import math
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
+
+sys.dont_write_bytecode = True
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "commands"))
+import shell
 
 # (pages, pattern of lines, why they are not run here)
 NOT_RUN = [
@@ -54,52 +57,6 @@ FINDS = [r"^lrbscope inspect .*--draw", r"^lrbscope compare "]
 SECONDS = 300
 
 
-def ball(path, splits, scale=1.0, hole=False):
-    """Writes an octahedron that was split and blown up, as OBJ, OFF or STL; 8 * 4 ** splits triangles."""
-    n = 2**splits
-    index, vertices, faces = {}, [], []
-
-    def vertex(p):
-        if p not in index:
-            index[p] = len(vertices)
-            length = math.sqrt(sum(x * x for x in p)) / scale
-            vertices.append(tuple(x / length for x in p))
-        return index[p]
-
-    for sx in (1, -1):
-        for sy in (1, -1):
-            for sz in (1, -1):
-
-                def corner(i, j):
-                    return vertex((sx * i, sy * j, sz * (n - i - j)))
-
-                for i in range(n):
-                    for j in range(n - i):
-                        up = [(i, j), (i + 1, j), (i, j + 1)]
-                        down = [(i + 1, j), (i + 1, j + 1), (i, j + 1)] if i + j + 2 <= n else None
-                        for t in (up, down):
-                            if t:
-                                t = t if sx * sy * sz > 0 else t[::-1]
-                                faces.append([corner(*c) for c in t])
-    if hole:
-        faces.pop()
-    with open(path, "w") as f:
-        if path.endswith(".off"):
-            f.write("OFF\n%d %d 0\n" % (len(vertices), len(faces)))
-            f.writelines("%r %r %r\n" % v for v in vertices)
-            f.writelines("3 %d %d %d\n" % tuple(t) for t in faces)
-        elif path.endswith(".stl"):
-            f.write("solid ball\n")
-            for t in faces:
-                f.write("facet normal 0 0 0\nouter loop\n")
-                f.writelines("vertex %r %r %r\n" % vertices[v] for v in t)
-                f.write("endloop\nendfacet\n")
-            f.write("endsolid ball\n")
-        else:
-            f.writelines("v %r %r %r\n" % v for v in vertices)
-            f.writelines("f %d %d %d\n" % tuple(v + 1 for v in t) for t in faces)
-
-
 def pose(x, turn=0.0):
     c, s = math.cos(turn), math.sin(turn)
     return "%r %r 0 %r %r %r 0 0.1 0 0 1 0.05" % (c, -s, x, s, c)
@@ -115,12 +72,12 @@ def stand_ins(page, run):
         ("mesh.obj", 1.0),
         ("twin.obj", 1.0),
     ):
-        ball(name, fine, scale, hole=name == "mesh.obj" and page == "docs/debugging.md")
+        shell.ball(name, fine, scale, hole=name == "mesh.obj" and page == "docs/debugging.md")
     for name in ("man.stl", "b.off"):
-        ball(name, 3, 0.8)
+        shell.ball(name, 3, 0.8)
     os.mkdir("meshes")
-    ball("meshes/a.obj", 2)
-    ball("meshes/b.obj", 2, 0.5)
+    shell.ball("meshes/a.obj", 2)
+    shell.ball("meshes/b.obj", 2, 0.5)
     with open("poses.txt", "w") as f:
         f.writelines(pose(2.2 - 0.15 * i, 0.1 * i) + "\n" for i in range(9))
     with open("motions.txt", "w") as f:
@@ -206,7 +163,6 @@ def main():
     pages = sys.argv[3:] or ["README.md", "CONTRIBUTING.md"] + sorted(
         "docs/" + n for n in os.listdir(tree + "/docs") if n.endswith(".md")
     )
-    begin = 'lrbscope() { "$PROGRAM" "$@"; }; '
     ran, left, bad, used = 0, 0, 0, set()
     for page in pages:
         lines = list(lines_of(tree, page))
@@ -220,17 +176,10 @@ def main():
 
             def run(line, codes=(0,)):
                 try:
-                    done = subprocess.run(
-                        ["bash", "-euo", "pipefail", "-c", begin + line],
-                        env={**os.environ, "PROGRAM": program, **ffmpeg(folder)},
-                        capture_output=True,
-                        text=True,
-                        timeout=SECONDS,
-                    )
+                    code, _, errors = shell.run(line, program, seconds=SECONDS, environment=ffmpeg(folder))
                 except subprocess.TimeoutExpired:
                     return "takes more than %d s" % SECONDS
-                wrong = "exit code %d: %s" % (done.returncode, done.stderr.strip())
-                return None if done.returncode in codes else wrong
+                return None if code in codes else "exit code %d: %s" % (code, errors.strip())
 
             scenario(tree)
             stand_ins(page, run)

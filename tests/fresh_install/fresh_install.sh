@@ -209,7 +209,7 @@ step_check() {
   [ "$suite" != bookworm ] || inside bash -c 'command -v clang-format-14'
 }
 # Tests that write files and start programs.
-user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|crowd_tests|golden_tests|stability.*|measure_tests|package|robustness)$'
+user_tests='^(mesh_tests|lrb_tests|trace_tests|render_tests|scenarios_tests|commands_.*|crowd_tests|golden_tests|stability.*|measure_tests|package|robustness)$'
 # Without root, with the packages: the same clone with another owner, so that only steps that depend on the user are repeated.
 step_user() {
   chmod a+x "$root/root"

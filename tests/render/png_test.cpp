@@ -4,7 +4,9 @@
 #include <random>
 
 #include <doctest/doctest.h>
+#include <zlib.h>
 
+#include "tests/support/folder.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/frame_writer.hpp>
 #include <lrbscope/render/image.hpp>
@@ -25,16 +27,45 @@ render::Image noise(int width, int height, bool opaque) {
   return image;
 }
 
-struct Folder {
-  fs::path path =
-      fs::temp_directory_path() / std::string("lrb_png_test_").append(std::to_string(std::random_device()()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-  std::string operator/(const char* name) const { return (path / name).string(); }
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
+void put_number(std::string& to, std::size_t v) {
+  for (int shift = 24; shift >= 0; shift -= 8) to += static_cast<char>(v >> shift);
+}
+
+void put_chunk(std::string& png, const std::string& type, const std::string& data) {
+  put_number(png, data.size());
+  const std::string body = type + data;
+  png += body;
+  put_number(png, crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size())));
+}
+
+/// An RGB picture of a size, whose data unpack to `zeros` bytes of 0.
+std::string png_of(std::size_t width, std::size_t height, std::size_t zeros) {
+  std::string header;
+  put_number(header, width);
+  put_number(header, height);
+  const std::string raw(zeros, '\0');
+  uLongf length = compressBound(raw.size());
+  std::string packed(length, '\0');
+  compress(reinterpret_cast<Bytef*>(packed.data()), &length, reinterpret_cast<const Bytef*>(raw.data()),
+           raw.size());
+  packed.resize(length);
+  std::string png = "\x89PNG\r\n\x1a\n";
+  put_chunk(png, "IHDR", header + std::string("\x08\x02\0\0\0", 5));
+  put_chunk(png, "IDAT", packed);
+  put_chunk(png, "IEND", "");
+  return png;
+}
+
+/// Returns the message with which a picture is rejected; empty if it is read.
+std::string rejection(const std::string& bytes, std::uint64_t max_pixels = render::kMaxPixels) {
+  try {
+    render::decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, "p.png",
+                       max_pixels);
+  } catch (const InputError& e) {
+    return e.what();
   }
-};
+  return {};
+}
 
 }  // namespace
 
@@ -63,6 +94,34 @@ TEST_CASE("PNG carries text and resolution") {
   CHECK_THROWS_AS(render::encode_png(render::Image()), InputError);
 }
 
+TEST_CASE("decompression bombs and damaged pictures are rejected with a reason") {
+  constexpr std::size_t kRow = 193, kMega = 1'000'000;  // bytes of a row of 64 pixels
+  const std::string good = png_of(64, 64, 64 * kRow), bad = "p.png: not a readable PNG (";
+  CHECK(rejection(good).empty());
+  const std::pair<std::string, std::string> table[] = {
+      {rejection(good, 4095), "has 64x64 pixels, expected at most 4095"},
+      {rejection(png_of(20'000, 20'000, 1000)), "has 20000x20000 pixels, expected at most"},
+      {rejection(png_of(8000, 8000, 1000)), "8000x8000 pixels cannot be in "},
+      {rejection(png_of(40'000, 2, 2UL * 120'001)), "has 40000x2 pixels, a side of more than"},
+      {rejection("GIF89a, or so"), bad + "Not a PNG file)"},
+      {rejection(png_of(64, 64, 20 * kMega)), bad + "IDAT: Too much image data)"},
+      {rejection(png_of(64, 64, 64 * kRow - 1)), bad + "Not enough image data)"},
+      {rejection(good.substr(0, good.size() - 13)), bad + "the file is truncated)"},
+      {rejection(good.substr(0, 40)), bad + "the file is truncated)"}};
+  for (const auto& [found, expected] : table) CHECK_MESSAGE(found.find(expected) != std::string::npos, found);
+  // Texts have a size limit.
+  const auto with_text = [&](const std::string& value, int times) {
+    std::string png = png_of(1, 1, 4);
+    png.resize(png.size() - 12);
+    for (int i = 0; i < times; ++i) put_chunk(png, "tEXt", "key" + std::string(1, '\0') + value);
+    put_chunk(png, "IEND", "");
+    return png;
+  };
+  CHECK(rejection(with_text("value", 50)).empty());
+  CHECK(rejection(with_text("value", 1000)) == bad + "tEXt: no space in chunk cache)");
+  CHECK(rejection(with_text(std::string(2 * kMega, 'v'), 1)).find(bad + "tEXt: ") == 0);
+}
+
 TEST_CASE("damaged PNGs are rejected") {
   const auto good = render::encode_png(noise(16, 16, true), {{{"key", "value"}}, 72});
   for (std::size_t cut = 0; cut < good.size(); cut += 7) {
@@ -86,29 +145,29 @@ TEST_CASE("damaged PNGs are rejected") {
 }
 
 TEST_CASE("files appear complete or not at all") {
-  const Folder folder;
+  const test::Folder folder;
   const render::Image image = noise(30, 20, true);
   render::write_png(image, folder / "a.png", {{{"k", "v"}}, 0});
   CHECK(render::read_png(folder / "a.png").image == image);
-  CHECK(folder.files() == 1);
+  CHECK(folder.tree().size() == 1);
   CHECK_THROWS_AS(render::write_png(image, folder / "missing/a.png"), InputError);
   fs::create_directories(folder / "taken.png");
   CHECK_THROWS_AS(render::write_png(image, folder / "taken.png"), InputError);
-  CHECK(folder.files() == 2);
+  CHECK(folder.tree().size() == 2);
   CHECK_THROWS_AS(render::read_png(folder / "absent.png"), InputError);
 }
 
 TEST_CASE("the frame writer writes all frames and reports its errors") {
-  const Folder folder;
+  const test::Folder folder;
   const render::Image image = noise(60, 40, true);
   {
     render::FrameWriter writer(2);
-    for (int i = 0; i < 9; ++i) writer.push(folder / std::to_string(i).append(".png").c_str(), image);
+    for (int i = 0; i < 9; ++i) writer.push(folder / (std::to_string(i) + ".png"), image);
     writer.finish();
-    CHECK(folder.files() == 9);
+    CHECK(folder.tree().size() == 9);
     writer.push(folder / "last.png", image);
   }
-  CHECK(folder.files() == 10);
+  CHECK(folder.tree().size() == 10);
   CHECK(render::read_png(folder / "last.png").image == image);
   render::FrameWriter writer;
   writer.push(folder / "missing/f.png", image);

@@ -101,32 +101,6 @@ TEST_CASE("all boundary loops are drawn at the requested size, for any number of
   CHECK(small.height() == 500);
 }
 
-TEST_CASE("open edges are counted by loops") {
-  const Mesh m = without_faces(icosphere(1), {7, 40});
-  const MeshReport report = check_mesh(m);
-  const std::vector<BoundaryLoop> loops = find_boundary_loops(m, examine(m).use);
-  CHECK(render::findings::caption(MeshFault::open_edge, report[MeshFault::open_edge], 3, loops) ==
-        "6 open edges in 2 loops, of 3 and 3");
-}
-
-TEST_CASE("for a clean mesh no picture is written, with a message") {
-  const Folder folder;
-  folder.write("cube.obj", kCube);
-  const std::vector<std::string> before = folder.tree();
-  const Outcome o = run(folder, {"inspect", "cube.obj", "--json", "--draw", "new/x.png"});
-  CHECK(o.code == 0);
-  CHECK(o.err.find("cube.obj: no findings to draw") != std::string::npos);
-  CHECK(json::parse(o.out)["drawing"].is_null());
-  CHECK(folder.tree() == before);
-}
-
-TEST_CASE("an LRB-rep has no findings to draw") {
-  const Folder folder;
-  folder.write("cube.obj", kCube);
-  REQUIRE(run(folder, {"build", "cube.obj", "-o", "cube.lrb"}).code == 0);
-  check_rejected(folder, {"inspect", "cube.lrb", "--draw", "x.png"});
-}
-
 TEST_CASE("faults with the same elements are drawn once") {
   const Mesh doubled = with_doubled(icosphere(1), {3, 9});  // they also meet
   CHECK(render::findings::kinds(check_mesh(doubled)) ==
@@ -134,10 +108,6 @@ TEST_CASE("faults with the same elements are drawn once") {
   const Mesh collapsed = with_face(icosphere(1), {}, {0, 0, 1});
   CHECK(render::findings::kinds(check_mesh(collapsed)) == std::vector{MeshFault::zero_area_face});
   CHECK(render::findings::kinds(check_mesh(icosphere(1))).empty());
-  const MeshReport open = check_mesh(without_faces(icosphere(1), {7, 40, 77}));
-  CHECK(render::findings::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3)
-            .starts_with("9 open edges: "));
-  CHECK(render::findings::caption(MeshFault::open_edge, open[MeshFault::open_edge], 3).ends_with(", …"));
 }
 
 }  // namespace lrb::test
