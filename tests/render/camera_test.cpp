@@ -73,20 +73,6 @@ TEST_CASE("single points, flat and distant scenes can be fitted") {
   CHECK_THROWS_AS(render::fit_camera(std::vector<Vector3d>{{0, 0, std::nan("")}}, 640, 360), InputError);
 }
 
-TEST_CASE("the view from above keeps x to the right and y up") {
-  const std::vector<Vector3d> points{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}};
-  const render::Camera camera = render::fit_top(points, 800, 400, 0.1);
-  const render::Projection projection(camera, 800, 400, box_of(points));
-  const Eigen::Vector2d origin = *projection.to_pixel({0, 0, 0}), right = *projection.to_pixel({1, 0, 0}),
-                        up = *projection.to_pixel({0, 1, 0});
-  CHECK(right.x() > origin.x());
-  CHECK(right.y() == doctest::Approx(origin.y()));
-  CHECK(up.y() < origin.y());
-  CHECK(up.x() == doctest::Approx(origin.x()));
-  CHECK(right.x() - origin.x() == doctest::Approx(origin.y() - up.y()));  // no distortion
-  CHECK(origin.y() == doctest::Approx(360));                              // 0.1 * 400 free below
-}
-
 TEST_CASE("a camera on the contact shows it with its surroundings") {
   const std::vector<Vector3d> contact{{1, 1, 1}, {1.1, 1, 1}, {1.05, 1.04, 1.02}};
   Eigen::AlignedBox3d scene(Vector3d(-2, -2, -2), Vector3d(2, 2, 2));
@@ -120,22 +106,6 @@ TEST_CASE("a camera on the contact shows it with its surroundings") {
   CHECK((wide.eye - wide.target).norm() > 5 * (near.eye - near.target).norm());
 }
 
-TEST_CASE("the depth bias is a distance in the world, in shares of the picture's height") {
-  for (const bool orthographic : {false, true}) {
-    render::Camera camera;
-    camera.eye = {0, 0, 5};
-    camera.orthographic = orthographic;
-    camera.half_height = 1.5;
-    const render::Projection p(camera, 400, 300,
-                               Eigen::AlignedBox3d(Vector3d(-1, -1, -8), Vector3d(1, 1, 2)));
-    const Vector3d at(0.3, 0.2, -4);
-    const double height = p.unit_per_pixel(at) * 300;
-    const Vector3d eye = p.to_eye(at);
-    const double expected = p.to_screen(eye - Vector3d(0, 0, 0.1 * height)).z();
-    CHECK(p.nearer(p.to_screen(eye).z(), 0.1) == doctest::Approx(expected).epsilon(1e-12));
-  }
-}
-
 TEST_CASE("a shifted camera shows a part of the picture, at any scale") {
   std::mt19937 random(7);
   const std::vector<Vector3d> points = cloud(random, {1, 2, 3}, {2, 1, 3});
@@ -155,18 +125,6 @@ TEST_CASE("a shifted camera shows a part of the picture, at any scale") {
       const Eigen::Vector2d expected = 2 * (*small.to_pixel(p) - Eigen::Vector2d(200, 0));
       CHECK((*large.to_pixel(p) - expected).norm() < 1e-9);
       CHECK((small.towards_viewer(p) - large.towards_viewer(p)).norm() < 1e-12);
-    }
-  }
-}
-
-TEST_CASE("a side view shows both ends of the axis side by side") {
-  for (const Vector3d& up : {Vector3d(0, 0, 1), Vector3d(0, 1, 0)}) {
-    for (const Vector3d& axis :
-         {Vector3d(1, 0.3, 0.2), Vector3d(-0.1, 2, 5), Vector3d(0, -1, 0.2), Vector3d(0, 0, 7)}) {
-      const render::ViewDirection view = render::view_beside(axis, up);
-      if (axis.cross(up).norm() > 0) CHECK(std::abs(view.from.dot(axis - axis.dot(up) * up)) < 1e-12);
-      CHECK(view.from.norm() == doctest::Approx(1));
-      CHECK(view.from.dot(up) > 0.3);
     }
   }
 }

@@ -75,20 +75,6 @@ TEST_CASE("random intersecting triangles are painted back to front") {
   }
 }
 
-TEST_CASE("three cyclically overlapping triangles") {
-  std::mt19937 random(2);
-  std::vector<render::EyePolygon> ring;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const double a = 2 * 3.14159265358979 * i / 3;
-    const Vector3d along(std::cos(a), std::sin(a), 0), across(-std::sin(a), std::cos(a), 0), z(0, 0, 1);
-    const Vector3d base = Vector3d(0, 0, 8) - 0.8 * across;
-    ring.push_back(
-        triangle(base - 2.5 * along - z, base + 2.5 * along + z, base + 2.5 * along + z + 0.7 * across, i));
-  }
-  check_order(ring, true, random);
-  check_order(ring, false, random);
-}
-
 TEST_CASE("polygons in one plane keep their order, degenerate ones are left out") {
   std::vector<render::EyePolygon> polygons;
   for (std::uint32_t i = 0; i < 5; ++i) polygons.push_back(triangle({-1, -1, 5}, {1, -1, 5}, {0, 1, 5}, i));

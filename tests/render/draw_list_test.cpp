@@ -35,19 +35,6 @@ TEST_CASE("a polygon becomes a fan whose edges are its outline") {
   }
 }
 
-TEST_CASE("edge styles are shared and survive appending") {
-  render::DrawList a, b;
-  const auto style = a.edge_style({{1, 2, 3}, 2});
-  CHECK(a.edge_style({{1, 2, 3}, 2}) == style);
-  CHECK(a.edge_styles.size() == 2);
-  b.edge_style({{9, 9, 9}, 1});
-  render::DrawTriangle t;
-  t.edge_style = b.edge_style({{4, 5, 6}, 3});
-  b.triangles.push_back(t);
-  a.append(b);
-  CHECK(a.edge_styles[a.triangles[0].edge_style].colour == render::Rgba{4, 5, 6});
-}
-
 TEST_CASE("the summary counts by kind and layer") {
   render::DrawList list;
   render::DrawTriangle t;
@@ -82,23 +69,6 @@ TEST_CASE("corners lie on the grid of 1/256 pixel") {
     CHECK(std::abs(x - std::round(x)) < 0.02);
     CHECK(std::abs(y - std::round(y)) < 0.02);
   }
-}
-
-TEST_CASE("edge distances are pixels on the screen") {
-  render::DrawList list;
-  render::DrawTriangle t;
-  t.edges = 1 | 4;
-  t.x = {Vector3d(0, 0, 0), {3, 0, 0}, {0, 3, 0}};
-  list.triangles.push_back(t);
-  const auto points = render::extent_points(list);
-  const render::Camera camera = render::fit_top(points, 500, 500, 0.1);  // 3 units over 400 pixels
-  const render::ScreenMesh mesh =
-      render::make_screen_mesh(list, render::Projection(camera, 500, 500, render::bounds(list)), 1);
-  REQUIRE(mesh.faces.size() == 3);
-  CHECK(mesh.faces[2].edge[0] == doctest::Approx(400));
-  CHECK(mesh.faces[1].edge[2] == doctest::Approx(400));
-  CHECK(mesh.faces[0].edge[0] == doctest::Approx(0).epsilon(1e-6));
-  for (const render::FaceVertex& v : mesh.faces) CHECK(v.edge[1] == render::kNoEdge);
 }
 
 TEST_CASE("geometry behind a camera within the scene is clipped") {

@@ -61,26 +61,6 @@ TEST_CASE("the spacing of edges is the local mean altitude of triangles of one s
   }
 }
 
-TEST_CASE("triangles close to the camera have full spacing") {
-  render::DrawList list;
-  render::DrawTriangle t;
-  t.edges = 7;
-  t.x = {Vector3d(-1, -1, -3), {1, -1, -3}, {0, 1, 9}};
-  list.triangles.push_back(t);
-  render::Camera camera;
-  camera.eye = Vector3d::Zero();
-  camera.target = {0, 0, -1};
-  CHECK(render::edge_spacing(list, render::Projection(camera, 300, 200, render::bounds(list)))[0] ==
-        doctest::Approx(200));
-}
-
-TEST_CASE("fading is smooth between its ends") {
-  CHECK(render::fade_between(1, 2, 4) == 0);
-  CHECK(render::fade_between(3, 2, 4) == doctest::Approx(0.5));
-  CHECK(render::fade_between(5, 2, 4) == 1);
-  CHECK(render::fade_between(2.01, 2, 4) < 0.001);
-}
-
 TEST_CASE("the uniform spacing of edges is one number per style, weighted by covered area") {
   render::DrawList list;
   render::DrawTriangle t;

@@ -86,18 +86,6 @@ TEST_CASE("image difference counts in buckets") {
   CHECK(shown.at(50, 50) == render::Rgba{0, 0, 0});
 }
 
-TEST_CASE("colours that must be distinguished differ in grey") {
-  CHECK(std::abs(render::luma(render::palette::body(Side::a)) -
-                 render::luma(render::palette::body(Side::b))) > 50);
-  for (const Side side : {Side::a, Side::b}) {
-    CHECK(std::abs(render::luma(render::palette::body(side)) - render::luma(render::palette::kContact)) > 30);
-    CHECK(std::abs(render::luma(render::palette::body(side)) -
-                   render::luma(render::palette::edge_of(render::palette::body(side)))) > 50);
-    CHECK(std::abs(render::luma(render::palette::solid_2d(render::palette::body(side))) -
-                   render::luma(render::palette::region_2d(render::palette::body(side)))) > 60);
-  }
-}
-
 namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -189,17 +177,6 @@ TEST_CASE("texts, lines and bodies stand out from the background of each style")
   }
 }
 
-TEST_CASE("a style has its own colours for the palette's kinds, and leaves others alone") {
-  const render::Style& dark = render::style_of(render::StyleName::dark);
-  CHECK(dark.of(render::palette::kContact) == dark.contact);
-  CHECK(dark.of(render::palette::kInk) == dark.ink);
-  CHECK(dark.of(render::palette::kSkyBlue) == render::palette::kSkyBlue);
-  const render::Style& screen = render::style_of(render::StyleName::screen);
-  for (const render::Rgba c :
-       {render::palette::kContact, render::palette::kFaint, render::palette::kUnderTest})
-    CHECK(screen.of(c) == c);
-}
-
 TEST_CASE("viridis brightens from end to end and is clamped") {
   CHECK(render::palette::viridis(0) == render::Rgba{68, 1, 84});
   CHECK(render::palette::viridis(1) == render::Rgba{253, 231, 37});
@@ -209,11 +186,4 @@ TEST_CASE("viridis brightens from end to end and is clamped") {
   for (int i = 0; i < 100; ++i)
     CHECK(render::luma(render::palette::viridis(i / 100.0)) <
           render::luma(render::palette::viridis((i + 1) / 100.0)));
-}
-
-TEST_CASE("neighbouring categories look different") {
-  for (std::uint32_t i = 0; i < 200; ++i) {
-    const render::Rgba a = render::palette::category(i), b = render::palette::category(i + 1);
-    CHECK(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) > 60);
-  }
 }

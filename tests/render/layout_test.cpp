@@ -39,8 +39,8 @@ std::vector<render::PixelRect> boxes(const render::OverlayLayout& layout) {
 
 }  // namespace
 
-TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off") {
-  if (!test::have_font()) return;
+TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off" * doctest::test_suite("font")) {
+  test::need_font();
   render::Overlay overlay = full_overlay();
   for (const bool scale : {true, false}) {
     if (!scale) overlay.scale.reset();
@@ -62,8 +62,8 @@ TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off") {
   CHECK_THROWS_AS(render::lay_out(overlay, 100, 60), InputError);
 }
 
-TEST_CASE("a logarithmic scale has its values below it, at their positions") {
-  if (!test::have_font()) return;
+TEST_CASE("a logarithmic scale has its values below it, at their positions" * doctest::test_suite("font")) {
+  test::need_font();
   render::Overlay overlay = full_overlay();
   overlay.scale = render::ScaleBar{"distance / largest side", 0.0005, 0.1, true};
   const render::ScaleBar& scale = *overlay.scale;
@@ -93,22 +93,8 @@ TEST_CASE("a logarithmic scale has its values below it, at their positions") {
   }
 }
 
-TEST_CASE("a higher resolution changes only the number of pixels") {
-  if (!test::have_font()) return;
-  const render::Overlay overlay = full_overlay();
-  const render::OverlayLayout screen = render::lay_out(overlay, 1280, 720),
-                              print = render::lay_out(overlay, 3840, 2160, 3);
-  CHECK(print.text_height == 3 * screen.text_height);
-  REQUIRE(print.texts.size() == screen.texts.size());
-  for (std::size_t i = 0; i < print.texts.size(); ++i) {
-    CHECK(print.texts[i].text == screen.texts[i].text);
-    CHECK(std::abs(print.texts[i].box.y - 3 * screen.texts[i].box.y) < 3 * 12);
-  }
-  CHECK(std::abs(print.picture.height - 3 * screen.picture.height) < 3 * 12);
-}
-
-TEST_CASE("the overlay draws only within its layout") {
-  if (!test::have_font()) return;
+TEST_CASE("the overlay draws only within its layout" * doctest::test_suite("font")) {
+  test::need_font();
   const render::Overlay overlay = full_overlay();
   const render::OverlayLayout layout = render::lay_out(overlay, 1280, 720);
   const render::Image picture(layout.picture.width, layout.picture.height, {1, 2, 3});
@@ -130,17 +116,6 @@ TEST_CASE("the overlay draws only within its layout") {
   }
 }
 
-TEST_CASE("an empty overlay leaves the whole frame to the picture") {
-  CHECK(render::lay_out(render::Overlay{}, 640, 360).picture == render::PixelRect{0, 0, 640, 360});
-}
-
-TEST_CASE("frames of a sequence share a picture") {
-  render::OverlayLayout a, b;
-  a.picture = {0, 40, 640, 250};
-  b.picture = {0, 60, 640, 250};
-  CHECK(render::common_picture(std::vector{a, b}) == render::PixelRect{0, 60, 640, 230});
-}
-
 TEST_CASE("numbers are short and grouped") {
   CHECK(render::group_digits(0) == "0");
   CHECK(render::group_digits(999) == "999");
@@ -151,8 +126,8 @@ TEST_CASE("numbers are short and grouped") {
   CHECK(render::short_number(3e9) == "3e+09");
 }
 
-TEST_CASE("panels of a montage form a grid and do not overlap") {
-  if (!test::have_font()) return;
+TEST_CASE("panels of a montage form a grid and do not overlap" * doctest::test_suite("font")) {
+  test::need_font();
   std::vector<render::Panel> panels;
   for (int i = 0; i < 5; ++i) {
     panels.push_back({render::Image(120 + 10 * i, 90, {static_cast<std::uint8_t>(50 * i), 0, 0}),
@@ -181,22 +156,4 @@ TEST_CASE("panels of a montage form a grid and do not overlap") {
   }
   CHECK(image.at(1, 1) == render::kWhite);
   CHECK_THROWS_AS(render::montage({}), InputError);
-}
-
-TEST_CASE("four panels of a figure are arranged two by two; letters continue after z") {
-  if (!test::have_font()) return;
-  const std::vector<render::Panel> panels(4, render::Panel{render::Image(400, 300), ""});
-  const render::MontageLayout layout = render::lay_out(panels);
-  CHECK(layout.panels[0].y == layout.panels[1].y);
-  CHECK(layout.panels[2].y > layout.panels[1].y);
-  CHECK(render::panel_letter(0) == "(a)");
-  CHECK(render::panel_letter(25) == "(z)");
-  CHECK(render::panel_letter(26) == "(aa)");
-  render::MontageOptions plain;
-  plain.letters = false;
-  plain.columns = 2;
-  plain.gutter = 0;
-  const render::MontageLayout tight = render::lay_out(panels, plain);
-  CHECK(tight.width == 800);
-  CHECK(tight.height == 600);
 }

@@ -99,17 +99,6 @@ TEST_CASE("a line on top is split where a face begins to hide it, and dashed fro
   CHECK(hidden.pen.width < 2);
 }
 
-TEST_CASE("a line above or on a face is visible entirely") {
-  for (const double z : {1.0, 1.5}) {
-    CAPTURE(z);
-    render::DrawList list = half_covered();
-    list.lines.push_back(line_on_top(z));
-    const Notes notes = painted(list);
-    REQUIRE(notes.drawn.size() == 1);
-    CHECK(notes.drawn[0].pen.dash == 0);
-  }
-}
-
 TEST_CASE("a hidden point on top is drawn as a ring") {
   render::DrawList list = half_covered();
   render::DrawPoint point;
@@ -125,29 +114,6 @@ TEST_CASE("a hidden point on top is drawn as a ring") {
   CHECK(notes.drawn[0].closed);
 }
 
-TEST_CASE("items are painted either into a picture or over it") {
-  render::DrawList list = half_covered();
-  list.lines.push_back(line_on_top(0));
-  render::DrawLine below = line_on_top(0);
-  below.layer = render::Layer::opaque;
-  list.lines.push_back(below);
-  const render::DrawList under = render::under_lines(list);
-  CHECK(under.lines.size() == 1);
-  CHECK(under.lines[0].layer == render::Layer::opaque);
-  CHECK(under.triangles.size() == list.triangles.size());
-}
-
-TEST_CASE("depths equal the projection's, and 1 in the background") {
-  const render::DrawList list = half_covered();
-  const render::Camera camera = from_above();
-  render::Rasterizer rasterizer;
-  const render::DepthImage depths = rasterizer.depths(list, camera, 40, 40);
-  const render::Projection projection(camera, 40, 40, render::bounds(list));
-  CHECK(depths.at(5, 20) == 1);
-  CHECK(depths.at(30, 20) ==
-        doctest::Approx(projection.to_screen(projection.to_eye({0.5, 0, 1})).z()).epsilon(1e-5));
-}
-
 TEST_CASE("a scene with depth is not painted as if it were flat") {
   const render::DrawList list = half_covered();
   Notes notes;
@@ -156,8 +122,9 @@ TEST_CASE("a scene with depth is not painted as if it were flat") {
       InputError);
 }
 
-TEST_CASE("a PDF has its size, its fonts, no date, and the same bytes each time") {
-  if (!test::have_font()) return;
+TEST_CASE("a PDF has its size, its fonts, no date, and the same bytes each time" *
+          doctest::test_suite("font")) {
+  test::need_font();
   const auto paint = [](render::Canvas& canvas) {
     canvas.fill({{{10, 10}, {90, 10}, {90, 40}}}, {200, 0, 0, 128});
     canvas.text({{50, 30}, "text", 10});
@@ -190,20 +157,9 @@ TEST_CASE("pixels of a canvas: sizes, colours, transparency") {
   CHECK(image.at(80, 80).a == 0);
 }
 
-TEST_CASE("a picture on the pixel grid is unchanged") {
-  render::Image image(3, 2, render::kWhite);
-  image.at(0, 0) = {255, 0, 0, 255};
-  image.at(2, 1) = {0, 128, 0, 255};
-  const render::Image out =
-      render::paint_pixels({36, 36, render::kWhite, {}, {}}, 144, [&](render::Canvas& canvas) {
-        canvas.picture(image, {Vector2d(5, 10), Vector2d(6.5, 11)});
-      });
-  for (int y = 0; y < 2; ++y)
-    for (int x = 0; x < 3; ++x) CHECK(out.at(10 + x, 20 + y) == image.at(x, y));
-}
-
-TEST_CASE("texts of an SVG may be outlines, which need no font; its size may be in mm") {
-  if (!test::have_font()) return;
+TEST_CASE("texts of an SVG may be outlines, which need no font; its size may be in mm" *
+          doctest::test_suite("font")) {
+  test::need_font();
   render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
   canvas.text({{50, 20}, "<l>", 10, false, render::kBlack, render::Align::centre, render::kWhite});
   const std::string svg = render::svg_file(canvas, {72 / 25.4 * 85, 40, 0.75, {}, render::kWhite, true});

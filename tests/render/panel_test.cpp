@@ -53,8 +53,9 @@ TEST_CASE("panels are placed along the longer side, with a rule between") {
   }
 }
 
-TEST_CASE("titles are in their panels, and a look can omit them; transparent panels keep their alpha") {
-  if (!test::have_font()) return;
+TEST_CASE("titles are in their panels, and a look can omit them; transparent panels keep their alpha" *
+          doctest::test_suite("font")) {
+  test::need_font();
   render::Look look;
   render::Rasterizer rasterizer;
   const render::PixelRect picture{0, 0, 300, 200}, strip{0, 0, 300, 12};
@@ -68,8 +69,9 @@ TEST_CASE("titles are in their panels, and a look can omit them; transparent pan
   CHECK(clear.at(150, 100) == kPanelRed);
 }
 
-TEST_CASE("a picture is unchanged by the texts of its overlay, at any resolution") {
-  if (!test::have_font()) return;
+TEST_CASE("a picture is unchanged by the texts of its overlay, at any resolution" *
+          doctest::test_suite("font")) {
+  test::need_font();
   render::Overlay overlay;
   overlay.title = "Title";
   overlay.key = {{run::Mark::solid, kPanelRed, "a square"}};
@@ -94,17 +96,4 @@ TEST_CASE("a picture is unchanged by the texts of its overlay, at any resolution
     for (int y = 0; y < sheet.height(); y += 7)
       for (int x = 1; x + 1 < sheet.width(); x += 7) REQUIRE(framed.at(x, top + y) == sheet.at(x, y));
   }
-}
-
-TEST_CASE("a look without legend or titles removes only these texts") {
-  render::Overlay overlay;
-  overlay.title = "t", overlay.event = "e", overlay.key = {{run::Mark::line, kPanelRed, "k"}};
-  render::Look look;
-  look.legend = false;
-  run::leave_out_texts(overlay, look);
-  CHECK(overlay.key.empty());
-  CHECK(overlay.title == "t");
-  look.titles = false;
-  run::leave_out_texts(overlay, look);
-  CHECK(overlay.empty());
 }

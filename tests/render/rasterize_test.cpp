@@ -8,7 +8,6 @@
 #include <doctest/doctest.h>
 
 #include "render/gl.hpp"
-#include "tests/render/font_guard.hpp"
 #include "tests/render/triangles.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/rasterize.hpp>
@@ -114,30 +113,6 @@ TEST_CASE("edges are drawn with their width, and only the requested ones") {
   }
 }
 
-TEST_CASE("edges fade before they cover the face") {
-  render::DrawList list;
-  render::DrawTriangle t = flat(kGreen);
-  t.edges = 7;
-  t.edge_style = list.edge_style({render::kBlack, 1});
-  for (int i = 0; i < 40; ++i) square(list, 10 + i, 10, 11 + i, 50, 0, t);
-  const render::Image image = rasterizer().draw(list, pixel_camera(64, 64), size(64, 64));
-  CHECK(image.at(30, 30) == kGreen);
-}
-
-TEST_CASE("edges of back faces are paler if their style requires it") {
-  render::DrawList list;
-  render::DrawTriangle t = flat(render::kWhite, render::Layer::translucent);
-  t.edges = 7;
-  t.edge_style = list.edge_style({render::kBlack, 6, 0.4F});
-  square(list, 10, 10, 90, 90, 0, t);
-  list.add_polygon({{110, 10, 0}, {110, 90, 0}, {190, 90, 0}, {190, 10, 0}}, t);  // the other way round
-  const render::Image image = rasterizer().draw(list, pixel_camera(200, 100), size(200, 100));
-  CHECK(image.at(11, 50) == render::kBlack);
-  CHECK(near(image.at(111, 50), {153, 153, 153}));
-  CHECK(image.at(12, 50) == render::kBlack);
-  CHECK(image.at(112, 50).r > 220);  // 0.7 of the width
-}
-
 TEST_CASE("in a close-up among large bodies, lines on top are hidden correctly") {
   // A slope across the view, a line on it and one as far behind it as it is wide, and then some.
   render::DrawList list;
@@ -189,15 +164,6 @@ TEST_CASE("translucent faces blend by depth in any order, also at intersections"
     CHECK(near(image.at(30, 20), {128, 64, 191}));
     CHECK(image.at(2, 2) == render::kWhite);
   }
-}
-
-TEST_CASE("opaque faces hide translucent faces behind them") {
-  render::DrawList list;
-  square(list, 0, 0, 20, 40, 1, flat(kGreen));
-  square(list, 0, 0, 40, 40, 0, flat({255, 0, 0, 128}, render::Layer::translucent));
-  const render::Image image = rasterizer().draw(list, pixel_camera(40, 40), size(40, 40));
-  CHECK(image.at(10, 20) == kGreen);
-  CHECK(near(image.at(30, 20), {255, 127, 127}));
 }
 
 TEST_CASE("a depth bias orders coplanar faces") {
@@ -344,21 +310,6 @@ TEST_CASE("ids name the visible face at each pixel") {
   CHECK(ids.at(0, 0) == render::kNoId);
 }
 
-TEST_CASE("shading is flat, brightest towards the light, the same on both sides") {
-  const render::Camera camera = pixel_camera(10, 10);
-  const render::Projection projection(camera, 10, 10,
-                                      Eigen::AlignedBox3d(Vector3d(0, 0, -1), Vector3d(10, 10, 1)));
-  const render::Lighting lighting;
-  const render::Rgba c{100, 150, 200};
-  const auto lit = [&](Vector3d n) {
-    return render::luma(render::shade(c, n.normalized(), projection.axes(), lighting));
-  };
-  CHECK(lit({-0.3, 0.6, 1}) > lit({0, 0, 1}));
-  CHECK(lit({0, 0, 1}) > lit({0.8, -0.9, 0.2}));
-  CHECK(lit({0, 0, 1}) == lit({0, 0, -1}));
-  CHECK(lit({1, -1, 0.01}) > 0.3 * render::luma(c));
-}
-
 TEST_CASE("pictures are reproducible byte for byte, also after others and by another rasterizer") {
   render::DrawList list;
   render::DrawTriangle t;
@@ -423,25 +374,6 @@ TEST_CASE("threads draw the same pictures, each with its rasterizer or one after
     std::thread([&] { count += shared.draw(list, camera, size(160, 120)) != expected; }).join();
   CHECK(shared.draw(list, camera, size(160, 120)) == expected);
   CHECK(wrong == std::array<int, kThreads>{});
-}
-
-TEST_CASE("labels are written at their points") {
-  if (!test::have_font()) return;
-  render::DrawList list;
-  square(list, 0, 0, 200, 100, 0, flat({60, 60, 160}));
-  list.labels.push_back({{100, 50, 0}, "label", render::kBlack, 20, 0, -20, render::kWhite});
-  render::RasterOptions o = size(200, 100);
-  const render::Image with = rasterizer().draw(list, pixel_camera(200, 100), o);
-  o.labels = false;
-  const render::Image without = rasterizer().draw(list, pixel_camera(200, 100), o);
-  Eigen::AlignedBox2d changed;
-  for (int y = 0; y < 100; ++y) {
-    for (int x = 0; x < 200; ++x) {
-      if (with.at(x, y) != without.at(x, y)) changed.extend(Eigen::Vector2d(x, y));
-    }
-  }
-  CHECK(changed.center().x() == doctest::Approx(100).epsilon(0.03));
-  CHECK(changed.center().y() == doctest::Approx(30).epsilon(0.15));
 }
 
 TEST_CASE("impossible sizes are rejected") {

@@ -70,21 +70,6 @@ TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its 
   CHECK(!has_key(bare, "A, pseudo faces"));
 }
 
-TEST_CASE("lids have edges; a refined region's are lines, each once") {
-  const LrbRep rep = test::dented(shapes::icosphere(0), 1);
-  const Wrapper wrapper(rep);
-  const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
-  render::Scene scene = render::build_scene(body);
-  for (const render::DrawTriangle& t : scene.list.triangles) {
-    if (t.layer == render::Layer::translucent) CHECK(t.edges == 7);
-  }
-  CHECK(scene.list.lines.empty());
-  render::SceneHighlight highlight;
-  highlight.refining[0] = {4};
-  scene = render::build_scene(body, highlight);
-  CHECK(scene.list.lines.size() == 3);  // one triangular lid over three real faces
-}
-
 TEST_CASE("borders of regions and creases are marked on request") {
   const LrbRep rep = test::dented(shapes::box(), 1);  // a region under each of its faces; dents have creases
   const Wrapper wrapper(rep);
@@ -111,35 +96,6 @@ TEST_CASE("borders of regions and creases are marked on request") {
   for (const render::DrawTriangle& t : render::build_scene(round, {}, options).list.triangles)
     creases += t.borders;
   CHECK(creases == 0);
-}
-
-TEST_CASE("in print, bodies differ in grey in all that is drawn of them") {
-  const LrbRep rep = test::dented(shapes::box(), 1);
-  const Wrapper wrapper(rep);
-  const std::vector<render::SceneBody> bodies = {{&rep, &wrapper, {}, {}, "A"},
-                                                 {&rep, &wrapper, {}, {}, "B"}};
-  render::SceneOptions options;
-  options.style = render::StyleName::print;
-  const render::Scene scene = render::build_scene(bodies, {}, options);
-  const auto swatch = [&](const std::string& text) {
-    const auto item = std::find_if(scene.key.begin(), scene.key.end(),
-                                   [&](const render::LegendItem& i) { return i.text == text; });
-    REQUIRE(item != scene.key.end());
-    REQUIRE(item->swatch);
-    return *item->swatch;
-  };
-  const auto a = swatch("A, pseudo faces"), b = swatch("B, pseudo faces");
-  const auto on_paper = [](render::Rgba c) { return render::luma(render::over(c, render::kWhite)); };
-  CHECK(on_paper(b.edge) - on_paper(a.edge) > 50);
-  CHECK(on_paper(b.face) - on_paper(a.face) > 20);
-  CHECK(on_paper(b.under) - on_paper(a.under) > 50);
-  // The swatch is what is drawn.
-  for (const render::DrawTriangle& t : scene.list.triangles) {
-    if (t.layer != render::Layer::translucent) continue;
-    const bool of_a = (t.id >> 31) == 0;
-    CHECK(t.colour == (of_a ? a : b).face);
-    CHECK(scene.list.edge_styles[t.edge_style].colour == (of_a ? a : b).edge);
-  }
 }
 
 TEST_CASE("poses move bodies; names and sides are distinguished") {
@@ -279,16 +235,6 @@ TEST_CASE("exploded regions keep their shape and move outward") {
       std::count_if(later.list.triangles.begin(), later.list.triangles.end(),
                     [&](const auto& t) { return t.colour == render::style_of(options.style).refining; });
   CHECK(static_cast<std::size_t>(green) == rep.collector(3).size());
-}
-
-TEST_CASE("bodies of many regions can be exploded by region") {
-  const LrbRep rep = test::dented(shapes::icosphere(1), 3);
-  REQUIRE(rep.region_count() > 256);
-  render::SceneOptions options;
-  options.explode = 0.5;
-  options.colour_by = render::ColourBy::region;
-  CHECK(!render::build_scene(std::vector<render::SceneBody>{{&rep, nullptr, {}, {}, ""}}, {}, options)
-             .list.empty());
 }
 
 TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {

@@ -157,23 +157,9 @@ TEST_CASE("lines, points and labels of an SVG") {
   CHECK(count(render::svg(list, camera, options), "<rect") == 0);
 }
 
-TEST_CASE("an SVG has no depth: triangles are rejected") {
-  render::DrawList list;
-  list.triangles.emplace_back();
-  CHECK_THROWS_AS(render::svg(list, render::Camera{}), InputError);
-}
-
-TEST_CASE("an SVG keeps its size on paper in any units") {
-  render::DrawList list;
-  list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, render::kBlack, 1});
-  render::SvgOptions options;
-  options.width = 1250, options.height = 625, options.units_per_pixel = 3.125;
-  const std::string text = render::svg(list, render::Camera{}, options);
-  CHECK(count(text, " width=\"400\" height=\"200\" viewBox=\"0 0 1250 625\"") == 1);
-}
-
-TEST_CASE("a montage of SVG: panels where the pixels would be, captions as text") {
-  if (!test::have_font()) return;
+TEST_CASE("a montage of SVG: panels where the pixels would be, captions as text" *
+          doctest::test_suite("font")) {
+  test::need_font();
   render::DrawList list;
   list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, render::kBlack, 1});
   render::SvgOptions each;

@@ -31,8 +31,8 @@ TEST_CASE("UTF-8 is decoded, and invalid bytes become a replacement mark") {
   CHECK(got == std::vector<char32_t>{U'a', U'é', U'€', U'\U0001F600', 0xFFFD, 0xFFFD});
 }
 
-TEST_CASE("a text stays within its measured box") {
-  if (!test::have_font()) return;
+TEST_CASE("a text stays within its measured box" * doctest::test_suite("font")) {
+  test::need_font();
   const render::Font& font = render::default_font();
   for (const float height : {9.0F, 14.0F, 31.5F}) {
     for (const bool bold : {false, true}) {
@@ -51,49 +51,8 @@ TEST_CASE("a text stays within its measured box") {
   }
 }
 
-TEST_CASE("widths add up, alignment moves") {
-  if (!test::have_font()) return;
-  const render::Font& font = render::default_font();
-  render::TextStyle style;
-  style.height = 20;
-  const int one = font.measure("face", style).width, two = font.measure("faceface", style).width;
-  CHECK(std::abs(two - 2 * one) <= 2);
-  CHECK(font.measure("", style).width == 0);
-  CHECK(font.measure("", style).height == font.measure("Xg", style).height);
-  for (const render::Align align : {render::Align::left, render::Align::centre, render::Align::right}) {
-    render::Image image(300, 40);
-    style.align = align;
-    font.draw(image, "alignment", 150, 5, style);
-    const render::PixelRect box = ink(image);
-    const int centre = box.x + box.width / 2, half = font.measure("alignment", style).width / 2;
-    CHECK(std::abs(centre - (align == render::Align::left     ? 150 + half
-                             : align == render::Align::centre ? 150
-                                                              : 150 - half)) <= 3);
-  }
-}
-
-TEST_CASE("a halo surrounds the letters and keeps them") {
-  if (!test::have_font()) return;
-  render::TextStyle style;
-  style.height = 24;
-  style.colour = render::kBlack;
-  render::Image plain(120, 40, {90, 90, 200}), haloed = plain;
-  render::default_font().draw(plain, "halo", 10, 5, style);
-  style.halo = render::kWhite;
-  style.halo_width = 3;
-  render::default_font().draw(haloed, "halo", 10, 5, style);
-  int white = 0;
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 120; ++x) {
-      if (plain.at(x, y) == render::kBlack) CHECK(haloed.at(x, y) == render::kBlack);
-      white += haloed.at(x, y) == render::kWhite;
-    }
-  }
-  CHECK(white > 200);
-}
-
-TEST_CASE("wrapped lines fit and keep all words") {
-  if (!test::have_font()) return;
+TEST_CASE("wrapped lines fit and keep all words" * doctest::test_suite("font")) {
+  test::need_font();
   render::TextStyle style;
   style.height = 15;
   const std::string text =
