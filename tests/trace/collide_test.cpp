@@ -176,10 +176,3 @@ TEST_CASE("approximate queries and certificates: the trace has the answers, and 
   CHECK(proofs > 10);
   CHECK(earlier > 100);
 }
-
-TEST_CASE("names of relations and answers are the engine's") {
-  for (std::size_t i = 0; i < kEnumNames<Relation>.size(); ++i)
-    CHECK(name_of(static_cast<Relation>(i)) == to_string(static_cast<Relation>(i)));
-  for (std::size_t i = 0; i < kEnumNames<Answer>.size(); ++i)
-    CHECK(name_of(static_cast<Answer>(i)) == to_string(static_cast<Answer>(i)));
-}

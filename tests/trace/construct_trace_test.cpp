@@ -225,15 +225,6 @@ TEST_CASE("summaries contain reasons of rejected caps, and no refinements") {
   CHECK(c.at("passes").at(0).at("stage") == "fitting");
 }
 
-TEST_CASE("reasons of rejection as text, most frequent first") {
-  std::array<std::uint32_t, kEnumNames<CapVerdict>.size()> caps{};
-  CHECK(rejection_text(caps) == "");
-  caps[static_cast<std::size_t>(CapVerdict::accepted)] = 7;
-  caps[static_cast<std::size_t>(CapVerdict::too_thick)] = 3;
-  caps[static_cast<std::size_t>(CapVerdict::meets_front)] = 9;
-  CHECK(rejection_text(caps) == "9 met the front, 3 too thick");
-}
-
 TEST_CASE("two different constructions: the first different event and field") {
   const Trace& x = rock().trace;
   const auto differ = [&](EventKind kind, auto change) {
@@ -278,13 +269,4 @@ TEST_CASE("damaged constructions are rejected") {
   Trace two = rock().trace;
   two.header.bodies.push_back(two.header.bodies[0]);
   CHECK_THROWS_AS(check_trace(two, "t.json"), InputError);
-}
-
-TEST_CASE("stages and verdicts agree with the schema") {
-  const Json& schema = test::trace_schema();
-  Json stages = Json::array(), verdicts = Json::array();
-  for (const auto& entry : kEnumNames<BuildStage>) stages.push_back(entry.name);
-  for (const auto& entry : kEnumNames<CapVerdict>) verdicts.push_back(entry.name);
-  CHECK(schema.at("/definitions/stage/enum"_json_pointer) == stages);
-  CHECK(schema.at("/definitions/verdict/enum"_json_pointer) == verdicts);
 }

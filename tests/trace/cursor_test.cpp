@@ -107,24 +107,6 @@ TEST_CASE("the cursor knows its step, pose, pair and regions") {
   CHECK(found == refinements);
 }
 
-TEST_CASE("one body alone: refining and coarsening") {
-  const LrbRep plate(toy::notched_plate());
-  Recorder recorder(plate, RecorderSettings{});
-  recorder.begin_step(0, {});
-  for (const RegionId r : std::initializer_list<RegionId>{2, 1, 0}) recorder.refine(Side::a, r, 3);
-  recorder.coarsen(Side::a, 0, 2);
-  const Trace t = recorder.take();
-  REQUIRE(t.header.bodies.size() == 1);
-  Cursor cursor(t, plate);
-  std::vector<std::size_t> sizes;
-  while (cursor.next()) sizes.push_back(cursor.wrapper(Side::a).boundary().size());
-  CHECK(sizes == std::vector<std::size_t>{5, 6, 8, 9, 8});
-  cursor.seek(3);
-  std::vector<FaceId> real(9);
-  for (FaceId f = 0; f < 9; ++f) real[f] = f;
-  CHECK(cursor.wrapper(Side::a).boundary() == real);
-}
-
 TEST_CASE("a replay rejects another body and another number of bodies") {
   const LrbRep plate(toy::notched_plate());
   LrbData moved = toy::notched_plate();

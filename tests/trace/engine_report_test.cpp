@@ -82,18 +82,6 @@ TEST_CASE("an engine's answers, counters, phases and axes survive a file, which 
   CHECK(find("node pair").at(1)["args"]["axis"] == 0);
 }
 
-TEST_CASE("a trace without such answers is written as before") {
-  RecorderSettings settings;
-  settings.engine = "Toy 1.0";
-  settings.level = EventLevel::nodes;
-  Recorder recorder(runs::plate(), runs::plate(), settings);
-  recorder.begin_step(0, {}, {});
-  recorder.end_step({});
-  const Json document = Json::parse(trace_to_json(recorder.take()));
-  CHECK(document["metadata"]["version"] == 3);
-  CHECK(test::trace_faults(document) == "");
-}
-
 TEST_CASE("two recordings of one query differ in what was found, not in when") {
   const Trace x = engine_run();
   Trace y = x;
@@ -151,11 +139,4 @@ TEST_CASE("a broken tree keeps first parents and nodes reachable from the root")
   const Trace t = engine_run();
   const NodeCounts counts = count_nodes(tree, Side::a, t.events);
   CHECK(work_by_depth(tree, counts).size() == 3);
-}
-
-TEST_CASE("a sound tree has no faults") {
-  const TreeShape tree(runs::plate().tree());
-  TreeShape again = tree;
-  CHECK_FALSE(again.finish().any());
-  CHECK(again.from_root() == tree.from_root());
 }

@@ -149,6 +149,8 @@ TEST_CASE("the tables have the fields and words of the published schema") {
   CHECK(test::trace_schema().at("/definitions/metadata/properties/totals/required"_json_pointer) == of_faces);
   CHECK(test::trace_schema().at("/definitions/phase/enum"_json_pointer) == words<Phase>());
   CHECK(test::trace_schema().at("/definitions/box_axis/enum"_json_pointer) == words<BoxAxis>());
+  CHECK(test::trace_schema().at("/definitions/stage/enum"_json_pointer) == words<BuildStage>());
+  CHECK(test::trace_schema().at("/definitions/verdict/enum"_json_pointer) == words<CapVerdict>());
 }
 
 TEST_CASE("names of enumerators round trip, and the engine's are those in files") {

@@ -21,59 +21,6 @@ RecorderSettings paper() {
 
 }  // namespace
 
-TEST_CASE("the recorder offers what NullProbe offers") {
-  Recorder recorder(plate(), plate(), {});
-  recorder.begin_step(0, {}, {});
-  recorder.face_test(1, 2, Meet::disjoint, 3, 4);
-  recorder.refine(Side::b, 2, 5);
-  recorder.contact(1, 2, Meet::touch);
-  const Trace t = recorder.take();
-  REQUIRE(t.events.size() == 4);
-  CHECK(t.events[0].kind == EventKind::step);
-  const Event test{.a = 1, .b = 2, .depth_a = 3, .depth_b = 4, .kind = EventKind::face_test};
-  CHECK(t.events[1] == test);
-  CHECK(t.events[2].kind == EventKind::refine);
-  CHECK(t.events[2].side == Side::b);
-  CHECK(t.events[2].a == 2);
-  CHECK(t.events[2].b == 5);
-  CHECK(t.events[3].kind == EventKind::contact);
-  CHECK(t.events[3].meet == Meet::touch);
-}
-
-TEST_CASE("a refinement is caused by the intersecting face test before it") {
-  Recorder recorder(plate(), plate(), paper());
-  recorder.begin_step(0, {}, {});
-  recorder.refine(Side::a, 2, 3);                    // 1: nothing before it
-  recorder.face_test(11, 11, Meet::cross, 0, 0);     // 2
-  recorder.refine(Side::b, 2, 3);                    // 3
-  recorder.contact(0, 0, Meet::cross);               // 4
-  recorder.refine(Side::a, 1, 3);                    // 5
-  recorder.face_test(11, 12, Meet::disjoint, 0, 0);  // 6
-  recorder.refine(Side::b, 1, 3);                    // 7: the last test missed
-  recorder.begin_step(1, {}, {});                    // 8
-  recorder.refine(Side::a, 2, 3);                    // 9: the hit was in another step
-  const Trace t = recorder.take();
-  const EventId expected[] = {kNull, kNull, kNull, 2, 2, 2, kNull, kNull, kNull, kNull};
-  REQUIRE(t.events.size() == std::size(expected));
-  for (EventId e = 0; e < t.events.size(); ++e) {
-    CAPTURE(e);
-    if (t.events[e].kind != EventKind::face_test) CHECK(t.events[e].cause == expected[e]);
-  }
-}
-
-TEST_CASE("the complete query's refinements have no cause among the events, its contacts have") {
-  Recorder recorder(plate(), plate(), {});
-  recorder.begin_step(0, {}, {});
-  recorder.face_test(0, 0, Meet::cross, 0, 0);  // 1
-  recorder.contact(0, 0, Meet::cross);          // 2
-  recorder.refine(Side::a, 2, 3);               // 3: for the next test
-  recorder.face_test(2, 0, Meet::cross, 1, 0);  // 4
-  const Trace t = recorder.take();
-  CHECK(t.events[2].cause == 1);
-  CHECK(t.events[3].cause == kNull);
-  CHECK(t.events[4].cause == 3);
-}
-
 TEST_CASE("a face test is caused by the refinement that added the later of its faces") {
   Recorder recorder(plate(), plate(), paper());
   recorder.begin_step(0, {}, {});
@@ -140,17 +87,6 @@ TEST_CASE("beyond the cap, events are counted and not stored") {
     }
     CHECK_NOTHROW(check_trace(cut, "cut"));
   }
-}
-
-TEST_CASE("the wall clock gives every event its own, later time") {
-  RecorderSettings settings;
-  settings.clock = Clock::wall;
-  Recorder recorder(plate(), plate(), settings);
-  recorder.begin_step(0, {}, {});
-  for (int i = 0; i < 1000; ++i) recorder.face_test(0, 0, Meet::disjoint, 0, 0);
-  const Trace t = recorder.take();
-  REQUIRE(t.wall_ns.size() == 1001);
-  CHECK(std::adjacent_find(t.wall_ns.begin(), t.wall_ns.end(), std::greater_equal<>()) == t.wall_ns.end());
 }
 
 TEST_CASE("depths beyond 16 bits are cut, not wrapped") {
