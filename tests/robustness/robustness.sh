@@ -4,6 +4,7 @@
 # "unlimited" skips the tests with a memory limit, which is too small for ASan's shadow memory.
 set -u
 bin=$(realpath "$1")
+data=$(dirname "$(realpath "${BASH_SOURCE[0]}")")/../data
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 cd "$dir" || exit 1
@@ -45,22 +46,7 @@ all_whole() {
   while IFS= read -r file; do whole "$file" "$2"; done < <(find "$1" -type f)
 }
 
-cat >cube.obj <<'END'
-v 0 0 0
-v 1 0 0
-v 1 1 0
-v 0 1 0
-v 0 0 1
-v 1 0 1
-v 1 1 1
-v 0 1 1
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-END
+cp "$data/l_block.obj" block.obj
 for i in $(seq 1 3000); do echo "1 0 0 0.5 0 1 0 0.25 0 0 1 0.125"; done >poses.txt
 cat >long.json <<'END'
 {"name": "long", "purpose": "is interrupted",
@@ -71,25 +57,25 @@ END
 sed -e 's/"steps": 400/"steps": 4/' -e 's/"long"/"short"/' long.json >short.json
 
 # --- stdout and its readers
-expect 3 "stdout on a full disk" bash -c "'$bin' query cube.obj cube.obj --poses poses.txt >/dev/full"
+expect 3 "stdout on a full disk" bash -c "'$bin' query block.obj block.obj --poses poses.txt >/dev/full"
 expect 3 "help on a full disk" bash -c "'$bin' --help >/dev/full"
-"$bin" query cube.obj cube.obj --poses poses.txt --pairs 2>err | head -1 >out.txt
+"$bin" query block.obj block.obj --poses poses.txt --pairs 2>err | head -1 >out.txt
 code=${PIPESTATUS[0]}
 [ "$code" = 141 ] || fail "closed pipe: exit $code, expected 141"
 [ "$(wc -l <out.txt)" = 1 ] || fail "closed pipe: $(wc -l <out.txt) lines arrived"
 [ ! -s err ] || fail "closed pipe: expected no output on stderr"
 expect 3 "closed pipe where SIGPIPE is ignored" \
-  bash -c "trap '' PIPE; '$bin' query cube.obj cube.obj --poses poses.txt --pairs | head -1 >/dev/null; exit \${PIPESTATUS[0]}"
+  bash -c "trap '' PIPE; '$bin' query block.obj block.obj --poses poses.txt --pairs | head -1 >/dev/null; exit \${PIPESTATUS[0]}"
 expect 3 "closed stdout" bash -c "'$bin' list >&-"
 
 # --- output that cannot be written
-expect 3 "a file on a full disk" "$bin" build cube.obj -o /dev/full
+expect 3 "a file on a full disk" "$bin" build block.obj -o /dev/full
 touch a_file
-expect 3 "an output folder that is a file" "$bin" collide cube.obj cube.obj -o a_file --frames none
+expect 3 "an output folder that is a file" "$bin" collide block.obj block.obj -o a_file --frames none
 expect 3 "an output folder below a file" "$bin" run short.json -o a_file/below
 mkdir a_folder
-expect 2 "an output file that is a folder" "$bin" build cube.obj -o a_folder
-expect 2 "an output file in no folder" "$bin" build cube.obj -o nowhere/x.lrb
+expect 2 "an output file that is a folder" "$bin" build block.obj -o a_folder
+expect 2 "an output file in no folder" "$bin" build block.obj -o nowhere/x.lrb
 [ -f a_file ] && [ ! -s a_file ] || fail "the file in the way was changed"
 mkdir out && mkdir out/index.html
 expect 2 "a folder where the page goes" "$bin" run short.json -o out --frames none
@@ -109,7 +95,7 @@ if [ "$(id -u)" = 0 ] && mkdir tiny && mount -t tmpfs -o size=128k tmpfs tiny 2>
   all_whole tiny "a full file system"
   no_temporaries "a full file system"
   cat /dev/zero >tiny/rest 2>/dev/null
-  expect 3 "a full file system, again" "$bin" build cube.obj -o tiny/x.lrb
+  expect 3 "a full file system, again" "$bin" build block.obj -o tiny/x.lrb
   [ ! -e tiny/x.lrb ] || whole tiny/x.lrb "a full file system, again"
   umount tiny
 else
@@ -118,7 +104,7 @@ fi
 if [ "$(id -u)" != 0 ]; then
   mkdir read_only && chmod 555 read_only
   expect 3 "an unwritable folder" "$bin" run short.json -o read_only/out
-  expect 2 "a file in an unwritable folder" "$bin" build cube.obj -o read_only/x.lrb
+  expect 2 "a file in an unwritable folder" "$bin" build block.obj -o read_only/x.lrb
   chmod 755 read_only
 else
   echo "skipped: an unwritable folder (root may write everywhere)"
@@ -201,7 +187,7 @@ stop() {
 for seconds in 0.2 0.7 1.5; do
   stop INT $seconds run "$bin" run long.json -o run
   stop TERM $seconds run "$bin" run long.json -o run
-  stop TERM $seconds collide "$bin" collide cube.obj cube.obj -o collide --size 1920x1080
+  stop TERM $seconds collide "$bin" collide block.obj block.obj -o collide --size 1920x1080
 done
 stop HUP 0.5 run "$bin" run long.json -o run
 (trap '' INT; "$bin" list >/dev/null 2>err & pid=$!; kill -INT $pid; wait $pid) || fail "an ignored SIGINT ended it"
