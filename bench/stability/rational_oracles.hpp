@@ -86,27 +86,43 @@ inline std::optional<RationalClosest> closest_of_features(const RationalPoints& 
   return out;
 }
 
+/// Returns the features of a simplex: its corners, edges and interior.
+inline std::vector<RationalPoints> features_of(const RationalPoints& corners) {
+  std::vector<RationalPoints> all;
+  for (unsigned which = 1; which < 1U << corners.size(); ++which) {
+    RationalPoints points;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      if (which >> k & 1) points.push_back(corners[k]);
+    all.push_back(points);
+  }
+  return all;
+}
+
 /// Returns closest points of two simplices.
-inline RationalClosest closest_points(const Corners& a, const Corners& b) {
-  const auto features = [](const Corners& c) {
-    std::vector<RationalPoints> all;
-    for (unsigned which = 1; which < 1U << c.size(); ++which) {
-      RationalPoints points;
-      for (std::size_t k = 0; k < c.size(); ++k)
-        if (which >> k & 1) points.push_back({Rational(c[k][0]), Rational(c[k][1]), Rational(c[k][2])});
-      all.push_back(points);
-    }
-    return all;
-  };
+inline RationalClosest closest_points(const RationalPoints& a, const RationalPoints& b) {
   std::optional<RationalClosest> least;
-  for (const RationalPoints& f : features(a))
-    for (const RationalPoints& g : features(b)) {
+  for (const RationalPoints& f : features_of(a))
+    for (const RationalPoints& g : features_of(b)) {
       const auto d = closest_of_features(f, g);
       if (d && (!least || d->distance_sq < least->distance_sq)) least = d;
     }
   return *least;
 }
 
+using RationalPoint = std::array<Rational, 3>;
+
+inline RationalPoint rational(const std::array<double, 3>& x) {
+  return {Rational(x[0]), Rational(x[1]), Rational(x[2])};
+}
+inline RationalPoints rational(const Corners& corners) {
+  RationalPoints out;
+  for (const auto& x : corners) out.push_back(rational(x));
+  return out;
+}
+
+inline RationalClosest closest_points(const Corners& a, const Corners& b) {
+  return closest_points(rational(a), rational(b));
+}
 inline Rational distance_sq(const Corners& a, const Corners& b) {
   return closest_points(a, b).distance_sq;
 }
@@ -122,11 +138,6 @@ inline Rational square(double x) {
 // triangles intersect at that time. Triangles must not slide within the plane of a face that they intersect.
 // Shares no code with the engine.
 
-using RationalPoint = std::array<Rational, 3>;
-
-inline RationalPoint rational(const std::array<double, 3>& x) {
-  return {Rational(x[0]), Rational(x[1]), Rational(x[2])};
-}
 inline RationalPoint cross(const RationalPoint& x, const RationalPoint& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
@@ -136,18 +147,8 @@ inline RationalPoint moved(const RationalPoint& x, const RationalPoint& way, con
 
 /// Returns true if two triangles intersect.
 inline bool triangles_meet(const RationalPoints& a, const RationalPoints& b) {
-  const auto features = [](const RationalPoints& c) {
-    std::vector<RationalPoints> all;
-    for (unsigned which = 1; which < 8; ++which) {
-      RationalPoints points;
-      for (std::size_t k = 0; k < 3; ++k)
-        if (which >> k & 1) points.push_back(c[k]);
-      all.push_back(points);
-    }
-    return all;
-  };
-  for (const RationalPoints& f : features(a))
-    for (const RationalPoints& g : features(b)) {
+  for (const RationalPoints& f : features_of(a))
+    for (const RationalPoints& g : features_of(b)) {
       const auto d = closest_of_features(f, g);
       if (d && d->distance_sq == 0) return true;
     }
@@ -229,10 +230,7 @@ inline std::optional<Rational> first_time(const RationalPoints& of_a, const Rati
 
 inline std::optional<Rational> first_time(const Corners& a, const Corners& b,
                                           const std::array<double, 3>& way, const Rational& before = 1) {
-  RationalPoints of_a, of_b;
-  for (const auto& x : a) of_a.push_back(rational(x));
-  for (const auto& x : b) of_b.push_back(rational(x));
-  return first_time(of_a, of_b, rational(way), before);
+  return first_time(rational(a), rational(b), rational(way), before);
 }
 
 }  // namespace lrb::oracle

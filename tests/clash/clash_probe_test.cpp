@@ -6,7 +6,7 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/answer_content.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include <lrbscope/clash.hpp>
 
 using namespace lrb;

@@ -12,7 +12,7 @@
 #include "engine/clash/surface_pieces.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/error.hpp>
 
@@ -311,16 +311,6 @@ TEST_CASE("clash: convex pairs against all facets of their Minkowski difference,
   CHECK(overlap > pairs / 3);
 }
 
-TEST_CASE("clash: round convex bodies, and ones of very different sizes") {
-  RandomEngine random(18);
-  for (int i = 0; i < 2; ++i) {
-    const LrbRep a = closed(random_convex(random, 2));
-    const LrbRep b = closed(shapes::scaled(random_convex(random, 2), i < 1 ? 1 : 1e-3));
-    check_convex(a, Pose{}, b, Pose{shapes::random_rotation(random), 0.2 * shapes::random_direction(random)},
-                 shapes::random_direction(random), 1e-10);
-  }
-}
-
 namespace {
 
 using Cells = std::set<std::array<int, 3>>;
@@ -577,64 +567,4 @@ TEST_CASE("clash: the same solid in more faces gives the same intervals") {
   compare(shapes::tetrahedron(2), shapes::box(), 1e-10);
   compare(shapes::l_shape(), shapes::box(), 1e-9);
   compare(shapes::l_shape(), shapes::comb(2, 2), 1e-9);
-}
-
-TEST_CASE("clash: round solids have narrow depths, the same in more faces") {
-  const Pose turned = Pose::rotation({1, 2, 3}, 0.7, {0.9, 0.5, 0.3});
-  const auto compare = [&](const Mesh& a, const Mesh& b, double min_share) {
-    const ClashResult first = ask(a, b, turned);
-    REQUIRE((first.depth && first.depth->upper > 0));
-    CHECK(first.depth->lower >= min_share * first.depth->upper);
-    Mesh fine_a = a, fine_b = b;
-    for (int level = 0; level < 2; ++level) {
-      fine_a = finer(fine_a);
-      fine_b = finer(fine_b);
-      const ClashResult r = ask(fine_a, fine_b, turned);
-      REQUIRE(r.depth);
-      CHECK(std::abs(r.depth->lower - first.depth->lower) <= 1e-9);
-      CHECK(std::abs(r.depth->upper - first.depth->upper) <= 1e-9);
-    }
-  };
-  compare(shapes::bumpy_sphere(1, 7, 0.3), shapes::bumpy_sphere(1, 8, 0.3), 0.95);
-  compare(shapes::torus(12, 8), shapes::bumpy_sphere(1, 7, 0.3), 0.9);
-  compare(shapes::torus(12, 8), shapes::torus(10, 6), 0.9);
-}
-
-TEST_CASE("clash: answers do not depend on position and scale") {
-  const LrbRep a = closed(shapes::box()), b = closed(shapes::box({0, 0, 0}, {1, 1, 1}));
-  for (const double scale : {1e-100, 1e-3, 1.0, 1e60, 1e100}) {
-    CAPTURE(scale);
-    const Pose pose_a{scale * Eigen::Matrix3d::Identity(), Vector3d::Zero()};
-    const Pose pose_b{scale * Eigen::Matrix3d::Identity(), scale * Vector3d(0.75, 0.25, 0)};
-    const ClashResult r = clash(a, pose_a, b, pose_b);
-    CHECK(r.kind == ClashKind::protrudes);
-    check_holds(r.depth, 0.25 * scale, 1e-11 * scale);
-    check_holds(r.volume, 0.25 * 0.75 * scale * scale * scale, 1e-10 * scale * scale * scale);
-  }
-  const Vector3d far(1e6, -3e6, 2e6);
-  const ClashResult r = clash(a, Pose::translation(far), b, Pose::translation(far + Vector3d(0.75, 0.25, 0)));
-  check_holds(r.depth, 0.25, 1e-8);
-  check_holds(r.volume, 0.25 * 0.75, 1e-8);
-  // Mirrored bodies are inside out to their files, not to the world.
-  Pose mirror;
-  mirror.r(0, 0) = -1;
-  check_holds(ask(a, b, Pose{mirror.r, {1.25, 0, 0}}).volume, 0.75, 1e-11);
-}
-
-TEST_CASE("clash: open bodies and invalid requests") {
-  const LrbRep a = closed(shapes::box()),
-               open = LrbRep::without_regions(shapes::open_cylinder(8), false, false);
-  const ClashResult r = ask(a, open);
-  CHECK(r.kind == ClashKind::undecided);
-  CHECK(!r.depth);
-  CHECK(!r.volume);
-  CHECK(ask(a, open, Pose::translation({9, 0, 0})).kind == ClashKind::apart);
-  ClashRequest bad;
-  bad.clearance = -1;
-  CHECK_THROWS_AS(ask(a, a, {}, bad), InputError);
-  bad = {};
-  bad.along = Vector3d::Zero();
-  CHECK_THROWS_AS(ask(a, a, {}, bad), InputError);
-  const LrbRep flat = closed(shapes::circle(5));
-  CHECK_THROWS_AS(ask(flat, flat), InputError);
 }

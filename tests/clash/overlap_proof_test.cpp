@@ -9,7 +9,7 @@
 #include "engine/collide/relation.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 
 using namespace lrb;
 using namespace lrb::penetration;

@@ -8,7 +8,7 @@
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/collide.hpp>
 

@@ -86,20 +86,6 @@ TEST_CASE("pseudo faces and the previous step do not change a world box") {
     check_box(rep, Pose::rotation({1, 2, 3}, i < 90 ? 0.02 * i : 1.9 * i, {0.01 * i, 0, 0}), &last);
 }
 
-TEST_CASE("a large body's world box is computed from its tree") {
-  const LrbRep rep = LrbRep::without_regions(shapes::bumpy_sphere(6, 1), true, false);
-  REQUIRE(rep.vertices().size() > 40'000);
-  ExtremeVertices last;
-  const BodyExtent extent(rep);
-  for (int i = 0; i < 5; ++i) {
-    const Pose pose = Pose::rotation({1, -2, 3}, i, {0, 0.1 * i, 0});
-    const Box slow = box_of_all_vertices(rep, pose), fast = extent.in_world(pose, &last);
-    CHECK(slow.min() == fast.min());
-    CHECK(slow.max() == fast.max());
-    CHECK(last.vertex[0] != kNull);
-  }
-}
-
 TEST_CASE("the box of a body that may leave the range of doubles intersects every box") {
   const LrbRep rep = LrbRep::without_regions(shapes::box(), true, false);
   Pose pose;
@@ -109,37 +95,6 @@ TEST_CASE("the box of a body that may leave the range of doubles intersects ever
                                   world_box(rep, pose)};
   CHECK(SweepAndPrune().update(boxes) == all_pairs(boxes));
   CHECK(all_pairs(boxes).size() == 1);
-}
-
-TEST_CASE("sort and sweep finds the same pairs of boxes as brute force in every step") {
-  RandomEngine random(2);
-  for (const int dim : {2, 3}) {
-    for (int round = 0; round < 20; ++round) {
-      SweepAndPrune sweep;
-      // Whole numbers: many boxes touch exactly, and many ends are equal.
-      const double room = round % 2 == 0 ? 12 : 40;
-      std::vector<Eigen::Vector3d> low(60), size(60), speed(60);
-      for (std::size_t i = 0; i < low.size(); ++i)
-        for (int k = 0; k < 3; ++k) {
-          const bool there = k < dim;
-          low[i][k] = there ? std::floor(shapes::uniform(random, 0, room)) : 0;
-          size[i][k] = there ? std::floor(shapes::uniform(random, 0, 4)) : 0;
-          speed[i][k] = there ? std::floor(shapes::uniform(random, -1, 2)) : 0;
-        }
-      for (int step = 0; step < 25; ++step) {
-        std::vector<Box> boxes;
-        for (std::size_t i = 0; i < low.size(); ++i) {
-          low[i] += speed[i];
-          boxes.emplace_back(low[i], low[i] + size[i]);
-        }
-        if (step % 7 == 6) boxes.resize(40);                   // bodies leave
-        if (step % 5 == 4) boxes[3] = Box();                   // empty
-        if (step % 5 == 3) boxes[4].max().setConstant(1e300);  // huge
-        CAPTURE(step);
-        CHECK(sweep.update(boxes) == all_pairs(boxes));
-      }
-    }
-  }
 }
 
 TEST_CASE("slow boxes cost few swaps; the axis changes when boxes line up") {
@@ -200,8 +155,9 @@ TEST_CASE("incremental updates find the pairs of boxes of brute force, and compa
         if (random() % 16 == 0) boxes[i].min().setConstant(-HUGE_VAL);
       }
       CAPTURE(step);
-      CHECK(sweep.update(boxes, moved) == all_pairs(boxes));
-      if (moved.empty()) CHECK(sweep.work().box_tests == 0);
+      const bool has_list = step % 4 != 0;  // which boxes moved
+      CHECK((has_list ? sweep.update(boxes, moved) : sweep.update(boxes)) == all_pairs(boxes));
+      if (has_list && moved.empty()) CHECK(sweep.work().box_tests == 0);
     }
   }
 }

@@ -10,6 +10,8 @@
 #include "engine/collide/tree_query.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/bodies.hpp"
+#include "tests/support/simplex_distance.hpp"
 #include <lrbscope/collide.hpp>
 
 using namespace lrb;
@@ -19,17 +21,14 @@ namespace {
 
 /// Triangles of about that size, with corners in and around a ball of radius 1.
 LrbRep soup(RandomEngine& random, int count, double size) {
-  Mesh m;
+  Mesh mesh;
   for (int i = 0; i < count; ++i) {
     const double radius = shapes::uniform(random, 0, 1);
-    const Eigen::Vector3d centre = radius * shapes::random_direction(random);
-    for (int k = 0; k < 3; ++k) {
-      m.face_vertices.push_back(static_cast<VertexId>(m.vertices.size()));
-      m.vertices.push_back(centre + size * shapes::random_direction(random));
-    }
-    m.face_offsets.push_back(static_cast<std::uint32_t>(m.face_vertices.size()));
+    test::Points corners(3, radius * shapes::random_direction(random));
+    for (Eigen::Vector3d& x : corners) x += size * shapes::random_direction(random);
+    test::add_loose(mesh, corners);
   }
-  return LrbRep::without_regions(m, false, false);
+  return test::open_body(mesh);
 }
 
 Eigen::Matrix3d random_matrix(RandomEngine& random) {

@@ -91,61 +91,6 @@ double median(std::vector<double> x) {
 
 }  // namespace
 
-TEST_CASE(
-    "queries to a tolerance or within limits of bodies far from each other are exact, at the same cost") {
-  const LrbRep ball = build_lrb(shapes::bumpy_sphere(3, 1));
-  const Pose far = Pose::translation({5, 1, 0});
-  const CollideResult exact = collide(ball, Pose{}, ball, far);
-  REQUIRE(exact.relation == Relation::separate);
-  CollideRequest requests[3];
-  requests[0].tolerance = 0.1;
-  requests[1].max_tests = 10;
-  requests[2].max_time = 1;
-  for (const CollideRequest& request : requests) {
-    QueryContext context;
-    CollideProbe silent;
-    ProbeAdapter watched(silent);
-    const CollideResult found = collide(ball, Pose{}, ball, far, request);
-    CHECK(found.relation == Relation::separate);
-    CHECK(found.interiors_overlap == Answer::no);
-    CHECK(found.error_bound == 0);
-    CHECK(found.finished);
-    CHECK(found.counters == exact.counters);
-    const CollideResult seen = collide(ball, Pose{}, ball, far, request, context, watched);
-    CHECK(seen.relation == found.relation);
-    CHECK(seen.error_bound == found.error_bound);
-    CHECK(seen.finished);
-  }
-}
-
-TEST_CASE("no point of a region's lids is further from the real faces than its thickness") {
-  RandomEngine random(3);
-  double tightest = 0;
-  for (const CoarseBodies& pair : coarse_bodies()) {
-    CAPTURE(pair.name);
-    const LrbRep& rep = pair.a;
-    const auto real = real_simplices(rep, Pose{});
-    const std::vector<double> thickness = region_thickness(rep);
-    REQUIRE(thickness.size() == rep.region_count());
-    for (RegionId r = 0; r < rep.region_count(); ++r) {
-      REQUIRE(std::isfinite(thickness[r]) == !rep.lids(r).empty());
-      if (rep.lids(r).empty()) continue;
-      std::vector<std::vector<Eigen::Vector3d>> sides;
-      for (const FaceId f : rep.lids(r))
-        for (std::uint32_t i = 0; i < Mesh::simplices_of(rep.face(f).size(), rep.dim()); ++i)
-          sides.push_back(test::simplex_points(rep, Pose{}, SimplexId(rep.first_simplex(f) + i)));
-      for (int sample = 0; sample < 12; ++sample) {
-        const Eigen::Vector3d x = test::random_point_of(random, sides[random() % sides.size()]);
-        double least = INFINITY;
-        for (const auto& s : real) least = std::min(least, test::simplex_distance({x}, s));
-        REQUIRE(least <= thickness[r]);
-        tightest = std::max(tightest, least / thickness[r]);
-      }
-    }
-  }
-  CHECK(tightest > 0.5);
-}
-
 TEST_CASE("an approximate query reports the exact relation and keeps its error bound") {
   RandomEngine random(41);
   int crossing = 0, with_pseudo = 0, exact = 0;
@@ -223,43 +168,6 @@ TEST_CASE("the median error bound is at most three times the measured error of p
   CHECK(median(all) <= 3);
 }
 
-TEST_CASE("the error bound on real models is at most three times the measured error of pairs" *
-          doctest::test_suite("shared meshes")) {
-  RandomEngine random(47);
-  for (const char* name : {"spot.obj", "rocker-arm.obj"}) {
-    CAPTURE(name);
-    const LrbRep rep = build_lrb(read_mesh((test::shared_meshes() / name).string()));
-    const std::vector<double> ratios = bounds_over_truth({name, rep, rep}, 12, {0.01, 0.02}, random);
-    REQUIRE(ratios.size() > 15);
-    MESSAGE(std::string(name) << ": error bound over what pairs are off, median: " << median(ratios));
-    CHECK(median(ratios) <= 3);
-  }
-}
-
-TEST_CASE("an answer of one pair is exact, whatever the tolerance") {
-  RandomEngine random(42);
-  for (const CoarseBodies& pair : coarse_bodies()) {
-    CAPTURE(pair.name);
-    QueryContext context;
-    for (int i = 0; i < 30; ++i) {
-      const Pose p = pose_around(random, pair);
-      const BruteForceResult truth = brute_force(pair.a, Pose{}, pair.b, p);
-      CollideRequest request;
-      request.tolerance = 0.5;
-      request.mode = Mode::first_pair;
-      const CollideResult first = ask(pair, p, request, context);
-      check_claims(pair, p, first, truth);
-      request.mode = Mode::any_pair;
-      const CollideResult any = ask(pair, p, request, context);
-      for (const CollideResult* one : {&first, &any}) {
-        REQUIRE(one->error_bound == 0);
-        REQUIRE(one->pairs.size() == std::min<std::size_t>(1, truth.pairs.size()));
-        REQUIRE(std::includes(truth.pairs.begin(), truth.pairs.end(), one->pairs.begin(), one->pairs.end()));
-      }
-    }
-  }
-}
-
 TEST_CASE("bodies without a level that is worth it are answered exactly, with the work of the exact query") {
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(2, 8, 0.3));
   RandomEngine random(11);
@@ -286,46 +194,6 @@ TEST_CASE("bodies without a level that is worth it are answered exactly, with th
   CHECK(crossing > 30);
 }
 
-TEST_CASE("barely touching bodies are answered exactly, at the cost of the exact query") {
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(4, 8, 0.3));
-  const CoarseBodies pair{"bumps", a, b};
-  RandomEngine random(48);
-  QueryContext context;
-  CollideRequest to_tolerance, within_tests, few_pairs;
-  to_tolerance.tolerance = few_pairs.tolerance = 0.05;
-  within_tests.max_tests = 1'000'000;
-  int to_the_end[2] = {0, 0}, coarse = 0, given_up = 0;
-  for (int i = 0; i < 40; ++i) {
-    CAPTURE(i);
-    Pose p = shapes::random_pose(random, a, b, 1.2);
-    const Eigen::Vector3d way = p.t.normalized();
-    double far = p.t.norm(), near = 0;
-    const auto meets = [&](double s) {
-      p.t = s * way;
-      return !ask(pair, p, {}, context).pairs.empty();
-    };
-    for (int k = 0; k < 40; ++k) (meets((far + near) / 2) ? near : far) = (far + near) / 2;
-    p.t = (near - 1e-4) * way;
-    const CollideResult exact = ask(pair, p, {}, context);
-    for (const int limited : {0, 1}) {
-      const CollideResult r = ask(pair, p, limited ? within_tests : to_tolerance, context);
-      REQUIRE(r.relation == exact.relation);
-      const bool all = r.error_bound == 0 && r.pairs == exact.pairs;
-      to_the_end[limited] += all && r.counters.node_pairs <= exact.counters.node_pairs;
-    }
-    p.t = (near - 0.2) * way;
-    const CollideResult deep = ask(pair, p, to_tolerance, context);
-    coarse += deep.error_bound > 0;
-    // More pairs than are wanted, of the bodies themselves, leave the list to the level.
-    few_pairs.max_pairs = deep.pairs.size();
-    given_up += ask(pair, p, few_pairs, context).pairs == deep.pairs;
-  }
-  CHECK(to_the_end[0] >= 12);
-  CHECK(to_the_end[1] >= 20);
-  CHECK(coarse >= 36);
-  CHECK(given_up == 40);
-}
-
 TEST_CASE("a smaller tolerance never reports less") {
   RandomEngine random(44);
   int finer = 0;
@@ -348,40 +216,6 @@ TEST_CASE("a smaller tolerance never reports less") {
     }
   }
   CHECK(finer > 100);
-}
-
-TEST_CASE("wrappers never report intersecting bodies as separate, near first contact and within rounding") {
-  RandomEngine random(45);
-  int apart = 0, meeting = 0;
-  for (const CoarseBodies& pair : coarse_bodies()) {
-    CAPTURE(pair.name);
-    QueryContext context;
-    NullProbe probe;
-    CollideRequest any;
-    any.mode = Mode::any_pair;
-    for (int i = 0; i < 12; ++i) {
-      Pose p = shapes::random_pose(random, pair.a, pair.b, 1.2);
-      const Eigen::Vector3d way = p.t.normalized();
-      double far = p.t.norm(), near = 0;
-      const auto meets = [&](double s) {
-        p.t = s * way;
-        return !collide(pair.a, Pose{}, pair.b, p, any, context, probe).pairs.empty();
-      };
-      for (int k = 0; k < 60; ++k) (meets((far + near) / 2) ? near : far) = (far + near) / 2;
-      for (const double off : {0.0, 1e-17, 1e-16, 1e-15, 1e-12, 1e-9, 1e-4, 1e-2, 0.1})
-        for (const double sign : {-1.0, 1.0}) {
-          const bool meet = meets(far + sign * off);
-          meeting += meet;
-          for (const double tolerance : {0.01, 0.1, 0.5}) {
-            const bool alone = test::wrappers_are_disjoint(pair.a, Pose{}, pair.b, p, tolerance, context);
-            REQUIRE(!(meet && alone));
-            apart += alone;
-          }
-        }
-    }
-  }
-  CHECK(meeting > 100);
-  CHECK(apart > 100);
 }
 
 TEST_CASE("an approximate query keeps its guarantees under affine maps of both bodies") {
@@ -422,30 +256,6 @@ TEST_CASE("an approximate query keeps its guarantees under affine maps of both b
   CHECK(with_lids > 30);
   CHECK(separate > 30);
   CHECK(alone > 20);
-}
-
-TEST_CASE("bodies that touch under flat lids are never reported as separate") {
-  // Boxes against boxes and combs: lids lie in the planes of faces, and rounding moves both.
-  RandomEngine random(77);
-  const CoarseBodies pair{"combs", build_lrb(shapes::comb(4)), build_lrb(shapes::comb(3))};
-  QueryContext context;
-  int meeting = 0;
-  for (int i = 0; i < 150; ++i) {
-    const Pose frame{shapes::random_rotation(random), 10 * shapes::random_direction(random)};
-    Pose p;
-    for (int k = 0; k < 3; ++k) p.t[k] = static_cast<double>(random() % 13) / 2 - 3;
-    const Pose pose_b{frame.r, frame.r * p.t + frame.t};
-    const BruteForceResult truth = brute_force(pair.a, frame, pair.b, pose_b);
-    meeting += truth.relation != Relation::separate;
-    CollideRequest request;
-    request.tolerance = 10;
-    NullProbe probe;
-    const CollideResult coarse = collide(pair.a, frame, pair.b, pose_b, request, context, probe);
-    REQUIRE(coarse.relation == truth.relation);
-    if (test::wrappers_are_disjoint(pair.a, frame, pair.b, pose_b, request.tolerance, context))
-      REQUIRE(truth.relation == Relation::separate);
-  }
-  CHECK(meeting > 50);
 }
 
 TEST_CASE("anytime answers: within the limit, correct at every limit, exact without one") {
@@ -599,33 +409,4 @@ TEST_CASE("levels of detail are built once, with deviations falling from the out
       CHECK(level.tree.bounds_hold(pair.a.simplices()));
     }
   }
-}
-
-TEST_CASE("open bodies are queried as they are") {
-  const LrbRep open = LrbRep::without_regions(shapes::open_cylinder(12), false, false);
-  const LrbRep ball = build_lrb(shapes::icosphere(2, 0.1));
-  CollideRequest request;
-  request.tolerance = 1;
-  request.separation = true;
-  for (const auto& [x, relation] : {std::pair{0.0, Relation::undefined}, {50.0, Relation::separate}}) {
-    const CollideResult r = collide(open, Pose{}, ball, Pose::translation({x, 0, 0}), request);
-    CHECK(r.relation == relation);
-    CHECK(r.error_bound == 0);
-    CHECK(!r.separation);
-  }
-}
-
-TEST_CASE("requests that an approximate query cannot answer are rejected") {
-  const LrbRep a = build_lrb(shapes::box());
-  CollideRequest request;
-  request.tolerance = -1;
-  CHECK(collide(a, Pose{}, a, Pose{}, request).error_bound == 0);  // not requested
-  request.tolerance = INFINITY;
-  CHECK_THROWS_AS(collide(a, Pose{}, a, Pose{}, request), InputError);
-  request.tolerance = 1;
-  request.contacts = true;
-  CHECK_THROWS_AS(collide(a, Pose{}, a, Pose{}, request), InputError);
-  request.contacts = false;
-  request.recursion = Recursion::paper;
-  CHECK_THROWS_AS(collide(a, Pose{}, a, Pose{}, request), InputError);
 }

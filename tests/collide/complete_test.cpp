@@ -3,7 +3,7 @@
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/workspace.hpp>

@@ -11,7 +11,7 @@
 #include "engine/collide/relation.hpp"
 #include "engine/lrb/complex.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include <lrbscope/collide.hpp>
 

@@ -115,27 +115,6 @@ TEST_CASE("the reported traversal is the query's own") {
   }
 }
 
-TEST_CASE("explanations do not depend on earlier pairs and poses") {
-  for (const ExplainedScene& s : scenes()) {
-    PairExplainer explainer(s.a, s.b);
-    for (const Pose& pose : {s.pose, Pose{}}) {
-      explainer.place({}, pose);
-      for (const std::uint32_t i : {0U, 5U, 11U}) {
-        const SimplexPair pair{SimplexId(i), SimplexId(s.b.real_simplex_count() - 1 - i)};
-        const PairExplanation one = explainer.explain(pair), other = explain_pair(s.a, {}, s.b, pose, pair);
-        CHECK(one.meet == other.meet);
-        CHECK(one.decided_by == other.decided_by);
-        CHECK(one.distance == other.distance);
-        REQUIRE(one.nodes.size() == other.nodes.size());
-        for (std::size_t n = 0; n < one.nodes.size(); ++n) {
-          CHECK(one.nodes[n].node == other.nodes[n].node);
-          CHECK(one.nodes[n].gap == other.nodes[n].gap);
-        }
-      }
-    }
-  }
-}
-
 /// Returns the largest n.x over a body's vertices.
 double reach(const LrbRep& rep, const Pose& pose, const Eigen::Vector3d& n) {
   double out = -std::numeric_limits<double>::infinity();

@@ -18,12 +18,6 @@ CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& p, Recursion rec
 
 }  // namespace
 
-TEST_CASE("the result contains the recursion that was used") {
-  const LrbRep a = shapes::dented_box();
-  CHECK(ask(a, a, Pose{}, Recursion::paper).recursion == Recursion::paper);
-  CHECK(ask(a, a, Pose{}, Recursion::complete).recursion == Recursion::complete);
-}
-
 TEST_CASE("without regions the paper's query is brute force and finds all pairs") {
   const LrbRep a = LrbRep::without_regions(shapes::icosphere(1), true, false);
   const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
@@ -80,14 +74,6 @@ TEST_CASE("the strict reading of the paper finds a subset of the other, and no f
   }
   CHECK(strict_total < paper_total);
   CHECK(paper_total <= complete_total);
-}
-
-TEST_CASE("first_pair stops at the first real pair") {
-  const LrbRep a = shapes::dented_box();
-  const LrbRep rod = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
-  const CollideResult one = ask(a, rod, Pose{}, Recursion::paper, Mode::first_pair);
-  CHECK(one.pairs.size() == 1);
-  CHECK(one.counters.face_tests < ask(a, rod, Pose{}, Recursion::paper).counters.face_tests);
 }
 
 TEST_CASE("2D bodies use the same query") {

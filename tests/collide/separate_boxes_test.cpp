@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>

@@ -244,10 +244,5 @@ TEST_CASE("an exception from a probe ends the build") {
   CHECK_THROWS_WITH_AS(build_lrb(bumpy_sphere(3, 3), options), "enough", InputError);
 }
 
-TEST_CASE("a cap's cost: new faces per removed face of the front") {
-  CHECK(TriedCap{.faces = 5, .covered = 20}.cost() == doctest::Approx(1.0 / 3));
-  CHECK(TriedCap{.faces = 5, .covered = 5}.cost() == std::numeric_limits<double>::infinity());
-}
-
 }  // namespace
 }  // namespace lrb::test

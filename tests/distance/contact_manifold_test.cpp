@@ -9,7 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include "tests/support/simplex_distance.hpp"
 #include <lrbscope/contact_manifold.hpp>
@@ -23,8 +23,6 @@ using shapes::RandomEngine;
 namespace {
 
 using test::closed;
-
-const double kPi = std::numbers::pi;
 
 ManifoldRequest with_margin(double margin) {
   ManifoldRequest request;
@@ -200,14 +198,14 @@ TEST_CASE("manifold of a tilted box: its deepest corner or edge, with the normal
 
 TEST_CASE("manifold of two crossing edges: their normal, and one point on each") {
   const LrbRep cube = closed(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
-  const Pose pose_a = Pose::rotation({1, 0, 0}, kPi / 4);
+  const Pose pose_a = Pose::rotation({1, 0, 0}, std::numbers::pi / 4);
   for (const double angle : {0.0, 0.1, -0.2})
     for (const double depth : {0.01, -0.01}) {
       CAPTURE(angle);
       CAPTURE(depth);
       // B's lower edge is along y, turned by `angle` about z.
       Pose pose_b = Pose::rotation({0, 0, 1}, angle);
-      pose_b.r = pose_b.r * Pose::rotation({0, 1, 0}, kPi / 4).r;
+      pose_b.r = pose_b.r * Pose::rotation({0, 1, 0}, std::numbers::pi / 4).r;
       pose_b.t = {0.1, 0.05, std::sqrt(2.0) - depth};
       const ManifoldResult r = contact_manifolds(cube, pose_a, cube, pose_b, with_margin(0.02));
       REQUIRE(r.manifolds.size() == 1);
@@ -374,16 +372,7 @@ TEST_CASE("manifolds of bodies in the plane and of degenerate faces") {
       closed(shapes::polygon({{-2, -1}, {2, -1}, {2, 0}, {-2, 0}})), {},
       closed(shapes::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}})), Pose::translation({0, -0.25, 0}));
   check_corners(square, {{0, -0.25, 0}, {1, -0.25, 0}}, {0, 1, 0}, 0.25);
-  Mesh needles;  // long and thin, and without area
-  for (std::uint32_t i = 0; i < 12; ++i) {
-    const Vector3d p = shapes::random_direction(random), d = shapes::random_direction(random);
-    needles.vertices.insert(needles.vertices.end(), {p, p + d,
-                                                     i % 3 == 0   ? p
-                                                     : i % 3 == 1 ? Vector3d(p + d)
-                                                                  : Vector3d(p + 1e-6 * d.cross(p))});
-    needles.add_face(std::array{VertexId(3 * i), VertexId(3 * i + 1), VertexId(3 * i + 2)});
-  }
-  const LrbRep loose = LrbRep::without_regions(needles, false, false);
+  const LrbRep loose = test::open_body(test::loose_needles(random));
   for (const double margin : {0.0, 0.1, 0.5})
     for (int i = 0; i < 3; ++i)
       check(loose, {}, loose, Pose{shapes::random_rotation(random), 0.1 * shapes::random_direction(random)},
@@ -422,39 +411,6 @@ TEST_CASE("no points of a manifold's faces along its normal are deeper than its 
   CHECK(compared > 1000);
 }
 
-bool are_equal(const ManifoldResult& x, const ManifoldResult& y) {
-  if (x.manifolds.size() != y.manifolds.size() || x.next_id != y.next_id) return false;
-  for (std::size_t m = 0; m < x.manifolds.size(); ++m) {
-    const ContactManifold &p = x.manifolds[m], &q = y.manifolds[m];
-    if (p.normal != q.normal || p.pairs != q.pairs || p.points.size() != q.points.size()) return false;
-    for (std::size_t k = 0; k < p.points.size(); ++k)
-      if (p.points[k].id != q.points[k].id || p.points[k].depth != q.points[k].depth ||
-          p.points[k].point[0] != q.points[k].point[0] || p.points[k].point[1] != q.points[k].point[1])
-        return false;
-  }
-  return true;
-}
-
-TEST_CASE("manifolds do not depend on threads or on a workspace") {
-  const LrbRep plate = closed(fine_plate(30, 0.02)), ball = closed(shapes::bumpy_sphere(3, 1)),
-               box = closed(kBox);
-  Workspace workspace;
-  for (const LrbRep* b : {&ball, &box, &ball}) {
-    ManifoldResult one, many;
-    const ManifoldResult* in_workspace = nullptr;
-    for (int step = 0; step < 5; ++step) {
-      const Pose pose = Pose::rotation({1, 0, 0.1}, 0.02 * step, {0.2, 0.1, b == &ball ? 0.9 : 0.01});
-      const ManifoldRequest request = with_margin(0.03);
-      one = contact_manifolds(plate, {}, *b, pose, request, step > 0 ? &one : nullptr, 1);
-      many = contact_manifolds(plate, {}, *b, pose, request, step > 0 ? &many : nullptr, 3);
-      in_workspace = &contact_manifolds(plate, {}, *b, pose, request, workspace, in_workspace).value();
-      CHECK(!one.manifolds.empty());
-      CHECK(are_equal(one, many));
-      CHECK(are_equal(one, *in_workspace));
-    }
-  }
-}
-
 using Ids = std::set<std::uint64_t>;
 
 Ids ids_of(const ManifoldResult& r) {
@@ -482,63 +438,13 @@ TEST_CASE("ids of manifold points persist while bodies rock, sink, rise and slid
   // The normal is that of the plate or of the box, which rocks by 1e-5.
   CHECK((moved.manifolds[0].normal - both.r * r.manifolds[0].normal).norm() < 1.1e-5);
   // On its other side, other corners are in contact.
-  const ManifoldResult over =
-      contact_manifolds(plate, {}, box, Pose::rotation({1, 0, 0}, kPi, {0, 0, 1}), with_margin(0.01), &r);
+  const ManifoldResult over = contact_manifolds(
+      plate, {}, box, Pose::rotation({1, 0, 0}, std::numbers::pi, {0, 0, 1}), with_margin(0.01), &r);
   CHECK(ids_of(over) == Ids{4, 5, 6, 7});
   // No contact, and the ids are not used again.
   const ManifoldResult none = contact_manifolds(plate, {}, box, Pose::translation({0, 0, 1}), {}, &over);
   CHECK(none.manifolds.empty());
   CHECK(ids_of(contact_manifolds(plate, {}, box, {}, {}, &none)) == Ids{8, 9, 10, 11});
-}
-
-TEST_CASE("ids of a disk that rocks: at most one of four points changes in a step") {
-  const LrbRep plate = closed(kPlate), disk = closed(hard::drum(48));
-  ManifoldResult r;
-  int kept = 0;
-  for (int step = 0; step < 200; ++step) {
-    const Vector3d axis(std::cos(0.05 * step), std::sin(0.05 * step), 0);
-    const Pose pose = Pose::rotation(axis, 1e-3, {0, 0, 1e-4});
-    const Ids before = ids_of(r);
-    r = contact_manifolds(plate, {}, disk, pose, with_margin(0.01), step > 0 ? &r : nullptr);
-    for (const std::uint64_t id : ids_of(r)) kept += before.contains(id);
-  }
-  CHECK(kept >= 3 * 199);
-}
-
-TEST_CASE("manifolds of bodies of extreme size and location have the same shape") {
-  const LrbRep plate = closed(kPlate), box = closed(kBox);
-  const Pose pose = Pose::translation({0.125, 0.25, -0.0078125});
-  for (const double scale : {0x1p-300, 0x1p-40, 0x1p60, 0x1p300}) {
-    CAPTURE(scale);
-    const ManifoldResult r = contact_manifolds(closed(kPlate, scale), {}, closed(kBox, scale),
-                                               Pose::translation(scale * pose.t), with_margin(0.01 * scale));
-    REQUIRE(r.manifolds.size() == 1);
-    REQUIRE(r.manifolds[0].points.size() == 4);
-    CHECK(r.manifolds[0].normal == Vector3d(0, 0, 1));
-    for (const ManifoldPoint& p : r.manifolds[0].points)
-      CHECK(p.depth / scale == doctest::Approx(0.0078125).epsilon(1e-12));
-  }
-  const Pose far = Pose::translation({1e6, -1e6, 1e6});
-  const ManifoldResult r = contact_manifolds(plate, far, box, Pose::translation(far.t + pose.t));
-  REQUIRE(r.manifolds.size() == 1);
-  CHECK(r.manifolds[0].points.size() == 4);
-}
-
-TEST_CASE("manifolds: bad requests are rejected in one line, and bodies without faces have none") {
-  const LrbRep box = closed(kBox);
-  for (const double margin : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")})
-    CHECK_THROWS_WITH_AS(contact_manifolds(box, {}, box, {}, with_margin(margin)),
-                         doctest::Contains("expected a finite margin of at least 0"), InputError);
-  ManifoldRequest few;
-  few.max_pairs = 10;
-  CHECK_THROWS_WITH_AS(contact_manifolds(box, {}, box, {}, few), doctest::Contains("more than 10 pairs"),
-                       InputError);
-  CHECK_THROWS_AS(contact_manifolds(box, {}, closed(shapes::star(5)), {}), InputError);
-  CHECK(contact_manifolds(box, {}, LrbRep::without_regions(Mesh{}, false, false), {}).manifolds.empty());
-  Pose infinite;
-  infinite.t.x() = std::numeric_limits<double>::infinity();
-  Workspace workspace;
-  CHECK(!contact_manifolds(box, {}, box, infinite, {}, workspace));
 }
 
 }  // namespace

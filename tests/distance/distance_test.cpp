@@ -5,11 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/stability/rational_oracles.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
-#include "tests/support/closed_body.hpp"
-#include "tests/support/simplex_distance.hpp"
+#include "tests/support/bodies.hpp"
+#include "tests/support/rational.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
@@ -22,12 +21,6 @@ namespace {
 
 using test::closed;
 
-oracle::Corners corners_of(const test::Points& points) {
-  oracle::Corners out;
-  for (const Eigen::Vector3d& x : points) out.push_back({x.x(), x.y(), x.z()});
-  return out;
-}
-
 double radius_about_first(const test::Points& points) {
   double radius = 0;
   for (const Eigen::Vector3d& x : points) radius = std::max(radius, (x - points[0]).norm());
@@ -37,9 +30,8 @@ double radius_about_first(const test::Points& points) {
 /// The squared distance of two bodies whose surfaces do not meet: of the pairs that are nearest in doubles,
 /// exactly.
 Rational surface_distance_sq(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  std::vector<test::Points> of_a, of_b;
-  for (SimplexId s = 0; s < a.real_simplex_count(); ++s) of_a.push_back(test::simplex_points(a, pose_a, s));
-  for (SimplexId s = 0; s < b.real_simplex_count(); ++s) of_b.push_back(test::simplex_points(b, pose_b, s));
+  const std::vector<test::Points> of_a = test::real_simplices(a, pose_a),
+                                  of_b = test::real_simplices(b, pose_b);
   // The oracle in doubles loses digits for large coordinates: a generous bound on its error.
   double size = 0;
   for (const auto* points : {&of_a, &of_b})
@@ -54,7 +46,7 @@ Rational surface_distance_sq(const LrbRep& a, const Pose& pose_a, const LrbRep& 
       const double apart = test::simplex_distance(s, t);
       if (apart > about) continue;
       if (least >= 0 && oracle::square(apart * (1 - 1e-6)) > least && apart > 1e-5 * size) continue;
-      const Rational sq = oracle::distance_sq(corners_of(s), corners_of(t));
+      const Rational sq = oracle::distance_sq(test::corners_of(s), test::corners_of(t));
       if (least < 0 || sq < least) least = sq;
     }
   return least;
@@ -293,51 +285,4 @@ TEST_CASE("a tolerance and a budget only widen the interval, and more steps only
     }
     CHECK(upper - lower <= 1e-11);
   }
-}
-
-TEST_CASE("batches of poses and steps of motions are answered in order, for any number of threads") {
-  RandomEngine random(23);
-  const LrbRep a = closed(shapes::bumpy_sphere(3, 5)), b = closed(shapes::torus(24, 16));
-  std::vector<Pose> poses;
-  const Pose start = shapes::random_pose(random, a, b, 1.1);
-  for (int i = 0; i < 60; ++i)
-    poses.push_back(
-        {deterministic::rotation(Eigen::Vector3d::UnitZ(), 0.02 * i) * start.r, start.t * (1 - 0.015 * i)});
-  const std::vector<DistanceResult> one = distances(a, Pose{}, b, poses, {}, 1);
-  const std::vector<DistanceResult> three = distances(a, Pose{}, b, poses, {}, 3);
-  CoherentDistance follows(a, b);
-  int meet = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    CAPTURE(i);
-    CHECK(one[i].lower == three[i].lower);
-    CHECK(one[i].upper == three[i].upper);
-    CHECK(one[i].counters == three[i].counters);
-    CHECK(one[i].witness[0].point == three[i].witness[0].point);
-    const DistanceResult alone = distance(a, Pose{}, b, poses[i]);
-    CHECK(one[i].upper == alone.upper);
-    const DistanceResult next = follows.distance(Pose{}, poses[i]);
-    CHECK(next.meet == alone.meet);
-    CHECK(next.lower <= alone.upper);
-    CHECK(next.upper >= alone.lower);
-    CHECK(next.upper - next.lower <= 1e-11);
-    meet += alone.meet;
-  }
-  CHECK(meet > 5);
-  CHECK(meet < 55);
-}
-
-TEST_CASE("invalid requests are rejected") {
-  const LrbRep box = closed(shapes::box()), flat = closed(shapes::gear(7));
-  const auto rejected = [&](double within, double tolerance, double relative) {
-    DistanceRequest request;
-    request.within = within;
-    request.tolerance = tolerance;
-    request.relative_tolerance = relative;
-    CHECK_THROWS_AS(distance(box, Pose{}, box, Pose{}, request), InputError);
-  };
-  rejected(-1, 0, 0);
-  rejected(INFINITY, 0, 0);
-  rejected(1, NAN, 0);
-  rejected(1, 0, -1e-9);
-  CHECK_THROWS_AS(distance(box, Pose{}, flat, Pose{}), InputError);
 }

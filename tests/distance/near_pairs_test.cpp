@@ -6,14 +6,11 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/stability/rational_oracles.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
-#include "tests/support/simplex_distance.hpp"
+#include "tests/support/bodies.hpp"
+#include "tests/support/rational.hpp"
 #include <lrbscope/distance.hpp>
-#include <lrbscope/error.hpp>
 #include <lrbscope/near_pairs.hpp>
-#include <lrbscope/workspace.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -33,12 +30,6 @@ exact::Meet meet_of(const test::Points& s, const test::Points& t) {
   return s.size() == 3 ? exact::meet_triangles(x, y) : exact::meet_segments(x, y);
 }
 
-oracle::Corners exact_corners(const test::Points& points) {
-  oracle::Corners out;
-  for (const Vector3d& x : points) out.push_back({x.x(), x.y(), x.z()});
-  return out;
-}
-
 /// Checks the answer for each pair of two bodies.
 void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, double within,
            PairsSeen& seen) {
@@ -47,10 +38,9 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
   request.within = within;
   const NearPairsResult result = near_pairs(a, pose_a, b, pose_b, request);
   REQUIRE(result.found == result.pairs.size());
-  std::vector<test::Points> of_a, of_b;
+  const std::vector<test::Points> of_a = test::real_simplices(a, pose_a),
+                                  of_b = test::real_simplices(b, pose_b);
   Eigen::AlignedBox3d box;
-  for (SimplexId s = 0; s < a.real_simplex_count(); ++s) of_a.push_back(test::simplex_points(a, pose_a, s));
-  for (SimplexId s = 0; s < b.real_simplex_count(); ++s) of_b.push_back(test::simplex_points(b, pose_b, s));
   for (const auto* all : {&of_a, &of_b})
     for (const test::Points& s : *all)
       for (const Vector3d& x : s) box.extend(x);
@@ -62,8 +52,8 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
       const double apart = meet != exact::Meet::disjoint ? 0 : test::simplex_distance(of_a[s], of_b[t]);
       bool is_near = apart <= within;
       if (meet == exact::Meet::disjoint && std::abs(apart - within) <= rough) {
-        is_near =
-            oracle::distance_sq(exact_corners(of_a[s]), exact_corners(of_b[t])) <= oracle::square(within);
+        is_near = oracle::distance_sq(test::corners_of(of_a[s]), test::corners_of(of_b[t])) <=
+                  oracle::square(within);
         ++seen.close_calls;
       }
       const bool is_listed =
@@ -130,8 +120,8 @@ TEST_CASE("near pairs are exact for flush bodies and at the distance itself") {
         if (within >= 0) check(box, {}, *b, pose, within, seen);
       check(box, Pose::translation({1e9, 0, 0}), *b, Pose::translation({1e9 + 1 + gap, 0.5, 0}), gap, seen);
     }
-  check(box, {}, box, {}, 0, seen);  // identical
-  check(box, {}, box, {}, 2, seen);  // all pairs
+  check(box, {}, box, {}, 0, seen);                                                // identical
+  for (const double within : {2.0, 1e300}) check(box, {}, box, {}, within, seen);  // all pairs; beyond floats
   CHECK(seen.close_calls > 100);
 }
 
@@ -146,18 +136,7 @@ TEST_CASE("near pairs of bodies in the plane, of needles, and of degenerate face
               Pose::rotation({0, 0, 1}, shapes::uniform(random, 0, 6),
                              {shapes::uniform(random, 0, 3), shapes::uniform(random, 0, 1), 0}),
               within, seen);
-  Mesh needles;  // long and thin, and without area
-  for (int i = 0; i < 12; ++i) {
-    const Vector3d p = shapes::random_direction(random), d = shapes::random_direction(random);
-    const auto first = static_cast<std::uint32_t>(needles.vertices.size());
-    needles.vertices.push_back(p);
-    needles.vertices.push_back(p + d);
-    needles.vertices.push_back(i % 3 == 0   ? p
-                               : i % 3 == 1 ? Vector3d(p + d)
-                                            : Vector3d(p + 1e-6 * d.cross(p)));
-    needles.add_face(std::array{VertexId(first), VertexId(first + 1), VertexId(first + 2)});
-  }
-  const LrbRep loose = LrbRep::without_regions(needles, false, false);
+  const LrbRep loose = test::open_body(test::loose_needles(random));
   for (const double within : {0.0, 1e-12, 0.1, 0.5})
     for (int i = 0; i < 3; ++i)
       check(loose, {}, loose, Pose{shapes::random_rotation(random), 0.1 * shapes::random_direction(random)},
@@ -165,29 +144,19 @@ TEST_CASE("near pairs of bodies in the plane, of needles, and of degenerate face
   CHECK(seen.pairs > 300);
 }
 
-TEST_CASE("near pairs do not depend on threads; the nearest ones come first") {
+TEST_CASE("the nearest pairs come first") {
   const LrbRep ball = closed(shapes::bumpy_sphere(4, 1));
   const Pose pose = Pose::translation({2.05, 0.1, 0.2});
-  NearPairsRequest request;
-  request.within = 0.3;
-  const NearPairsResult one = near_pairs(ball, {}, ball, pose, request, 1);
-  const NearPairsResult many = near_pairs(ball, {}, ball, pose, request, 3);
-  REQUIRE(one.pairs.size() > 1000);
-  REQUIRE(one.pairs.size() == many.pairs.size());
-  for (std::size_t i = 0; i < one.pairs.size(); ++i) {
-    CHECK(one.pairs[i].a == many.pairs[i].a);
-    CHECK(one.pairs[i].b == many.pairs[i].b);
-    CHECK(one.pairs[i].lower == many.pairs[i].lower);
-    CHECK(one.pairs[i].upper == many.pairs[i].upper);
-  }
-  CHECK(one.counters == many.counters);
+  NearPairsRequest request{.within = 0.3};
+  const NearPairsResult all = near_pairs(ball, {}, ball, pose, request);
+  REQUIRE(all.pairs.size() > 1000);
   std::vector<double> lower;
-  for (const NearPair& pair : one.pairs) lower.push_back(pair.lower);
+  for (const NearPair& pair : all.pairs) lower.push_back(pair.lower);
   std::sort(lower.begin(), lower.end());
   request.nearest = 10;
   const NearPairsResult few = near_pairs(ball, {}, ball, pose, request);
   REQUIRE(few.pairs.size() == 10);
-  CHECK(few.found == one.found);
+  CHECK(few.found == all.found);
   for (std::size_t i = 0; i < 10; ++i) CHECK(few.pairs[i].lower == lower[i]);
   const DistanceResult least = distance(ball, {}, ball, pose);
   CHECK(few.pairs[0].lower <= least.upper);
@@ -210,32 +179,6 @@ TEST_CASE("the bounds of a near pair do not depend on the other pairs") {
     CHECK(same->upper == pair.upper);
     CHECK(same->point[0] == pair.point[0]);
     CHECK(same->point[1] == pair.point[1]);
-  }
-}
-
-TEST_CASE("near pairs with a workspace are those without, also after errors") {
-  RandomEngine random(3);
-  const LrbRep ball = closed(shapes::icosphere(2)), box = closed(shapes::quad_box()),
-               star = closed(shapes::star(5));
-  Workspace workspace;
-  for (int i = 0; i < 30; ++i) {
-    const LrbRep& a = i % 3 == 0 ? ball : box;
-    NearPairsRequest request;
-    request.within = shapes::uniform(random);
-    request.nearest = i % 4 == 0 ? 5 : 0;
-    const Pose pose{shapes::random_rotation(random), 2 * shapes::random_direction(random)};
-    const NearPairsResult expected = near_pairs(a, {}, ball, pose, request);
-    const NearPairsResult& found = near_pairs(a, {}, ball, pose, request, workspace).value();
-    REQUIRE(found.pairs.size() == expected.pairs.size());
-    for (std::size_t k = 0; k < found.pairs.size(); ++k) {
-      REQUIRE(found.pairs[k].a == expected.pairs[k].a);
-      REQUIRE(found.pairs[k].b == expected.pairs[k].b);
-      REQUIRE(found.pairs[k].upper == expected.pairs[k].upper);
-    }
-    CHECK(found.counters == expected.counters);
-    request.within = -1;
-    CHECK(!near_pairs(a, {}, ball, pose, request, workspace));
-    CHECK(!near_pairs(a, {}, star, pose, {}, workspace));
   }
 }
 
@@ -266,23 +209,4 @@ TEST_CASE("near pairs of triangles on a grid, at distances that they have exactl
 TEST_CASE("near pairs of 100,000 sets of triangles on a grid" * doctest::test_suite("long")) {
   const PairsSeen seen = check_near_grids(100'000);
   CHECK(seen.close_calls > 10'000);
-}
-
-TEST_CASE("near pairs: limits and bad requests are rejected in one line") {
-  const LrbRep box = closed(shapes::quad_box());
-  NearPairsRequest request;
-  for (const double within : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
-    request.within = within;
-    CHECK_THROWS_AS(near_pairs(box, {}, box, {}, request), InputError);
-  }
-  request.within = 10;
-  request.max_pairs = 143;
-  CHECK_THROWS_WITH_AS(near_pairs(box, {}, box, {}, request), doctest::Contains("more than 143 pairs"),
-                       InputError);
-  request.max_pairs = 144;
-  CHECK(near_pairs(box, {}, box, {}, request).pairs.size() == 144);
-  CHECK_THROWS_AS(near_pairs(box, {}, closed(shapes::star(5)), {}, request), InputError);
-  CHECK(near_pairs(box, {}, LrbRep::without_regions(Mesh{}, false, false), {}, request).pairs.empty());
-  request.within = 1e300;  // beyond the range of the traversal's floats
-  CHECK(near_pairs(box, {}, box, {}, request).pairs.size() == 144);
 }

@@ -5,11 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/stability/rational_oracles.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
-#include "tests/support/simplex_distance.hpp"
-#include <lrbscope/error.hpp>
+#include "tests/support/bodies.hpp"
+#include "tests/support/rational.hpp"
 #include <lrbscope/point_distance.hpp>
 
 using namespace lrb;
@@ -21,12 +19,6 @@ namespace {
 
 using test::closed;
 
-std::vector<test::Points> simplices_of(const LrbRep& rep, const Pose& pose) {
-  std::vector<test::Points> out;
-  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) out.push_back(test::simplex_points(rep, pose, s));
-  return out;
-}
-
 /// The squared distance, exactly, of the simplices that are closest in doubles.
 Rational distance_sq(const std::vector<test::Points>& simplices, const Vector3d& p, double size) {
   std::vector<double> apart;
@@ -35,9 +27,7 @@ Rational distance_sq(const std::vector<test::Points>& simplices, const Vector3d&
   std::optional<Rational> exact;
   for (std::size_t i = 0; i < simplices.size(); ++i) {
     if (apart[i] > least * (1 + 1e-7) + 1e-9 * size) continue;
-    oracle::Corners corners;
-    for (const Vector3d& x : simplices[i]) corners.push_back({x.x(), x.y(), x.z()});
-    const Rational d = oracle::distance_sq({{p.x(), p.y(), p.z()}}, corners);
+    const Rational d = oracle::distance_sq(test::corners_of(p), test::corners_of(simplices[i]));
     if (!exact || d < *exact) exact = d;
   }
   return *exact;
@@ -66,7 +56,7 @@ struct Seen {
 };
 
 void check(const LrbRep& rep, const Pose& pose, const std::vector<Vector3d>& points, Seen& seen) {
-  const std::vector<test::Points> simplices = simplices_of(rep, pose);
+  const std::vector<test::Points> simplices = test::real_simplices(rep, pose);
   Eigen::AlignedBox3d box;
   for (const test::Points& s : simplices)
     for (const Vector3d& x : s) box.extend(x);
@@ -108,7 +98,7 @@ void check(const LrbRep& rep, const Pose& pose, const std::vector<Vector3d>& poi
 /// Points in and around a body, on it, within rounding of it, and far away.
 std::vector<Vector3d> points_about(const LrbRep& rep, const Pose& pose, RandomEngine& random, int count) {
   std::vector<Vector3d> out;
-  const std::vector<test::Points> simplices = simplices_of(rep, pose);
+  const std::vector<test::Points> simplices = test::real_simplices(rep, pose);
   for (int i = 0; i < count; ++i) {
     const test::Points& s = simplices[random() % simplices.size()];
     Vector3d p = test::random_point_of(random, s);
@@ -211,23 +201,6 @@ TEST_CASE("signed distances of points agree with rational brute force and with w
   CHECK(seen.on_surface > 100);
 }
 
-TEST_CASE("signed distances do not depend on the number of threads, nor on the other points") {
-  RandomEngine random(2);
-  const LrbRep body = closed(shapes::bumpy_sphere(3, 1));
-  const std::vector<Vector3d> points = points_about(body, {}, random, 300);
-  const std::vector<PointDistance> one = point_distances(body, {}, points, {}, 1);
-  const std::vector<PointDistance> many = point_distances(body, {}, points, {}, 4);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PointDistance alone = point_distances(body, {}, std::span(points).subspan(i, 1))[0];
-    for (const PointDistance* other : {&many[i], &alone}) {
-      CHECK(one[i].lower == other->lower);
-      CHECK(one[i].upper == other->upper);
-      CHECK(one[i].side == other->side);
-      CHECK(one[i].closest.simplex == other->closest.simplex);
-    }
-  }
-}
-
 TEST_CASE("a tolerance widens the interval of a signed distance") {
   const LrbRep ball = closed(shapes::icosphere(3));
   const std::vector<Vector3d> points = {{0, 0, 0.5}};
@@ -249,15 +222,4 @@ TEST_CASE("signed distances to a body without faces are infinite") {
   CHECK_FALSE(d.side);
   CHECK(d.closest.simplex == kNull);
   CHECK(point_distances(nothing, {}, {}).empty());
-}
-
-TEST_CASE("points and requests that are not finite are rejected") {
-  const LrbRep box = closed(shapes::quad_box());
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Vector3d> points = {{0, 0, 0}, {0, nan, 0}};
-  CHECK_THROWS_WITH_AS(point_distances(box, {}, points),
-                       "point 1: expected finite coordinates, found a NaN or an infinity", InputError);
-  PointDistanceRequest request;
-  request.tolerance = -1;
-  CHECK_THROWS_AS(point_distances(box, {}, {}, request), InputError);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/fuzz/feed.hpp"
+#include "tests/support/bodies.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>
@@ -62,106 +63,55 @@ class Choices {
   std::size_t at_ = 0;
 };
 
-struct Corners {
-  Mesh mesh;
-  void face(std::vector<unsigned> corners) {
-    std::vector<VertexId> ids;
-    for (const unsigned i : corners) ids.emplace_back(i);
-    mesh.add_face(ids);
-  }
-};
-
-Mesh box(bool open) {
-  Corners c;
-  for (unsigned i = 0; i < 8; ++i) c.mesh.vertices.emplace_back(i & 1, i >> 1 & 1, i >> 2);
-  for (const auto& f :
-       {std::array{0u, 2u, 3u, 1u}, {4u, 5u, 7u, 6u}, {0u, 1u, 5u, 4u}, {2u, 6u, 7u, 3u}, {0u, 4u, 6u, 2u}})
-    c.face({f.begin(), f.end()});
-  if (!open) c.face({1, 3, 7, 5});
-  return c.mesh;
-}
-
-Mesh tetrahedron() {
-  Corners c;
-  c.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  for (const auto& f : {std::array{0u, 2u, 1u}, {0u, 1u, 3u}, {1u, 2u, 3u}, {0u, 3u, 2u}})
-    c.face({f.begin(), f.end()});
-  return c.mesh;
-}
-
 /// A block with a notch, which is not convex.
 Mesh notch() {
-  Corners c;
-  const std::array<std::array<double, 2>, 8> outline = {
-      {{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}};
-  for (const double z : {0.0, 1.0})
-    for (const auto& x : outline) c.mesh.vertices.emplace_back(x[0], x[1], z);
-  for (unsigned i = 0; i < 8; ++i) c.face({i, (i + 1) % 8, 8 + (i + 1) % 8, 8 + i});
-  for (const auto& f : {std::array{0u, 1u, 4u, 5u}, {1u, 2u, 3u, 4u}, {0u, 5u, 6u, 7u}}) {
-    c.face({f[3], f[2], f[1], f[0]});
-    c.face({8 + f[0], 8 + f[1], 8 + f[2], 8 + f[3]});
-  }
-  return c.mesh;
+  return shapes::voxels(
+      3, 2, 1, [](int x, int y, int) { return x != 1 || y == 0; }, true);
 }
 
-Mesh sheet(unsigned n) {
-  Corners c;
-  for (unsigned j = 0; j <= n; ++j)
-    for (unsigned i = 0; i <= n; ++i) c.mesh.vertices.emplace_back(double(i) / n, double(j) / n, 0);
-  for (unsigned j = 0; j < n; ++j)
-    for (unsigned i = 0; i < n; ++i) {
-      const unsigned v = j * (n + 1) + i;
-      c.face({v, v + 1, v + n + 2, v + n + 1});
-    }
-  return c.mesh;
+Mesh polygon(int n, bool open) {
+  const Mesh star = shapes::star(n, 1, 0.5);
+  return open ? test::without_last_face(star) : star;
 }
 
-Mesh polygon(unsigned n, bool open) {
-  Corners c;
-  c.mesh.dim = 2;
-  for (unsigned i = 0; i < n; ++i) {
-    const double angle = 2 * std::numbers::pi * i / n, radius = i % 2 == 0 ? 1 : 0.5;
-    c.mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
-  }
-  for (unsigned i = 0; i + (open ? 1 : 0) < n; ++i) c.face({i, (i + 1) % n});
-  return c.mesh;
+Mesh box(bool open) {
+  const Mesh quads = shapes::quad_box();
+  return open ? test::without_last_face(quads) : quads;
 }
 
 /// Simplices that have nothing to do with each other.
 Mesh loose(Choices& choose, int dim) {
-  Corners c;
-  c.mesh.dim = dim;
-  const unsigned count = 1 + choose.below(4), size = static_cast<unsigned>(dim);
+  Mesh mesh;
+  mesh.dim = dim;
+  const unsigned count = 1 + choose.below(4);
   for (unsigned i = 0; i < count; ++i) {
-    std::vector<unsigned> corners;
-    for (unsigned k = 0; k < size; ++k) {
-      corners.push_back(static_cast<unsigned>(c.mesh.vertices.size()));
-      c.mesh.vertices.push_back(choose.vector(dim));
-    }
-    c.face(corners);
+    std::vector<Vector3d> corners;
+    for (int k = 0; k < dim; ++k) corners.push_back(choose.vector(dim));
+    test::add_loose(mesh, corners);
   }
-  return c.mesh;
+  return mesh;
 }
 
 LrbRep body(Choices& choose, int dim) {
   const unsigned kind = choose.byte();
   const bool open = kind & 8;
   if (dim == 2)
-    return kind % 4 == 0 ? LrbRep::without_regions(loose(choose, 2), false, false)
-                         : LrbRep::without_regions(polygon(3 + 2 * choose.below(6), open), !open, false);
+    return kind % 4 == 0
+               ? test::open_body(loose(choose, 2))
+               : LrbRep::without_regions(polygon(3 + static_cast<int>(choose.below(6)), open), !open, false);
   switch (kind % 8) {
     case 0:
     case 1:
       return LrbRep::without_regions(box(open), !open, false);
     case 2:
-      return LrbRep::without_regions(tetrahedron(), true, false);
+      return LrbRep::without_regions(shapes::tetrahedron(), true, false);
     case 3:
       return LrbRep::without_regions(notch(), true, false);
     case 4:
     case 5:
-      return LrbRep::without_regions(sheet(1 + choose.below(6)), false, false);
+      return test::open_body(test::sheet(1 + choose.below(6)));
     default:
-      return LrbRep::without_regions(loose(choose, 3), false, false);
+      return test::open_body(loose(choose, 3));
   }
 }
 

@@ -5,7 +5,7 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/faulty_meshes.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include "tests/support/noisy_quads.hpp"

@@ -5,9 +5,6 @@
 #include <map>
 
 #include <doctest/doctest.h>
-#ifdef LRB_MATRIX_FCL
-#include <lrbscope/fcl.hpp>
-#endif
 
 #include "tests/matrix/bodies.hpp"
 #include "tests/matrix/child.hpp"
@@ -383,37 +380,6 @@ void check_build(Report& report, const Kind& kind) {
   }
 }
 
-#ifdef LRB_MATRIX_FCL
-void check_fcl(Report& report, const Cell& cell) {
-  report.doing("FCL's interface");
-  ::fcl::BVHModel<::fcl::OBBRSSd> models[2];
-  for (const int side : {0, 1}) {
-    const Mesh& m = matrix().kinds[side ? cell.b : cell.a].mesh;
-    std::vector<::fcl::Triangle> triangles;
-    for (FaceId f = 0; f < m.face_count(); ++f)
-      for (std::size_t k = 2; k < m.face(f).size(); ++k)
-        triangles.emplace_back(m.face(f)[0], m.face(f)[k - 1], m.face(f)[k]);
-    models[side].beginModel();
-    models[side].addSubModel(m.vertices, triangles);
-    models[side].endModel();
-  }
-  const ::fcl::Transform3d home = ::fcl::Transform3d::Identity();
-  for (const Step& step : cell.steps) {
-    ::fcl::Transform3d place = home;
-    place.linear() = step.pose.r;
-    place.translation() = step.pose.t;
-    ::fcl::CollisionResultd found;
-    const ::fcl::CollisionRequestd all(std::size_t{1} << 20);
-    if (lrb::fcl::collide<double>(&models[0], home, &models[1], place, all, found) != step.truth.pairs.size())
-      report.wrong("other pairs");
-    ::fcl::DistanceResultd apart;
-    const double d =
-        lrb::fcl::distance<double>(&models[0], home, &models[1], place, ::fcl::DistanceRequestd(), apart);
-    if (std::abs(d - step.distance) > kSlack * cell.size) report.wrong("another distance");
-  }
-}
-#endif
-
 /// All cells of one kind, through all doors, or only the first and the last one.
 void check_kind(std::size_t index, bool all, Report& report) {
   const test::Folder folder;
@@ -433,11 +399,6 @@ void check_kind(std::size_t index, bool all, Report& report) {
       Questions(report, body, other, cell, all).ask(clashes[cell.b]);
     }
   }
-#ifdef LRB_MATRIX_FCL
-  report.through("FCL");
-  for (const Cell& cell : matrix().cells)
-    if (cell.a == index && kind.mesh.dim == 3) check_fcl(report, cell);
-#endif
 }
 
 void check_matrix(bool all) {

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
@@ -35,20 +36,6 @@ void check_faults(const MeshReport& report,
     CAPTURE(i);
     CHECK(report.findings[i].count == counts[i]);
   }
-}
-
-Mesh without_face(const Mesh& m, FaceId skipped) {
-  Mesh out;
-  out.dim = m.dim;
-  out.vertices = m.vertices;
-  for (FaceId f = 0; f < m.face_count(); ++f)
-    if (f != skipped) out.add_face(m.face(f));
-  return out;
-}
-
-Mesh with_face_turned(Mesh m, FaceId f) {
-  std::swap(m.face_vertices[m.face_offsets[f]], m.face_vertices[m.face_offsets[f] + 1]);
-  return m;
 }
 
 }  // namespace
@@ -97,61 +84,96 @@ TEST_CASE("bodies of the tests are closed, manifold, outward and free of self-in
   CHECK_FALSE(check_mesh(box(), false).self_intersections_checked);
 }
 
-TEST_CASE("a mesh without faces") {
-  const Mesh m = mesh_of({{0, 0, 0}}, {});
-  const MeshReport report = check_mesh(m);
-  check_faults(report, {{MeshFault::no_faces, 1}, {MeshFault::unused_vertex, 1}});
-  CHECK_FALSE(report.closed);
-  CHECK_FALSE(report.buildable());
-  CHECK_FALSE(report.queryable());
-}
-
-TEST_CASE("coordinates that are not finite, indices out of range") {
-  Mesh m = tetrahedron();
-  m.vertices[2].y() = std::numeric_limits<double>::quiet_NaN();
-  MeshReport report = check_mesh(m);
-  check_faults(report, {{MeshFault::non_finite_vertex, 1}});
-  CHECK(report[MeshFault::non_finite_vertex].first == Elements{{2, kNull}});
-  CHECK_FALSE(report.queryable());
-
-  m = tetrahedron();
-  m.face_vertices[4] = 4;  // of face 1: its three edges lose a face
-  report = check_mesh(m);
-  check_faults(report, {{MeshFault::index_out_of_range, 1}, {MeshFault::open_edge, 3}});
-  CHECK(report[MeshFault::index_out_of_range].first == Elements{{1, 4}});
-  CHECK_FALSE(report.closed);
-  CHECK_FALSE(report.queryable());
-}
-
-TEST_CASE("repeated corners and faces without area") {
-  Mesh m = tetrahedron();
-  m.add_face(std::array<VertexId, 3>{1, 1, 2});  // no boundary: the body stays closed
-  MeshReport report = check_mesh(m);
-  check_faults(report, {{MeshFault::repeated_corner, 1}, {MeshFault::zero_area_face, 1}});
-  CHECK(report[MeshFault::repeated_corner].first == Elements{{4, 1}});
-  CHECK(report.closed);
-  CHECK_FALSE(report.buildable());
-  CHECK(report.queryable());
-
+TEST_CASE("each fault is found alone, with its elements, and decides what the mesh is good for") {
+  using enum MeshFault;
+  const auto changed = [](Mesh mesh, const auto& change) {
+    change(mesh);
+    return mesh;
+  };
   // A needle of an ulp's width has area, a straight one has none.
-  for (const auto& [z, faults] : {std::pair{0.3125, 1u}, std::pair{std::nextafter(0.3125, 1), 0u}}) {
-    m = mesh_of({{0, 0, 0}, {3, 3, 3 * 0.3125}, {1, 1, z}}, {{0, 1, 2}});
-    CHECK(check_mesh(m)[MeshFault::zero_area_face].count == faults);
+  const auto needle = [](double z) {
+    return mesh_of({{0, 0, 0}, {3, 3, 3 * 0.3125}, {1, 1, z}}, {{0, 1, 2}});
+  };
+  struct Row {
+    Mesh mesh;
+    std::vector<std::pair<MeshFault, std::uint64_t>> faults;
+    bool closed, buildable, queryable;
+    Elements first = {};  ///< of the first fault
+  };
+  for (const Row& row : std::vector<Row>{
+           {mesh_of({{0, 0, 0}}, {}), {{no_faces, 1}, {unused_vertex, 1}}, false, false, false},
+           {changed(tetrahedron(),
+                    [](Mesh& m) { m.vertices[2].y() = std::numeric_limits<double>::quiet_NaN(); }),
+            {{non_finite_vertex, 1}},
+            true,
+            false,
+            false,
+            {{2, kNull}}},
+           // Of face 1, whose three edges lose a face.
+           {changed(tetrahedron(), [](Mesh& m) { m.face_vertices[4] = 4; }),
+            {{index_out_of_range, 1}, {open_edge, 3}},
+            false,
+            false,
+            false,
+            {{1, 4}}},
+           // No boundary: the body stays closed.
+           {changed(tetrahedron(),
+                    [](Mesh& m) {
+                      m.add_face(std::array<VertexId, 3>{1, 1, 2});
+                    }),
+            {{repeated_corner, 1}, {zero_area_face, 1}},
+            true,
+            false,
+            true,
+            {{4, 1}}},
+           {needle(0.3125), {{zero_area_face, 1}, {open_edge, 3}}, false, false, true},
+           {needle(std::nextafter(0.3125, 1)), {{open_edge, 3}}, false, false, true},
+           {mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{0, 1, 2, 3}}),
+            {{zero_area_face, 1}, {open_edge, 4}},
+            false,
+            false,
+            true},
+           {mesh_of({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}}, {{0, 1, 2, 3}}),
+            {{open_edge, 4}, {duplicate_vertex, 1}},
+            false,
+            false,
+            true},
+           // Within the planes of two of its quads.
+           {changed(quad_box(), [](Mesh& m) { m.vertices[7].x() = std::nextafter(m.vertices[7].x(), 2); }),
+            {{non_planar_face, 1}},
+            true,
+            true,
+            true},
+           {without_faces(quad_box(), {FaceId(3)}), {{open_edge, 4}}, false, false, true},
+           {open_cylinder(11), {{open_edge, 22}}, false, false, true},
+           {without_faces(circle(6), {FaceId(2)}), {{open_edge, 2}}, false, false, true},
+           {with_vertices(box(), {{5, 5, 5}}), {{unused_vertex, 1}}, true, true, true, {{8, kNull}}},
+           // Whatever the sign of their zeros.
+           {with_vertices(box(), {{0, 0, 0}, {-0.0, 0, 0}, {1, 0, 0}}),
+            {{duplicate_vertex, 3}, {unused_vertex, 3}},
+            true,
+            true,
+            true}}) {
+    const MeshReport report = check_mesh(row.mesh);
+    CAPTURE(report.lines(row.mesh).empty());
+    check_faults(report, row.faults);
+    CHECK(report.closed == row.closed);
+    CHECK(report.buildable() == row.buildable);
+    CHECK(report.queryable() == row.queryable);
+    if (!row.first.empty()) CHECK(report[row.faults[0].first].first == row.first);
   }
-  m = mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{0, 1, 2, 3}});
-  CHECK(check_mesh(m)[MeshFault::zero_area_face].count == 1);
-  m = mesh_of({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}}, {{0, 1, 2, 3}});
-  check_faults(check_mesh(m), {{MeshFault::open_edge, 4}, {MeshFault::duplicate_vertex, 1}});
-}
-
-TEST_CASE("polygons that are not planar can still be built") {
-  Mesh m = quad_box();
-  check_faults(check_mesh(m), {});
-  m.vertices[7].x() = std::nextafter(m.vertices[7].x(), 2);  // within the planes of two of its quads
-  const MeshReport report = check_mesh(m);
-  check_faults(report, {{MeshFault::non_planar_face, 1}});
-  CHECK(report.buildable());
-  CHECK(report.closed);
+  const MeshReport open = check_mesh(without_faces(quad_box(), {FaceId(3)}));
+  CHECK_FALSE(open.bounds_solid);
+  CHECK(open.genus == -1);
+  CHECK(open.components == 1);
+  // Duplicate faces, whatever their first corner and orientation.
+  Mesh m = tetrahedron();
+  m.add_face(std::array<VertexId, 3>{3, 1, 0});
+  m.add_face(std::array<VertexId, 3>{0, 3, 1});
+  const MeshReport twice = check_mesh(m, false);
+  CHECK(twice[duplicate_face].first == Elements{{1, 4}, {1, 5}});
+  CHECK(twice[non_manifold_edge].count == 3);
+  CHECK_FALSE(twice.buildable());
 }
 
 TEST_CASE("convexity of polygons, whatever plane they lie in") {
@@ -195,30 +217,6 @@ TEST_CASE("convexity of polygons, whatever plane they lie in") {
         }
 }
 
-TEST_CASE("duplicate faces, whatever their first corner and orientation") {
-  Mesh m = tetrahedron();
-  m.add_face(std::array<VertexId, 3>{3, 1, 0});
-  m.add_face(std::array<VertexId, 3>{0, 3, 1});
-  const MeshReport report = check_mesh(m, false);
-  CHECK(report[MeshFault::duplicate_face].first == Elements{{1, 4}, {1, 5}});
-  CHECK(report[MeshFault::non_manifold_edge].count == 3);
-  CHECK_FALSE(report.buildable());
-}
-
-TEST_CASE("check_mesh() reports open edges") {
-  const Mesh m = without_face(quad_box(), 3);
-  const MeshReport report = check_mesh(m);
-  check_faults(report, {{MeshFault::open_edge, 4}});
-  CHECK_FALSE(report.closed);
-  CHECK_FALSE(report.bounds_solid);
-  CHECK_FALSE(report.buildable());
-  CHECK(report.queryable());
-  CHECK(report.genus == -1);
-  CHECK(report.components == 1);
-  check_faults(check_mesh(open_cylinder(11)), {{MeshFault::open_edge, 22}});
-  check_faults(check_mesh(without_face(circle(6), 2)), {{MeshFault::open_edge, 2}});
-}
-
 TEST_CASE("two cubes that share an edge, or a vertex") {
   const Mesh edge = voxels(2, 2, 1, [](int i, int j, int) { return i == j; });
   MeshReport report = check_mesh(edge);
@@ -249,7 +247,7 @@ TEST_CASE("two cubes that share an edge, or a vertex") {
 }
 
 TEST_CASE("faces flipped against their neighbours") {
-  const MeshReport report = check_mesh(with_face_turned(icosphere(1), 17));
+  const MeshReport report = check_mesh(with_flipped(icosphere(1), {FaceId(17)}));
   check_faults(report, {{MeshFault::flipped_face, 3}});
   CHECK_FALSE(report.closed);
   CHECK_FALSE(report.buildable());
@@ -276,27 +274,6 @@ TEST_CASE("faces flipped against their neighbours") {
   check_faults(check_mesh(flat), {{MeshFault::flipped_face, 2}});
 }
 
-TEST_CASE("check_mesh() reports unused vertices") {
-  Mesh m = box();
-  m.vertices.emplace_back(5, 5, 5);
-  const MeshReport report = check_mesh(m);
-  check_faults(report, {{MeshFault::unused_vertex, 1}});
-  CHECK(report.closed);
-  CHECK(report.genus == 0);
-  CHECK(report.buildable());
-}
-
-TEST_CASE("coincident vertices, whatever the sign of their zeros") {
-  Mesh m = box();
-  for (const double x : {0.0, -0.0, 1.0}) m.vertices.emplace_back(x, 0, 0);
-  const MeshReport report = check_mesh(m);
-  check_faults(report, {{MeshFault::duplicate_vertex, 3}, {MeshFault::unused_vertex, 3}});
-  CHECK(report[MeshFault::duplicate_vertex].first.size() == 3);
-  for (const auto& [v, w] : report[MeshFault::duplicate_vertex].first) CHECK(m.vertices[v] == m.vertices[w]);
-  CHECK(report.buildable());
-  CHECK(report.obstacles(m).empty());
-}
-
 TEST_CASE("advice on open 2D bodies does not name a command that rejects them") {
   Mesh m;
   m.dim = 2;
@@ -311,7 +288,7 @@ TEST_CASE("advice on open 2D bodies does not name a command that rejects them") 
 }
 
 TEST_CASE("findings report fault, count and location, in one line each") {
-  Mesh m = without_face(box(), 0);
+  Mesh m = without_faces(box(), {FaceId(0)});
   m.name = "box.obj";
   const std::vector<std::string> lines = check_mesh(m).lines(m);
   REQUIRE(lines.size() == 1);

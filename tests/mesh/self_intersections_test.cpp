@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/hull_oracle.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include "tests/support/simplex_distance.hpp"
@@ -259,16 +259,6 @@ TEST_CASE("collinear corners are not self-intersections") {
   three_sided.add_face(std::array<VertexId, 7>{0, 6, 5, 4, 3, 2, 1});
   for (VertexId i = 0; i < 7; ++i) three_sided.add_face(std::array<VertexId, 3>{i, VertexId((i + 1) % 7), 7});
   CHECK(check_mesh(three_sided).lines(three_sided).empty());
-}
-
-TEST_CASE("realistic bodies with self-intersections") {
-  Mesh m = bumpy_sphere(2, 3);
-  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
-  m.vertices[5] *= -2;  // one vertex through to the other side
-  const MeshReport report = check_mesh(m);
-  CHECK(report[MeshFault::self_intersection].count == meeting_strangers(m).size());
-  CHECK(report[MeshFault::self_intersection].count > 0);
-  CHECK(report.buildable());
 }
 
 TEST_CASE("overlapping and touching solids") {

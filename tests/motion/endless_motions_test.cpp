@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/first_contact.hpp>
 
@@ -21,16 +21,8 @@ using test::closed;
 
 const Motion kAtRest = Motion::still({});
 
-LrbRep grid(unsigned n) {
-  Mesh m;
-  for (unsigned j = 0; j <= n; ++j)
-    for (unsigned i = 0; i <= n; ++i) m.vertices.emplace_back(2.0 * i / n - 1, 2.0 * j / n - 1, 0);
-  for (unsigned j = 0; j < n; ++j)
-    for (unsigned i = 0; i < n; ++i) {
-      const unsigned v = j * (n + 1) + i;
-      m.add_face(std::array{VertexId(v), VertexId(v + 1), VertexId(v + n + 2), VertexId(v + n + 1)});
-    }
-  return LrbRep::without_regions(m, false, false);
+LrbRep grid(std::uint32_t n) {
+  return test::open_body(test::sheet(n, {-1, -1}, {1, 1}));
 }
 
 Motion slide(const Vector3d& from, const Vector3d& to, double size = 1) {

@@ -12,7 +12,7 @@
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
-#include "tests/robustness/failing_new.hpp"
+#include "tests/support/counted_new.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include <lrbscope/build.hpp>

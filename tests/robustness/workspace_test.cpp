@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/robustness/failing_new.hpp"
+#include "tests/support/counted_new.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/workspace.hpp>
 

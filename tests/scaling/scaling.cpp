@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "scenarios/paper/series.hpp"
-#include "tests/scaling/memory.hpp"
+#include "tests/support/counted_new.hpp"
 
 namespace lrb::scaling {
 namespace {
@@ -42,7 +42,7 @@ Cost measure(const Task& task) {
   Cost cost{task.size, 0, 0};
   double total = 0;
   for (int i = 0; i < kLeast || (i < kMax && total < kEnough); ++i) {
-    const PeakMemory memory;
+    const test::PeakMemory memory;
     const double begin = cpu_seconds();
     task.work();
     const double seconds = cpu_seconds() - begin;

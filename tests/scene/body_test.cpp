@@ -125,22 +125,6 @@ TEST_CASE("an open mesh is a body with a note on unavailable queries") {
   CHECK(Body::from(LrbRep::without_regions(shapes::open_cylinder(12), false, false)).notes().size() == 1);
 }
 
-TEST_CASE("a body of faces alone gives the answers of a body with regions") {
-  BodyOptions options;
-  options.regions = false;
-  const Mesh mesh = shapes::turned_inside_out(shapes::bumpy_sphere(2, 5));
-  const Body faces = Body::from(mesh, options).value(), whole = Body::from(mesh).value();
-  CHECK(!faces.has_regions());
-  CHECK(whole.has_regions());
-  CHECK(faces.turned() == 1);
-  for (int i = 0; i < 5; ++i) {
-    const Pose pose = Pose::rotation({1, 2, 3}, i, {0.3 * i, 0.1, 0.2});
-    const CollideResult x = collide(faces, Pose{}, faces, pose), y = collide(whole, Pose{}, whole, pose);
-    CHECK(x.pairs == y.pairs);
-    CHECK(x.relation == y.relation);
-  }
-}
-
 TEST_CASE("polygons and 2D bodies are made from matrices") {
   Eigen::MatrixXd corners(4, 2);
   corners << 0, 0, 1, 0, 1, 1, 0, 1;

@@ -219,35 +219,6 @@ TEST_CASE("a scene passes its request to its queries, and rejections have a reas
   CHECK(scene.collide()[0].a == a);
 }
 
-TEST_CASE("thousands of bodies: the sorted order is reused for small motions") {
-  const Body ball = Body::from(shapes::icosphere(1, 0.55)).value();
-  Scene scene(2);
-  std::vector<BodyKey> keys;
-  constexpr int kSide = 14;  // 2744 bodies
-  for (int i = 0; i < kSide * kSide * kSide; ++i)
-    keys.push_back(scene.add(ball, Pose::translation({1.0 * (i % kSide), 1.01 * (i / kSide % kSide),
-                                                      1.02 * (i / kSide / kSide)})));
-  CollideRequest any;
-  any.mode = Mode::any_pair;
-  const std::size_t met = scene.collide(any).size();
-  CHECK(met > keys.size());
-  CHECK(scene.work().broad_phase.sorted_afresh);
-  for (int step = 0; step < 5; ++step) {
-    for (const BodyKey key : keys) {
-      Pose pose = scene.pose(key);
-      pose.t.x() += 1e-3;
-      scene.move(key, pose);
-    }
-    CHECK(scene.collide(any).size() == met);
-    CHECK(scene.work().moved == keys.size());
-    CHECK(!scene.work().broad_phase.sorted_afresh);
-    CHECK(scene.work().broad_phase.swaps < keys.size());
-  }
-  scene.move(keys[5], Pose{});
-  scene.collide(any);
-  CHECK(scene.work().moved == 1);
-}
-
 TEST_CASE("pairs of close boxes, closest first, against all pairs of boxes") {
   RandomEngine random(18);
   const std::vector<Body> bodies = some_bodies();
@@ -304,22 +275,6 @@ TEST_CASE("closest solids: an enclosed body is closer than any outside") {
   CHECK(std::pair(solids->a, solids->b) == std::pair(outer, inner));
   CHECK(solids->result->solids_upper() == 0);
   CHECK(solids->result->upper > surfaces->result->upper);
-}
-
-TEST_CASE("a scene with reserved space keeps its order while bodies are added") {
-  Scene scene;
-  scene.reserve(30);
-  const Body ball = Body::from(shapes::icosphere(0, 0.4)).value();
-  for (int i = 0; i < 26; ++i) scene.add(ball, Pose::translation({1.0 * i, 0, 0}));
-  scene.near();
-  for (int i = 26; i < 30; ++i) {
-    scene.add(ball, Pose::translation({1.0 * i, 0, 0}));
-    CHECK(scene.near().empty());
-    CHECK(!scene.work().broad_phase.sorted_afresh);
-  }
-  scene.add(ball);  // one more than there is room for
-  CHECK(scene.near().size() == 1);
-  CHECK(scene.work().broad_phase.sorted_afresh);
 }
 
 TEST_CASE("a scene keeps the answers of bodies that have not moved, for the same request") {

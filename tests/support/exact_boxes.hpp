@@ -89,6 +89,18 @@ std::vector<std::vector<SimplexId>> contents(const LrbRep& rep, std::uint32_t no
   return r;
 }
 
+/// The ranges of every real simplex, of its vertices' coordinates.
+std::vector<Range3> ranges(const LrbRep& rep, const std::vector<Exact3>& x) {
+  std::vector<Range3> r(rep.real_simplex_count());
+  for (SimplexId s = 0; s < r.size(); ++s) {
+    VertexId v[3];
+    rep.simplex(s, v);
+    for (int corner = 0; corner < rep.dim(); ++corner)
+      for (int i = 0; i < 3; ++i) r[s][i].extend(x[v[corner]][i]);
+  }
+  return r;
+}
+
 Range3 united(const std::vector<Range3>& of, const std::vector<SimplexId>& list) {
   Range3 r;
   for (const SimplexId s : list)

@@ -93,30 +93,6 @@ TEST_CASE("the complete query equals brute force, with regions and without") {
   }));
 }
 
-TEST_CASE("swapping the bodies transposes the list and mirrors the relation") {
-  CHECK(rc::check([] {
-    const cases::Case c = any_case();
-    const CollideResult r = ask(c), swapped = ask({c.b, c.a, c.pose_b, c.pose_a, {}, {}});
-    std::vector<SimplexPair> back;
-    for (const SimplexPair& p : swapped.pairs) back.push_back({p.b, p.a});
-    std::sort(back.begin(), back.end());
-    RC_ASSERT(back == r.pairs);
-    // Bodies that each hold a piece of the other: the first is named as the one inside.
-    const bool mutual = r.relation == Relation::a_inside_b && swapped.relation == Relation::a_inside_b;
-    RC_ASSERT(mutual || swapped.relation == mirrored(r.relation));
-  }));
-}
-
-TEST_CASE("regions change no answer") {
-  CHECK(rc::check([] {
-    cases::Case c = any_case();
-    const CollideResult bare = ask(c);
-    RandomEngine random(*rc::gen::arbitrary<std::uint64_t>().as("regions"));
-    RC_CLASSIFY(torture::give_regions(c, random, kMaxSimplices) > 0, "with regions");
-    assert_same(ask(c), bare);
-  }));
-}
-
 TEST_CASE("a loaded body gives the same answers") {
   CHECK(rc::check([] {
     const cases::Case c = any_case_with_regions();

@@ -79,49 +79,6 @@ std::vector<RegionId> shuffled_regions(RandomEngine& random, const LrbRep& rep) 
 
 }  // namespace
 
-TEST_CASE("moving both bodies by the same exact translation changes nothing") {
-  RandomEngine random(1);
-  const cases::Body bodies[] = {on_grid(shapes::bumpy_sphere(2, 3)), on_grid(shapes::torus(12, 8)),
-                                on_grid(shapes::comb(4)), on_grid(shapes::box_with_void())};
-  int in_contact = 0;
-  for (int i = 0; i < 400; ++i) {
-    const LrbRep &a = *bodies[random() % 4], &b = *bodies[random() % 4];
-    Pose pa, pb{cases::grid_turn(random),
-                Eigen::Vector3d(cases::pick(random, -4, 4), cases::pick(random, -4, 4), 0) / 2};
-    CollideRequest request;
-    request.contacts = request.interiors_overlap = true;
-    const CollideResult before = collide(a, pa, b, pb, request);
-    const Eigen::Vector3d by(cases::pick(random, -1000000, 1000000), cases::pick(random, -1000000, 1000000),
-                             cases::pick(random, -9, 9));
-    pa.t += by;
-    pb.t += by;
-    const CollideResult after = collide(a, pa, b, pb, request);
-    REQUIRE(before.pairs == after.pairs);
-    REQUIRE(before.meets == after.meets);
-    REQUIRE(before.relation == after.relation);
-    REQUIRE(before.interiors_overlap == after.interiors_overlap);
-    REQUIRE(before.regions.size() == after.regions.size());
-    in_contact += !before.pairs.empty();
-  }
-  CHECK(in_contact > 100);
-}
-
-TEST_CASE("a context has no memory: a repeated query gives the same answer") {
-  RandomEngine random(2);
-  QueryContext context;
-  NullProbe probe;
-  for (int i = 0; i < 200; ++i) {
-    const cases::Case c = cases::find_family("dented")->make(random, 0.5);
-    const CollideResult fresh = collide(*c.a, c.pose_a, *c.b, c.pose_b);
-    for (int repeat = 0; repeat < 2; ++repeat) {
-      const CollideResult again = collide(*c.a, c.pose_a, *c.b, c.pose_b, {}, context, probe);
-      REQUIRE(again.pairs == fresh.pairs);
-      REQUIRE(again.opened == fresh.opened);
-      REQUIRE(again.counters.box_tests == fresh.counters.box_tests);
-    }
-  }
-}
-
 TEST_CASE("refining and then coarsening is the identity") {
   RandomEngine random(3);
   for (const LrbRep& rep : built())

@@ -4,8 +4,6 @@
 // Each batch of poses runs in a process of its own, so that a crash or a hang is counted and the rest goes
 // on. A difference is printed with the command that shows it alone. A million poses near contact:
 //   torture --poses 56000 --jobs 2
-// ten million pairs of degenerate simplices:
-//   torture --pairs 10000000 --jobs 2
 // a million coarse queries near contact:
 //   torture --coarse 1000000 --jobs 2
 // a hundred thousand motions:
@@ -40,7 +38,6 @@
 #include "tests/torture/coarse.hpp"
 #include "tests/torture/compare.hpp"
 #include "tests/torture/models.hpp"
-#include "tests/torture/pairs.hpp"
 #include "tests/torture/regions.hpp"
 #include "tests/torture/sweeps.hpp"
 
@@ -54,7 +51,6 @@ constexpr std::uint64_t kBatch = 1000;
 
 struct Options {
   std::uint64_t poses = 1000;  ///< of each class; of the slow ones a quarter
-  std::uint64_t pairs = 0;     ///< pairs of simplices instead of poses
   std::uint64_t coarse = 0;    ///< coarse queries instead of poses
   std::uint64_t sweeps = 0;    ///< motions instead of poses
   std::uint64_t seed = 1;
@@ -154,7 +150,6 @@ int usage(const std::string& complaint) {
       stderr,
       "usage: torture [--poses N] [--jobs N] [--class NAME] [--seed S] [--only POSE]\n"
       "               [--models FOLDER]   N poses of a class (slow ones: N / 4), compared with every oracle\n"
-      "       torture --pairs N [--jobs N] [--seed S]   N pairs of degenerate simplices\n"
       "       torture --coarse N [--jobs N] [--seed S]   N coarse queries near contact\n"
       "       torture --sweeps N [--jobs N] [--seed S]   N first contacts of motions\nclasses:\n");
   for (const cases::Family& f : cases::all_families()) std::fprintf(stderr, "  %-12s %s\n", f.name, f.what);
@@ -170,8 +165,6 @@ std::uint64_t number(const char* text) {
 bool take(Options& o, const std::string& key, const char* value) {
   if (key == "--poses")
     o.poses = number(value);
-  else if (key == "--pairs")
-    o.pairs = number(value);
   else if (key == "--coarse")
     o.coarse = number(value);
   else if (key == "--sweeps")
@@ -230,7 +223,6 @@ int main(int argc, char** argv) {
     if (i + 1 == argc) return usage(key + " needs a value");
     if (!take(o, key, argv[i + 1])) return usage("unknown option " + key);
   }
-  if (o.pairs > 0) return torture_pairs(o.pairs, o.seed, o.jobs) == 0 ? 0 : 1;
   if (o.coarse > 0) return torture_coarse(o.coarse, o.seed, o.jobs) == 0 ? 0 : 1;
   if (o.sweeps > 0) return torture_sweeps(o.sweeps, o.seed, o.jobs) == 0 ? 0 : 1;
   if (!o.name.empty() && o.name != kModels.name && cases::find_family(o.name) == nullptr)

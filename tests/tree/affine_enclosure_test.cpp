@@ -15,7 +15,7 @@ namespace lrb {
 void run_affine_kernel_under_test(TreeKernel& k);
 }
 #include "engine/tree/affine_kernel.inl"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/exact_boxes.hpp"
 
 using namespace lrb;
@@ -58,14 +58,7 @@ std::vector<Range3> on_node(const LrbRep& rep, const std::vector<Exact3>& x, con
   for (std::size_t v = 0; v < y.size(); ++v)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) y[v][i] = y[v][i] + Exact(n.frame[i][j]) * (x[v][j] - origin[j]);
-  std::vector<Range3> r(rep.real_simplex_count());
-  for (SimplexId s = 0; s < r.size(); ++s) {
-    VertexId v[3];
-    rep.simplex(s, v);
-    for (int corner = 0; corner < rep.dim(); ++corner)
-      for (int i = 0; i < 3; ++i) r[s][i].extend(y[v[corner]][i]);
-  }
-  return r;
+  return ranges(rep, y);
 }
 
 std::vector<Range3> of_boxes(const LrbRep& rep, std::uint32_t node, const std::vector<Range3>& simplices) {

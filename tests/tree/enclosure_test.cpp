@@ -1,6 +1,6 @@
-// Whatever the query leaves out is exactly apart: the boxes of every pair of tree nodes, as the kernel turns
-// them from one body's axes to the other's and grows them, against exact arithmetic on the world coordinates
-// that the answer is about.
+// Boxes and balls of a tree contain the simplices below them, and whatever the query leaves out is exactly
+// apart: the boxes of every pair of tree nodes, as the kernel turns them from one body's axes to the other's
+// and grows them, against exact arithmetic on the world coordinates that the answer is about.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@ namespace lrb {
 void run_tree_kernel_for_enclosure(TreeKernel& k);
 }
 #include "engine/tree/tree_kernel.inl"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/exact_boxes.hpp"
 
 using namespace lrb;
@@ -44,27 +44,45 @@ class Seen {
       x = y;
     }
   }
-  /// Of every real simplex, in a node's coordinates.
-  std::vector<Range3> in_node(const TreeNode& n, float ratio) const {
+  /// In a node's coordinates.
+  std::vector<Exact3> in_node(const TreeNode& n, float ratio) const {
     std::vector<Exact3> y(on_a_.size());
     for (std::size_t v = 0; v < y.size(); ++v)
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
           y[v][i] = y[v][i] + Exact(n.frame[i][j]) * (on_a_[v][j] - Exact(n.origin[j]) * Exact(ratio));
-    std::vector<Range3> r(rep_.real_simplex_count());
-    for (SimplexId s = 0; s < r.size(); ++s) {
-      VertexId v[3];
-      rep_.simplex(s, v);
-      for (int corner = 0; corner < rep_.dim(); ++corner)
-        for (int i = 0; i < 3; ++i) r[s][i].extend(y[v[corner]][i]);
-    }
-    return r;
+    return y;
   }
 
  private:
   const LrbRep& rep_;
   std::vector<Exact3> on_a_;
 };
+
+/// Differences of two corners of the first simplex of each leaf, on A's axes, and their error bounds.
+void check_edges(const Scene& s, const TreeKernel& k, const TreeNode& na, const TreeNode& nb,
+                 const Between& w, const std::vector<Exact3>& a, const std::vector<Exact3>& b, Share& share) {
+  const LeafBlock* blocks[2] = {&s.a->tree().blocks()[na.first], &s.b->tree().blocks()[nb.first]};
+  for (int side = 0; side < 2; ++side) {
+    VertexId v[3];
+    (side == 0 ? *s.a : *s.b).simplex(blocks[side]->simplex[0], v);
+    float got[2][3];
+    for (int corner = 0; corner < 2; ++corner) {
+      float x[3];
+      for (int j = 0; j < 3; ++j)
+        x[j] = blocks[side]->corner[corner][j][0] * (side == 0 ? k.ratio_a : k.ratio_b);
+      for (int i = 0; i < 3; ++i)
+        got[corner][i] = side == 0 ? x[i] : w.t[i] + w.r[i][0] * x[0] + w.r[i][1] * x[1] + w.r[i][2] * x[2];
+    }
+    const auto& of = side == 0 ? a : b;
+    for (int i = 0; i < 3; ++i) {
+      const float edge = got[1][i] - got[0][i];
+      if (!std::isfinite(edge) || !std::isfinite(w.edge_error[side])) continue;
+      const Exact off = of[v[1]][i] - of[v[0]][i] - Exact(edge), bound(w.edge_error[side]);
+      share.too_small += bound < off || off < Exact(0.0) - bound;
+    }
+  }
+}
 
 Share check_nodes(const Scene& s) {
   Share share;
@@ -76,12 +94,18 @@ Share check_nodes(const Scene& s) {
   b_turned.turn(k);
   const auto &nodes_a = s.a->tree().nodes(), &nodes_b = s.b->tree().nodes();
   struct View {
+    std::vector<Exact3> a, b;  ///< vertices
     std::vector<Range3> of_a, of_b;
   };
+  const auto view = [&](const Seen& of_a, const Seen& of_b, const TreeNode& n, float ratio) {
+    View out{of_a.in_node(n, ratio), of_b.in_node(n, ratio), {}, {}};
+    out.of_a = ranges(*s.a, out.a);
+    out.of_b = ranges(*s.b, out.b);
+    return out;
+  };
   std::vector<View> on_a, on_b;
-  for (const TreeNode& n : nodes_a) on_a.push_back({a.in_node(n, k.ratio_a), b.in_node(n, k.ratio_a)});
-  for (const TreeNode& n : nodes_b)
-    on_b.push_back({a_turned.in_node(n, k.ratio_b), b_turned.in_node(n, k.ratio_b)});
+  for (const TreeNode& n : nodes_a) on_a.push_back(view(a, b, n, k.ratio_a));
+  for (const TreeNode& n : nodes_b) on_b.push_back(view(a_turned, b_turned, n, k.ratio_b));
   for (std::uint32_t p = 0; p < nodes_a.size(); ++p)
     for (std::uint32_t q = 0; q < nodes_b.size(); ++q) {
       const Between w = between(k, nodes_a[p], nodes_b[q]);
@@ -98,6 +122,8 @@ Share check_nodes(const Scene& s) {
       }
       check_axes(a_on_a, b_on_a, boxes_a, turn_b<false>(boxes_b, w), w.error, share);
       check_axes(b_on_b, a_on_b, boxes_b, turn_a<false>(boxes_a, w), w.error, share);
+      if (nodes_a[p].is_leaf && nodes_b[q].is_leaf)
+        check_edges(s, k, nodes_a[p], nodes_b[q], w, on_a[p].a, on_a[p].b, share);
     }
   return share;
 }
@@ -131,6 +157,51 @@ void spoil(Scene& s, RandomEngine& random, int kind) {
 }
 
 }  // namespace
+
+namespace {
+
+/// Box k of a node must hold the simplices beneath it, as the kernel decodes it; the ball everything.
+void check_tree(const LrbRep& rep) {
+  const ObbTree& t = rep.tree();
+  const Seen seen(rep, {}, {}, t.unit());
+  for (std::uint32_t index = 0; index < t.nodes().size(); ++index) {
+    const TreeNode& n = t.nodes()[index];
+    const std::vector<Exact3> y = seen.in_node(n, 1);
+    const std::vector<Range3> of = ranges(rep, y);
+    const Boxes boxes = decode(n, 1);
+    const Whole whole = whole_of(n, 1);
+    const auto lists = contents(rep, index);
+    const Exact radius(n.radius), zero(0.0);
+    for (std::uint32_t k = 0; k < n.count; ++k) {
+      const Range3 box = united(of, lists[k]);
+      for (int i = 0; i < 3; ++i) {
+        REQUIRE(!(zero < outside(box[i], boxes.centre[i][k], boxes.half[i][k], 0)));
+        REQUIRE(!(zero < outside(box[i], whole.centre[i], whole.half[i], 0)));
+      }
+      for (const SimplexId s : lists[k]) {
+        VertexId v[3];
+        rep.simplex(s, v);
+        for (int corner = 0; corner < rep.dim(); ++corner) {
+          const Exact3& x = y[v[corner]];
+          REQUIRE(!(radius * radius < x[0] * x[0] + x[1] * x[1] + x[2] * x[2]));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("boxes and balls contain all simplices below them, at any scale, aspect and offset") {
+  for (const Mesh& m : {shapes::bumpy_sphere(2, 1), shapes::comb(5), shapes::torus(12, 8), shapes::gear(20)})
+    for (const double scale : {1.0, 1e-12, 1e120, 1e-120, 1e-310, 1e-320, 1e300}) {
+      check_tree(closed(shapes::scaled(m, scale)));
+      check_tree(closed(test::stretched(m, Eigen::Vector3d(1, 1e-8, m.dim == 2 ? 0 : 1e-4) * scale)));
+      if (m.dim == 3) check_tree(closed(shapes::translated(m, {1e8, -1e16 * (scale < 1), 3})));
+    }
+  for (const Eigen::Vector3d& by : {Eigen::Vector3d(0, 0, 0), {1, 0, 0}, {0, 0, 1e-15}})  // a point, a line
+    check_tree(closed(shapes::translated(test::stretched(shapes::icosphere(1), by), {1, 1, 1})));
+}
 
 TEST_CASE("pairs culled by boxes are disjoint in exact arithmetic: random and adversarial poses") {
   RandomEngine random(31);

@@ -177,38 +177,6 @@ TEST_CASE("the split across the coordinate axes with the smallest boxes is found
   }
 }
 
-TEST_CASE("the split that is ranked first costs little more than the best one") {
-  struct Strips {
-    double crowding, most;
-  };
-  RandomEngine random(7);
-  for (const Strips& strips : {Strips{1, 1.05}, Strips{3, 1.09}}) {
-    constexpr int kRounds = 20;
-    double more = 0;
-    for (int round = 0; round < kRounds; ++round) {
-      const FirstCut first(bent_strip(random, 200, strips.crowding, 0.02), {.principal = 0, .tried = 1});
-      more += std::log(first.cost() / min_cost(first.soup, first.soup.order)) / kRounds;
-    }
-    CAPTURE(strips.crowding);
-    CHECK(std::exp(more) < strips.most);  // in geometric mean
-  }
-}
-
-TEST_CASE("two adjacent plates are split between them in any orientation") {
-  RandomEngine random(6);
-  for (int round = 0; round < 20; ++round) {
-    const Eigen::Matrix3d turn = shapes::random_rotation(random);
-    Triangles triangles;
-    for (int i = 0; i < 64; ++i) {
-      const Vector3d at(0.1 * (i % 8), 0.1 * (i % 32 / 8), i / 32 * 0.5);
-      triangles.add(turn * at, turn * (at + Vector3d(0.1, 0, 0)), turn * (at + Vector3d(0, 0.1, 0)));
-    }
-    const FirstCut cut(triangles, {.principal = 3, .tried = 32});
-    CHECK(cut.left == 32);
-    CHECK(cut.parts_first(32));
-  }
-}
-
 TEST_CASE("a long body is split across its longest principal axis if no coordinate axis separates it") {
   // Two discs that face each other along a diagonal, so wide that they overlap as seen along any coordinate
   // axis, but less wide than they are apart; one holds three times as many triangles.
@@ -299,22 +267,6 @@ TEST_CASE("a node of the binary tree has the cost of its tight box, or of its AA
   }
 }
 
-TEST_CASE("a small part of a large body is split as if it were alone") {
-  RandomEngine random(10);
-  for (const double size : {1e-3, 1e-6, 1e-9, 1e-12}) {
-    Triangles alone;
-    for (int i = 0; i < 1800; ++i) {
-      const Vector3d at = size * shapes::random_direction(random);
-      alone.add(at, at + 0.05 * size * shapes::random_direction(random),
-                at + 0.05 * size * shapes::random_direction(random));
-    }
-    Triangles with_others = alone;
-    for (int i = 0; i < 8; ++i) with_others.add({1, 0.1 * i, 0.3}, {0.7, 0.2 * i, 0.4}, {0.5, 0.9, 0.05 * i});
-    CAPTURE(size);
-    CHECK(height_of(with_others) <= height_of(alone) + 3);
-  }
-}
-
 TEST_CASE("trees over collinear points and over one point are balanced") {
   for (const int count : {2'000, 20'000}) {
     Triangles line, point;
@@ -330,24 +282,5 @@ TEST_CASE("trees over collinear points and over one point are balanced") {
     const SimplexView view = line.view();
     CHECK(ObbTree(view, 1u).height() <= 7);
     CHECK(ObbTree(view, view.real_simplices(), 1u).height() <= 7);
-  }
-}
-
-TEST_CASE("collinear and coincident simplices are split in halves") {
-  RandomEngine random(8);
-  for (const Vector3d& along : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), shapes::random_direction(random)}) {
-    Triangles line, point, alike;
-    for (int i = 0; i < 128; ++i) {
-      const Vector3d a = i * 0.01 * along, b = (i + 1) * 0.01 * along;
-      line.add(a, b, b);
-      point.add(along, along, along);
-      alike.add({0, 0, 0}, along, along.unitOrthogonal());
-    }
-    for (const Triangles* some : {&line, &point, &alike})
-      for (const CutEffort effort : {CutEffort{0, 1}, CutEffort{1, 3}, CutEffort{3, 32}}) {
-        const FirstCut cut(*some, effort);
-        CHECK(cut.left == 64);
-        CHECK(same_set(cut.order, cut.soup.order));
-      }
   }
 }

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include <lrbscope/collide.hpp>
 

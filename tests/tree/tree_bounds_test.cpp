@@ -15,7 +15,7 @@ namespace lrb {
 void run_tree_kernel_under_test(TreeKernel& k);
 }
 #include "engine/tree/tree_kernel.inl"
-#include "tests/support/closed_body.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/tree_content.hpp"
 
 using namespace lrb;

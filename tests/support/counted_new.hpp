@@ -1,6 +1,8 @@
 #pragma once
-/// Memory that runs out when a test says so: the executable that has failing_new.cpp allocates through it.
+/// Counts what `new` hands out, and makes it fail when a test says so: the executable that has
+/// counted_new.cpp allocates through it.
 
+#include <cstddef>
 #include <cstdint>
 
 namespace lrb::test {
@@ -15,5 +17,16 @@ bool allocation_has_failed();
 
 /// Of this thread, so far.
 std::uint64_t allocations();
+
+/// The most memory of all threads that has been held since it was made, beyond what was held then, to the
+/// byte. One at a time.
+class PeakMemory {
+ public:
+  PeakMemory();
+  std::size_t bytes() const;
+
+ private:
+  std::size_t before_;
+};
 
 }  // namespace lrb::test
