@@ -8,8 +8,11 @@
 
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/first_contact.hpp>
+#include <lrbscope/near_pairs.hpp>
+#include <lrbscope/point_distance.hpp>
 
 namespace lrb::test {
 
@@ -31,11 +34,35 @@ inline auto content(const SurfacePieces& x) {
 inline auto content(const ContactRegion& x) {
   return std::tuple(x.pairs, x.length, x.area, content(x.centroid), content(x.normal), x.depth_estimate);
 }
+inline auto content(const NearPair& x) {
+  return std::tuple(x.a, x.b, x.meet, x.lower, x.upper, content(x.point[0]), content(x.point[1]));
+}
+inline auto content(const ManifoldPoint& x) {
+  return std::tuple(x.id, content(x.point[0]), content(x.point[1]), x.depth, x.on[0], x.on[1]);
+}
+inline auto content(const ContactManifold& x);
+inline auto content(const PointDistance& x);
+template <class T>
+auto content(const std::vector<T>& list) {
+  std::vector<decltype(content(T{}))> out;
+  for (const T& x : list) out.push_back(content(x));
+  return out;
+}
+inline auto content(const ContactManifold& x) {
+  return std::tuple(content(x.normal), content(x.points), x.pairs, x.region, x.intersects);
+}
 inline auto content(const CollideResult& x) {
-  std::vector<decltype(content(ContactRegion{}))> regions;
-  for (const ContactRegion& region : x.regions) regions.push_back(content(region));
   return std::tuple(x.relation, x.interiors_overlap, x.mode, x.pairs, x.meets, x.opened, x.error_bound,
-                    x.finished, x.separation, regions, x.contacts.size(), x.counters);
+                    x.finished, x.separation, content(x.regions), x.contacts.size(), x.counters);
+}
+inline auto content(const NearPairsResult& x) {
+  return std::tuple(content(x.pairs), x.found, x.counters);
+}
+inline auto content(const ManifoldResult& x) {
+  return std::tuple(content(x.pairs), content(x.manifolds), x.next_id);
+}
+inline auto content(const PointDistance& x) {
+  return std::tuple(x.lower, x.upper, x.side, content(x.closest));
 }
 inline auto content(const DistanceResult& x) {
   return std::tuple(x.lower, x.upper, x.meet, x.within, x.finished, x.relation, content(x.witness[0]),
