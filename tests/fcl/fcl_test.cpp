@@ -134,42 +134,51 @@ TEST_CASE("distances equal lrb::distance() and agree with FCL up to rounding") {
   CHECK(apart > 20);
 }
 
-TEST_CASE("contacts have points in both meshes, and normal and depth of their regions") {
+// Unit cubes that overlap by 0.25 along x; with sides in one plane, nearly, and far from it. Cf. FCL #106,
+// #503, #491, and a box in the corner of two walls.
+TEST_CASE("contacts have points in both meshes, and the normal and depth of the overlap") {
   const auto box = model_of<::fcl::OBBRSSd>(shapes::box());
   const ::fcl::CollisionObjectd o1(box);
-  ::fcl::CollisionObjectd o2(box);
-  o2.setTranslation({0.9, 0.2, 0.3});
-  const ::fcl::CollisionRequestd request(3, true);
-  ::fcl::CollisionResultd result;
-  CHECK(lrb::fcl::collide(&o1, &o2, request, result) == 3);
-  const Body body = lrb::fcl::body_of(*box).value();
-  CollideRequest contacts;
-  contacts.contacts = true;
-  const lrb::CollideResult truth =
-      lrb::collide(body, Pose{}, body, Pose::translation({0.9, 0.2, 0.3}), contacts);
-  REQUIRE(truth.regions.size() == 1);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const ::fcl::Contactd& c = result.getContact(i);
-    CHECK(c.o1 == box.get());
-    CHECK(SimplexId(c.b1) == truth.pairs[i].a);
-    CHECK(SimplexId(c.b2) == truth.pairs[i].b);
-    CHECK(c.penetration_depth == truth.regions[0].depth_estimate);
-    CHECK(c.normal == truth.regions[0].normal);
-    CHECK(c.pos.x() > 0.9 - 1e-12);
-    CHECK(c.pos.x() < 1 + 1e-12);
+  for (const Eigen::Vector3d& t : {Eigen::Vector3d(0.75, 0, 0), Eigen::Vector3d(0.75, 0.001, 0),
+                                   Eigen::Vector3d(0.75, 0.001, 0.002), Eigen::Vector3d(0.75, 0.25, 0.25)}) {
+    ::fcl::CollisionObjectd o2(box);
+    o2.setTranslation(t);
+    ::fcl::CollisionResultd result;
+    lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(1000, true), result);
+    const Body body = lrb::fcl::body_of(*box).value();
+    CHECK(pairs_of(result) == brute_force(body, Pose{}, body, Pose::translation(t)).pairs);
+    for (std::size_t i = 0; i < result.numContacts(); ++i) {
+      const ::fcl::Contactd& c = result.getContact(i);
+      CHECK(c.o1 == box.get());
+      CHECK(c.normal == Eigen::Vector3d(1, 0, 0));
+      CHECK(c.penetration_depth == 0.25);
+      CHECK(c.pos.x() > 0.75 - 1e-12);
+      CHECK(c.pos.x() < 1 + 1e-12);
+    }
+    CHECK(lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(3), result) == result.numContacts());
   }
-  CHECK(lrb::fcl::collide(&o1, &o2, request, result) == 3);  // there are enough
 }
 
-TEST_CASE("other shapes are passed to FCL, and FCL's names are available") {
-  const auto box = std::make_shared<lrb::fcl::Boxd>(1, 1, 1);
-  const lrb::fcl::CollisionObjectd o1(box), o2(model_of<lrb::fcl::OBBRSSd>(shapes::box()));
-  lrb::fcl::CollisionResultd result;
-  CHECK(lrb::fcl::collide(&o1, &o2, lrb::fcl::CollisionRequestd(), result) == 1);
-  lrb::fcl::DistanceResultd distance;
-  lrb::fcl::CollisionObjectd far(box);
+TEST_CASE("FCL's names work without qualification; other shapes and moving objects are passed to FCL") {
+  using namespace lrb::fcl;
+  const auto box = std::make_shared<Boxd>(1, 1, 1);
+  const auto mesh = model_of<OBBRSSd>(shapes::box());
+  const CollisionObjectd o1(box), o2(mesh);
+  CollisionResultd result;
+  CHECK(collide(&o1, &o2, CollisionRequestd(), result) == 1);
+  CHECK(collide(mesh.get(), Transform3d(Transform3d::Identity()), mesh.get(), o2.getTransform(),
+                CollisionRequestd(1000), result) == pairs_of(result).size());
+  DistanceResultd nearest;
+  CollisionObjectd far(box);
   far.setTranslation({5, 0, 0});
-  CHECK(lrb::fcl::distance(&o1, &far, lrb::fcl::DistanceRequestd(), distance) == doctest::Approx(4));
+  CHECK(distance(&o1, &far, DistanceRequestd(), nearest) == doctest::Approx(4));
+  Transform3d begin = Transform3d::Identity(), end = begin;
+  begin.translation().x() = 2;
+  const ContinuousCollisionObjectd still(mesh, std::make_shared<TranslationMotiond>(end, end)),
+      moving(mesh, std::make_shared<TranslationMotiond>(begin, end));
+  ContinuousCollisionResultd impact;
+  collide(&still, &moving, ContinuousCollisionRequestd(), impact);
+  CHECK(impact.is_collide);
 }
 
 TEST_CASE("a changed mesh, or another one at its address, is not served from the cache") {

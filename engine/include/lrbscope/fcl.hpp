@@ -2,24 +2,25 @@
 /// FCL's interface to this engine, for programs written for FCL 0.7 that need exact answers without changes.
 /// Requires FCL's headers and library (Debian: libfcl-dev). FCL still answers for geometry other than meshes.
 ///
-/// Include this header and replace fcl:: by lrb::fcl::. Then collide() and distance() of two meshes (BVHModel
-/// of any bounding volume) are this engine's, and every other name of FCL is FCL's own:
+/// Include this header and replace fcl:: by lrb::fcl::, in using directives too. Then collide() and
+/// distance() of two meshes (BVHModel of any bounding volume) are this engine's, and every other name is
+/// FCL's own:
 ///
 /// - Contacts list the intersecting pairs of triangles, each once, ascending; only the first one found if
 ///   num_max_contacts is 1. With enable_contact, each has the centroid of the corners of the two triangles'
-///   intersection as its point, and the normal and estimated depth of its contact region (ContactRegion).
+///   intersection as its point, and the normal and depth of its contact manifold (ContactManifold).
 /// - Distances are measured between the surfaces, to 1e-12 of the meshes' size regardless of rel_err and
 ///   abs_err; 0 if they intersect. Nearest points are in the world frame.
 /// - As in FCL, a mesh inside another one does not collide with it unless the surfaces intersect.
-/// - Costs, and geometry that is not occupied, are forwarded to FCL.
-///
-/// A mesh that cannot be queried (coordinates that are not finite) throws lrb::InputError.
+/// - Costs, and geometry that is not occupied, are forwarded to FCL. Coordinates that are not finite throw
+///   lrb::InputError.
 ///
 /// A mesh is converted to a body without regions when it is first queried, and the body is cached. Because
 /// programs change their meshes, each call compares the mesh with the cached body number by number: about 1
 /// ns per vertex. To avoid this, call lrb::collide() with the body_of() the mesh.
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,6 +32,7 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/distance.h>
 
 #include <lrbscope/body.hpp>
@@ -41,6 +43,10 @@
 namespace lrb::fcl {
 
 using namespace ::fcl;
+// FCL's other overloads. Those below are more constrained than FCL's of the same arguments, so that they are
+// chosen in unqualified calls as well, which find both.
+using ::fcl::collide;
+using ::fcl::distance;
 
 /// The arrays of an FCL mesh.
 template <class S>
@@ -105,11 +111,7 @@ Expected<Body> body_of(const MeshArrays<S>& arrays, const BodyOptions& options) 
 
 /// Returns the options of a body for FCL's answers: faces only, unchanged.
 inline BodyOptions faces_alone() {
-  BodyOptions options;
-  options.regions = false;
-  options.turn = false;
-  options.name = "BVHModel";
-  return options;
+  return {.build = {}, .regions = false, .turn = false, .name = "BVHModel"};
 }
 
 /// Creates a body from an FCL mesh. Faces have the numbers of its triangles. The default is without regions
@@ -202,32 +204,30 @@ inline Eigen::Vector3d centroid_of(const PairContactRecord& contact) {
   return sum;
 }
 
-/// Adds the pairs of an answer to FCL's result, up to the maximum of the request.
+/// Adds the pairs of an answer to FCL's result, up to the maximum of the request. `manifolds`: of the same
+/// pairs, if contacts are requested.
 template <class S>
-void add_contacts(const CollideResult& found, const ::fcl::CollisionGeometry<S>* o1,
-                  const ::fcl::CollisionGeometry<S>* o2, const ::fcl::CollisionRequest<S>& request,
-                  ::fcl::CollisionResult<S>& result) {
-  std::vector<const ContactRegion*> region_of(found.pairs.size());
-  for (const ContactRegion& region : found.regions)
-    for (const std::uint32_t pair : region.pairs) region_of[pair] = &region;
+void add_contacts(const CollideResult& found, const std::vector<ContactManifold>& manifolds,
+                  const ::fcl::CollisionGeometry<S>* o1, const ::fcl::CollisionGeometry<S>* o2,
+                  const ::fcl::CollisionRequest<S>& request, ::fcl::CollisionResult<S>& result) {
+  std::vector<const ContactManifold*> manifold_of(found.pairs.size());
+  for (const ContactManifold& manifold : manifolds)
+    for (const std::uint32_t pair : manifold.pairs) manifold_of[pair] = &manifold;
   for (std::size_t i = 0; i < found.pairs.size() && result.numContacts() < request.num_max_contacts; ++i) {
-    const auto b1 = static_cast<int>(found.pairs[i].a.value()),
-               b2 = static_cast<int>(found.pairs[i].b.value());
-    if (!request.enable_contact) {
-      result.addContact(::fcl::Contact<S>(o1, o2, b1, b2));
-      continue;
+    ::fcl::Contact<S> contact(o1, o2, static_cast<int>(found.pairs[i].a.value()),
+                              static_cast<int>(found.pairs[i].b.value()));
+    if (request.enable_contact) {
+      contact.pos = centroid_of(found.contacts[i]).template cast<S>();
+      contact.normal = manifold_of[i]->normal.template cast<S>();
+      contact.penetration_depth = static_cast<S>(std::max(manifold_of[i]->points[0].depth, 0.0));
     }
-    const ContactRegion* const region = region_of[i];
-    const Eigen::Vector3d normal = region ? region->normal : Eigen::Vector3d(0, 0, 0);
-    result.addContact(::fcl::Contact<S>(o1, o2, b1, b2, centroid_of(found.contacts[i]).template cast<S>(),
-                                        normal.template cast<S>(),
-                                        static_cast<S>(region ? region->depth_estimate : 0)));
+    result.addContact(contact);
   }
 }
 
 /// Adds the contacts of two geometries to the result and returns their total number, including earlier ones.
 /// Geometries that are not meshes, costs, and geometry that is not occupied are forwarded to FCL.
-template <class S>
+template <std::floating_point S>
 std::size_t collide(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf1,
                     const ::fcl::CollisionGeometry<S>* o2, const ::fcl::Transform3<S>& tf2,
                     const ::fcl::CollisionRequest<S>& request, ::fcl::CollisionResult<S>& result) {
@@ -240,13 +240,17 @@ std::size_t collide(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transfor
   if (!request.enable_contact && request.num_max_contacts - result.numContacts() == 1)
     query.mode = Mode::any_pair;
   const Body body_a = known_bodies().of(o1, a), body_b = known_bodies().of(o2, b);
-  const Expected<CollideResult&> found =
-      lrb::collide(body_a, fcl::pose_of<S>(tf1), body_b, fcl::pose_of<S>(tf2), query, workspace());
-  add_contacts(found.value(), o1, o2, request, result);
+  const Pose pose_a = fcl::pose_of<S>(tf1), pose_b = fcl::pose_of<S>(tf2);
+  const CollideResult& found = lrb::collide(body_a, pose_a, body_b, pose_b, query, workspace()).value();
+  const ManifoldResult none;
+  const ManifoldResult& found_manifolds =
+      query.contacts ? contact_manifolds(body_a.rep(), pose_a, body_b.rep(), pose_b, {}, workspace()).value()
+                     : none;
+  add_contacts(found, found_manifolds.manifolds, o1, o2, request, result);
   return result.numContacts();
 }
 
-template <class S>
+template <std::floating_point S>
 std::size_t collide(const ::fcl::CollisionObject<S>* o1, const ::fcl::CollisionObject<S>* o2,
                     const ::fcl::CollisionRequest<S>& request, ::fcl::CollisionResult<S>& result) {
   return fcl::collide(o1->collisionGeometry().get(), o1->getTransform(), o2->collisionGeometry().get(),
@@ -255,7 +259,7 @@ std::size_t collide(const ::fcl::CollisionObject<S>* o1, const ::fcl::CollisionO
 
 /// Updates the result with the distance of two geometries and returns its minimum distance, including earlier
 /// ones. Geometries that are not meshes are forwarded to FCL.
-template <class S>
+template <std::floating_point S>
 S distance(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf1,
            const ::fcl::CollisionGeometry<S>* o2, const ::fcl::Transform3<S>& tf2,
            const ::fcl::DistanceRequest<S>& request, ::fcl::DistanceResult<S>& result) {
@@ -264,21 +268,16 @@ S distance(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf
   lrb::DistanceRequest query;
   query.relation = false;
   const Body body_a = known_bodies().of(o1, a), body_b = known_bodies().of(o2, b);
-  const Expected<lrb::DistanceResult&> answer =
-      lrb::distance(body_a, fcl::pose_of<S>(tf1), body_b, fcl::pose_of<S>(tf2), query, workspace());
-  const lrb::DistanceResult& found = answer.value();
-  const auto least = static_cast<S>(found.upper);
-  const auto b1 = static_cast<int>(found.witness[0].simplex.value()),
-             b2 = static_cast<int>(found.witness[1].simplex.value());
-  if (request.enable_nearest_points)
-    result.update(least, o1, o2, b1, b2, found.witness[0].point.template cast<S>(),
-                  found.witness[1].point.template cast<S>());
-  else
-    result.update(least, o1, o2, b1, b2);
+  const lrb::DistanceResult& found =
+      lrb::distance(body_a, fcl::pose_of<S>(tf1), body_b, fcl::pose_of<S>(tf2), query, workspace()).value();
+  const Witness &a_at = found.witness[0], &b_at = found.witness[1];
+  result.update(static_cast<S>(found.upper), o1, o2, static_cast<int>(a_at.simplex.value()),
+                static_cast<int>(b_at.simplex.value()), a_at.point.template cast<S>(),
+                b_at.point.template cast<S>());
   return result.min_distance;
 }
 
-template <class S>
+template <std::floating_point S>
 S distance(const ::fcl::CollisionObject<S>* o1, const ::fcl::CollisionObject<S>* o2,
            const ::fcl::DistanceRequest<S>& request, ::fcl::DistanceResult<S>& result) {
   return fcl::distance(o1->collisionGeometry().get(), o1->getTransform(), o2->collisionGeometry().get(),
