@@ -1,6 +1,6 @@
 from collections.abc import Callable, Iterator, Sequence
 from os import PathLike
-from typing import Any, Literal, overload
+from typing import Any, Literal, Protocol, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -59,6 +59,14 @@ _Progress = Callable[[str, int, int], object] | bool
 
 class InputError(ValueError): ...
 class EnvironmentError(OSError): ...
+
+class _Mesh(Protocol):
+    @property
+    def vertices(self) -> Any: ...
+    @property
+    def faces(self) -> Any: ...
+
+_Shape = Body | _Mesh  # a mesh of another library, such as a trimesh.Trimesh
 
 class Body:
     def __init__(
@@ -368,8 +376,8 @@ class FirstContacts:
 class CoherentQuery:
     def __init__(
         self,
-        a: Body,
-        b: Body,
+        a: _Shape,
+        b: _Shape,
         *,
         mode: _Mode | None = "all",
         contacts: bool | None = False,
@@ -409,7 +417,7 @@ class WalkExplanation:
 
 class Scene:
     def __init__(self, *, threads: int | None = 0) -> None: ...
-    def add(self, body: Body, pose: npt.ArrayLike | None = None) -> int: ...
+    def add(self, body: _Shape, pose: npt.ArrayLike | None = None) -> int: ...
     def remove(self, key: int) -> None: ...
     @overload
     def move(self, key: int, pose: npt.ArrayLike) -> None: ...
@@ -422,15 +430,15 @@ class Scene:
     def near(
         self,
         within: float | None = 0,
-        other: Scene | Body | None = None,
+        other: Scene | _Shape | None = None,
         pose: npt.ArrayLike | None = None,
     ) -> tuple[_Keys, _Floats]: ...
     def nearest_boxes(
-        self, other: Scene | Body | None = None, pose: npt.ArrayLike | None = None
+        self, other: Scene | _Shape | None = None, pose: npt.ArrayLike | None = None
     ) -> tuple[int, int, float] | None: ...
     def collide(
         self,
-        other: Scene | Body | None = None,
+        other: Scene | _Shape | None = None,
         pose: npt.ArrayLike | None = None,
         *,
         mode: _Mode | None = "all",
@@ -438,10 +446,10 @@ class Scene:
         interiors_overlap: bool | None = False,
         max_pairs: int | None = 0,
     ) -> Meetings: ...
-    def any_meet(self, other: Scene | Body | None = None, pose: npt.ArrayLike | None = None) -> bool: ...
+    def any_meet(self, other: Scene | _Shape | None = None, pose: npt.ArrayLike | None = None) -> bool: ...
     def nearest(
         self,
-        other: Scene | Body | None = None,
+        other: Scene | _Shape | None = None,
         pose: npt.ArrayLike | None = None,
         *,
         solids: bool | None = False,
@@ -460,9 +468,9 @@ class Scene:
     def __contains__(self, key: object) -> bool: ...
 
 class Wrapper:
-    def __init__(self, body: Body, mode: Literal["regularised", "unregularised"] | None = "regularised") -> None: ...
+    def __init__(self, body: _Shape, mode: Literal["regularised", "unregularised"] | None = "regularised") -> None: ...
     @staticmethod
-    def at(body: Body, tolerance: float, *, threads: int = 0) -> Wrapper: ...
+    def at(body: _Shape, tolerance: float, *, threads: int = 0) -> Wrapper: ...
     def refine(self, region: int) -> bool: ...
     def refine_face(self, face: int) -> bool: ...
     def coarsen(self, region: int) -> bool: ...
@@ -542,8 +550,8 @@ class SweepAndPrune:
 
 @overload
 def collide(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Pose | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -560,8 +568,8 @@ def collide(
 ) -> Result: ...
 @overload
 def collide(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Poses,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -578,8 +586,8 @@ def collide(
 ) -> Results: ...
 @overload
 def collide(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -595,9 +603,9 @@ def collide(
     threads: int | None = 0,
 ) -> Any: ...
 def collide_pairs(
-    bodies_a: Sequence[Body],
+    bodies_a: Sequence[_Shape],
     poses_a: npt.ArrayLike,
-    bodies_b: Sequence[Body],
+    bodies_b: Sequence[_Shape],
     poses_b: npt.ArrayLike,
     *,
     mode: _Mode | None = "all",
@@ -607,8 +615,8 @@ def collide_pairs(
 ) -> list[Result]: ...
 @overload
 def contacts(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Pose | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -617,8 +625,8 @@ def contacts(
 ) -> list[ContactRegion]: ...
 @overload
 def contacts(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Poses,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -627,8 +635,8 @@ def contacts(
 ) -> list[list[ContactRegion]]: ...
 @overload
 def contacts(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -637,8 +645,8 @@ def contacts(
 ) -> Any: ...
 @overload
 def distance(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Pose | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -651,8 +659,8 @@ def distance(
 ) -> Distance: ...
 @overload
 def distance(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Poses,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -665,8 +673,8 @@ def distance(
 ) -> Distances: ...
 @overload
 def distance(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -678,8 +686,8 @@ def distance(
     threads: int | None = 0,
 ) -> Any: ...
 def near_pairs(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     pose_b: npt.ArrayLike | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -689,8 +697,8 @@ def near_pairs(
     threads: int | None = 0,
 ) -> NearPairs: ...
 def contact_manifolds(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     pose_b: npt.ArrayLike | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -700,10 +708,10 @@ def contact_manifolds(
     threads: int | None = 0,
 ) -> Manifolds: ...
 def self_intersections(
-    body: Body, *, max_pairs: int | None = 0, threads: int | None = 0
+    body: _Shape, *, max_pairs: int | None = 0, threads: int | None = 0
 ) -> SelfIntersections: ...
 def signed_distance(
-    body: Body,
+    body: _Shape,
     points: npt.ArrayLike,
     pose: npt.ArrayLike | None = None,
     *,
@@ -713,8 +721,8 @@ def signed_distance(
 ) -> PointDistances: ...
 @overload
 def clash(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Pose | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -726,8 +734,8 @@ def clash(
 ) -> Clash: ...
 @overload
 def clash(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Poses,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -739,8 +747,8 @@ def clash(
 ) -> list[Clash]: ...
 @overload
 def clash(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: _Array,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -752,8 +760,8 @@ def clash(
 ) -> Any: ...
 @overload
 def first_contact(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     motion_b: _Pose | _Poses,
     motion_a: npt.ArrayLike | None = None,
     *,
@@ -764,8 +772,8 @@ def first_contact(
 ) -> FirstContact: ...
 @overload
 def first_contact(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     motion_b: _Array,
     motion_a: npt.ArrayLike | None = None,
     *,
@@ -775,8 +783,8 @@ def first_contact(
     threads: int | None = 0,
 ) -> Any: ...
 def trace(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     poses_b: npt.ArrayLike | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -790,8 +798,8 @@ def trace(
     recursion: _Recursion | None = "complete",
 ) -> Trace: ...
 def render(
-    a: Body,
-    b: Body | None = None,
+    a: _Shape,
+    b: _Shape | None = None,
     pose_b: npt.ArrayLike | None = None,
     pose_a: npt.ArrayLike | None = None,
     *,
@@ -809,12 +817,12 @@ def render(
 def scenarios() -> list[str]: ...
 def _encode_png(pixels: npt.ArrayLike) -> bytes: ...
 def explain_pair(
-    a: Body,
-    b: Body,
+    a: _Shape,
+    b: _Shape,
     pair: Sequence[int] | npt.NDArray[np.integer[Any]],
     pose_b: npt.ArrayLike | None = None,
     pose_a: npt.ArrayLike | None = None,
 ) -> PairExplanation: ...
 def explain_walk(
-    a: Body, b: Body, pose_b: npt.ArrayLike | None = None, pose_a: npt.ArrayLike | None = None
+    a: _Shape, b: _Shape, pose_b: npt.ArrayLike | None = None, pose_a: npt.ArrayLike | None = None
 ) -> WalkExplanation: ...

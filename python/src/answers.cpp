@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
+#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>
@@ -22,13 +24,8 @@ namespace {
 struct Region {
   std::shared_ptr<const CollideResult> result;
   const ContactRegion* region;
+  RegionDepth found;
 };
-
-py::dict counters_of(const Counters& c) {
-  py::dict d;
-  for_each_field<Counters>([&](const auto& field) { d[field.name.data()] = c.*field.member; });
-  return d;
-}
 
 py::array_t<std::uint32_t> pairs_of(const py::object& self) {
   const auto& pairs = self.cast<const Answer&>().result->pairs;
@@ -48,13 +45,6 @@ py::array_t<std::uint32_t> face_pairs_of(const Answer& answer) {
   return out;
 }
 
-py::array_t<bool> crosses_of(const Answer& answer) {
-  const auto& meets = answer.result->meets;
-  py::array_t<bool> out(static_cast<py::ssize_t>(meets.size()));
-  for (std::size_t i = 0; i < meets.size(); ++i) out.mutable_data()[i] = meets[i] == exact::Meet::cross;
-  return out;
-}
-
 /// Returns the corners of all pairs' intersections, and the number of each corner's pair.
 py::tuple points_of(const Answer& answer) {
   std::vector<Eigen::Vector3d> points;
@@ -67,11 +57,6 @@ py::tuple points_of(const Answer& answer) {
     }
   }
   return py::make_tuple(array_of(points), array_of_ids(std::span<const std::uint32_t>(of_pair)));
-}
-
-py::object overlap_of(const Answer& answer) {
-  if (answer.result->interiors_overlap == lrb::Answer::unknown) return py::none();
-  return py::bool_(answer.result->interiors_overlap == lrb::Answer::yes);
 }
 
 py::object separation_of(const Answer& answer) {
@@ -94,65 +79,66 @@ std::string shown(const Answer& answer) {
 void bind_result(py::module_& m) {
   py::class_<Answer> c(
       m, "Result", "The answer to one query. Made by collide(). Arrays are read-only and share its memory.");
-  c.def_property_readonly(
-      "relation", [](const Answer& a) { return py::str(to_string(a.result->relation)); },
-      "str: 'separate', 'crossing', 'touching', 'a_inside_b', 'b_inside_a', 'undefined' (the "
-      "surfaces are\n"
-      "disjoint, the bodies' boxes overlap, and a body is not closed), 'unresolved' (only with "
-      "limits).");
+  const auto of_result = [&c](const char* name, const auto& get, const char* text) {
+    property(
+        c, name, [get](const Answer& a) { return to_python(std::invoke(get, *a.result)); }, text);
+  };
+  of_result(
+      "relation", &CollideResult::relation,
+      R"(str: 'separate', 'crossing', 'touching', 'a_inside_b', 'b_inside_a', 'undefined' (the surfaces are
+disjoint, the bodies' boxes overlap, and a body is not closed), 'unresolved' (only with limits).)");
   c.def_property_readonly(
       "pairs", &pairs_of,
-      "(p, 2) uint32: the intersecting triangles of A and of B, ascending. At most one pair "
-      "unless mode is 'all'.");
-  c.def_property_readonly(
-      "face_pairs", &face_pairs_of,
-      "(p, 2) uint32: the faces of these triangles; differs from `pairs` for polygons only.");
-  c.def_property_readonly("crosses", &crosses_of,
-                          "(p,) bool: True if the pair crosses; False if it touches.");
-  c.def_property_readonly(
-      "fingerprint", [](const Answer& a) { return trace::to_hex(fingerprint(a.result->pairs)); },
+      "(p, 2) uint32: the intersecting triangles of A and of B, ascending. At most one pair unless mode is 'all'.");
+  property(c, "face_pairs", &face_pairs_of,
+           "(p, 2) uint32: the faces of these triangles; differs from `pairs` for polygons only.");
+  of_result(
+      "crosses",
+      [](const CollideResult& r) {
+        return column(r.meets, [](exact::Meet meet) { return meet == exact::Meet::cross; });
+      },
+      "(p,) bool: True if the pair crosses; False if it touches.");
+  of_result(
+      "fingerprint", [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); },
       "str: 16 hexadecimal digits, a hash of `pairs`.");
-  c.def_property_readonly(
-      "interiors_overlap", &overlap_of,
-      "bool or None: True if the bodies share a volume; None if not known or not requested.");
+  of_result("interiors_overlap", &CollideResult::interiors_overlap,
+            "bool or None: True if the bodies share a volume; None if not known or not requested.");
   c.def_property_readonly("regions", &regions_of, "list of ContactRegion, if contacts were requested.");
-  c.def_property_readonly(
-      "points", &points_of,
-      "((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and "
-      "the pair of each, if\n"
-      "contacts were requested.");
-  c.def_property_readonly(
-      "counters", [](const Answer& a) { return counters_of(a.result->counters); },
+  property(
+      c, "points", &points_of,
+      R"(((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and the pair of each, if
+contacts were requested.)");
+  of_result(
+      "counters",
+      [](const CollideResult& r) {
+        py::dict d;
+        for_each_field<Counters>([&](const auto& field) { d[field.name.data()] = r.counters.*field.member; });
+        return d;
+      },
       "dict: the work of the query, in numbers of operations.");
-  c.def_property_readonly(
-      "error_bound", [](const Answer& a) { return a.result->error_bound; },
-      "float: 0 if the answer is exact; else the sum of both intersecting wrappers' maximum "
-      "deviations from their bodies, world's unit.");
-  c.def_property_readonly(
-      "finished", [](const Answer& a) { return a.result->finished; },
-      "bool: False if a limit was reached before the tolerance.");
-  c.def_property_readonly(
-      "separation", &separation_of,
-      "dict or None: the regions that prove the bodies separate when refined, if requested.");
-  c.def_property_readonly(
+  of_result("error_bound", &CollideResult::error_bound,
+            "float: 0 if the answer is exact; else the sum of both intersecting wrappers' maximum deviations "
+            "from their bodies, world's unit.");
+  of_result("finished", &CollideResult::finished, "bool: False if a limit was reached before the tolerance.");
+  property(c, "separation", &separation_of,
+           "dict or None: the regions that prove the bodies separate when refined, if requested.");
+  of_result(
       "opened",
-      [](const Answer& a) {
-        return py::make_tuple(array_of_ids(std::span<const RegionId>(a.result->opened[0])),
-                              array_of_ids(std::span<const RegionId>(a.result->opened[1])));
+      [](const CollideResult& r) {
+        return py::make_tuple(column(r.opened[0], std::identity()), column(r.opened[1], std::identity()));
       },
       "((i,) uint32, (j,) uint32): regions of A and of B that were refined, in order.");
   c.def(
       "__bool__", [](const Answer& a) { return in_contact(*a.result); },
-      "True if the bodies are known to have a point in common: surfaces intersect, or one body "
-      "is inside the other.");
+      R"(True if the bodies are known to have a point in common: surfaces intersect, or one body is inside the other.)");
   c.def("__repr__", &shown);
 }
 
-/// Returns names as a numpy array of strings.
+/// Returns a name of each answer as a numpy array of strings.
 template <class Name>
-py::array names(std::size_t n, const Name& name) {
+py::array names(const Answers& answers, const Name& name) {
   py::list all;
-  for (std::size_t i = 0; i < n; ++i) all.append(py::str(name(i)));
+  for (const CollideResult& result : *answers.all) all.append(py::str(name(result)));
   return py::module_::import("numpy").attr("array")(all, py::arg("dtype") = "U16");
 }
 
@@ -193,34 +179,23 @@ void bind_results(py::module_& m) {
   bind_iterator(c);
   c.def_property_readonly(
       "relations",
-      [](const Answers& a) {
-        return names(a.all->size(), [&](std::size_t i) { return to_string((*a.all)[i].relation); });
-      },
+      [](const Answers& a) { return names(a, [](const CollideResult& r) { return to_string(r.relation); }); },
       "(k,) str: Result.relation of each.");
   c.def_property_readonly(
       "fingerprints",
       [](const Answers& a) {
-        return names(a.all->size(),
-                     [&](std::size_t i) { return trace::to_hex(fingerprint((*a.all)[i].pairs)); });
+        return names(a, [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); });
       },
       "(k,) str: Result.fingerprint of each.");
-  c.def_property_readonly(
-      "counts",
+  property(
+      c, "counts",
       [](const Answers& a) {
-        py::array_t<std::int64_t> out(static_cast<py::ssize_t>(a.all->size()));
-        for (std::size_t i = 0; i < a.all->size(); ++i)
-          out.mutable_data()[i] = static_cast<std::int64_t>((*a.all)[i].pairs.size());
-        return out;
+        return column(*a.all,
+                      [](const CollideResult& r) { return static_cast<std::int64_t>(r.pairs.size()); });
       },
       "(k,) int64: the number of pairs of each.");
-  c.def_property_readonly(
-      "hits",
-      [](const Answers& a) {
-        py::array_t<bool> out(static_cast<py::ssize_t>(a.all->size()));
-        for (std::size_t i = 0; i < a.all->size(); ++i) out.mutable_data()[i] = in_contact((*a.all)[i]);
-        return out;
-      },
-      "(k,) bool: bool() of each.");
+  property(
+      c, "hits", [](const Answers& a) { return column(*a.all, &in_contact); }, "(k,) bool: bool() of each.");
   c.def_property_readonly("all_pairs", &all_pairs,
                           "(n, 3) uint32: the pairs of all poses: pose, triangle of A, triangle of B.");
   c.def("__repr__",
@@ -238,25 +213,26 @@ void bind_region(py::module_& m) {
   py::class_<Region> c(
       m, "ContactRegion",
       "A connected part of the intersection of two surfaces; world frame, the meshes' unit.");
-  c.def_property_readonly(
-      "pairs", [](const Region& r) { return array_of_ids(std::span<const std::uint32_t>(r.region->pairs)); },
+  const auto of_region = [&c](const char* name, const auto& get, const char* text) {
+    property(
+        c, name, [get](const Region& r) { return to_python(std::invoke(get, *r.region)); }, text);
+  };
+  of_region(
+      "pairs", [](const ContactRegion& r) { return column(r.pairs, std::identity()); },
       "(i,) uint32: indices into Result.pairs, ascending.");
-  c.def_property_readonly(
-      "curves", &curves_of,
-      "list of ((q, 3) float64, bool): the points of each curve, and whether it is closed.");
-  c.def_property_readonly(
-      "length", [](const Region& r) { return r.region->length; }, "float: of all curves.");
-  c.def_property_readonly(
-      "area", [](const Region& r) { return r.region->area; },
-      "float: of the coplanar contact or the area spanned by closed curves; unit squared.");
-  c.def_property_readonly(
-      "centroid", [](const Region& r) { return array_of(r.region->centroid); }, "(3,) float64");
-  c.def_property_readonly(
-      "normal", [](const Region& r) { return array_of(r.region->normal); },
-      "(3,) float64: unit, from A to B, averaged; zero if undefined.");
-  c.def_property_readonly(
-      "depth_estimate", [](const Region& r) { return r.region->depth_estimate; },
-      "float: an estimate of how far B must move along `normal` to leave the region.");
+  property(c, "curves", &curves_of,
+           "list of ((q, 3) float64, bool): the points of each curve, and whether it is closed.");
+  of_region("length", &ContactRegion::length, "float: of all curves.");
+  of_region("area", &ContactRegion::area,
+            "float: of the coplanar contact or the area spanned by closed curves; unit squared.");
+  of_region("centroid", &ContactRegion::centroid, "(3,) float64");
+  property(
+      c, "normal", [](const Region& r) { return r.found.normal; },
+      "(3,) float64: unit, from A to B, of the contact manifold of the region's pairs that overlaps least; "
+      "zero if undefined.");
+  property(
+      c, "depth_estimate", [](const Region& r) { return r.found.depth; },
+      "float: the depth of this manifold, along `normal`; 0 if the bodies only touch.");
   c.def("__repr__", [](const Region& r) {
     return "<lrbscope.ContactRegion of " + std::to_string(r.region->pairs.size()) + " pairs>";
   });
@@ -268,16 +244,46 @@ bool in_contact(const CollideResult& r) {
   return !r.pairs.empty() || r.relation == Relation::a_inside_b || r.relation == Relation::b_inside_a;
 }
 
-std::size_t checked_index(py::ssize_t i, std::size_t n) {
-  const auto size = static_cast<py::ssize_t>(n);
-  if (i < 0) i += size;
-  if (i < 0 || i >= size) throw py::index_error("index out of range");
-  return static_cast<std::size_t>(i);
+std::vector<RegionDepth> depths_of(const Answer& answer) {
+  const CollideResult& result = *answer.result;
+  std::vector<RegionDepth> depths;
+  for (const ContactRegion& region : result.regions) depths.push_back({region.normal, region.depth_estimate});
+  ManifoldRequest request;
+  request.max_pairs = std::max<std::uint64_t>(result.pairs.size(), 1);
+  const ManifoldResult found = contact_manifolds(*answer.a, answer.pose_a, *answer.b, answer.pose_b, request);
+  // The paper's recursions may miss pairs; the numbers of pairs differ then.
+  const auto is_same = [](const NearPair& x, const SimplexPair& y) { return x.a == y.a && x.b == y.b; };
+  if (!std::equal(found.pairs.begin(), found.pairs.end(), result.pairs.begin(), result.pairs.end(), is_same))
+    return depths;
+  std::vector<const ContactManifold*> manifold_of(found.pairs.size());
+  for (const ContactManifold& manifold : found.manifolds)
+    for (const std::uint32_t pair : manifold.pairs) manifold_of[pair] = &manifold;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const std::vector<std::uint32_t>& pairs = result.regions[i].pairs;
+    // Along any of the normals B leaves a convex A: the least depth is that of the contact. 0: a side that
+    // only touches.
+    const auto later = [&](std::uint32_t x, std::uint32_t y) {
+      const double p = manifold_of[x]->points[0].depth, q = manifold_of[y]->points[0].depth;
+      return std::pair(p <= 0, p) < std::pair(q <= 0, q);
+    };
+    const ContactManifold& least = *manifold_of[*std::min_element(pairs.begin(), pairs.end(), later)];
+    depths[i] = {least.normal, std::max(least.points[0].depth, 0.0)};
+  }
+  return depths;
 }
 
-py::list regions_of(const Answer& answer) {
+py::list regions_of(Answer& answer) {
+  if (answer.depths.empty() && !answer.result->regions.empty()) {
+    std::vector<RegionDepth> found;
+    {
+      const py::gil_scoped_release unlocked;
+      found = depths_of(answer);
+    }
+    answer.depths = std::move(found);
+  }
   py::list out;
-  for (const ContactRegion& r : answer.result->regions) out.append(Region{answer.result, &r});
+  for (std::size_t i = 0; i < answer.depths.size(); ++i)
+    out.append(Region{answer.result, &answer.result->regions[i], answer.depths[i]});
   return out;
 }
 

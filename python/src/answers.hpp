@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -9,46 +8,47 @@
 #include "python/src/arguments.hpp"
 #include "python/src/objects.hpp"
 #include <lrbscope/collide.hpp>
-#include <lrbscope/distance.hpp>
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::python {
 
-/// One answer, with its bodies.
+/// Normal and depth of a contact region, from the contact manifolds of its pairs.
+struct RegionDepth {
+  Eigen::Vector3d normal;
+  double depth;
+};
+
+/// One answer, with its bodies and their poses.
 struct Answer {
   std::shared_ptr<const CollideResult> result;
   std::shared_ptr<const LrbRep> a, b;
+  Pose pose_a, pose_b;
+  std::vector<RegionDepth> depths = {};  ///< of the regions, after the first request
 };
 
 /// Answers in the order of the queries: for many poses of two bodies, or for many pairs.
 struct Answers {
+  /// The bodies and poses of an answer.
+  struct Pair {
+    std::shared_ptr<const LrbRep> a, b;
+    Pose pose_a, pose_b;
+  };
   std::shared_ptr<const std::vector<CollideResult>> all;
-  std::shared_ptr<const LrbRep> a, b;
-  /// The bodies of each answer if they differ; a and b are null then.
-  std::vector<std::array<std::shared_ptr<const LrbRep>, 2>> each;
+  std::vector<Pair> pairs;
 
   Answer at(std::size_t i) const {
-    return each.empty() ? Answer{{all, &(*all)[i]}, a, b} : Answer{{all, &(*all)[i]}, each[i][0], each[i][1]};
+    return {{all, &(*all)[i]}, pairs[i].a, pairs[i].b, pairs[i].pose_a, pairs[i].pose_b};
   }
 };
 
 /// Returns true if bodies are known to have a point in common.
 bool in_contact(const CollideResult& r);
 
-/// Returns an index as Python counts, from the end if negative. Throws IndexError if it is out of range.
-std::size_t checked_index(py::ssize_t i, std::size_t n);
-
-/// Adds an iterator to a list-like class. Type checkers and isinstance() require one for iterables.
-template <class Class>
-void bind_iterator(Class& c) {
-  c.def("__iter__", [](const py::object& self) {
-    self.cast<const typename Class::type&>();  // raises TypeError for an object without a value
-    return py::reinterpret_steal<py::object>(PySeqIter_New(self.ptr()));
-  });
-}
+/// Returns normal and depth of each contact region of an answer, by another query. Needs no GIL.
+std::vector<RegionDepth> depths_of(const Answer& answer);
 
 /// Returns contact regions as Python objects.
-py::list regions_of(const Answer& answer);
+py::list regions_of(Answer& answer);
 
 /// Returns the number of threads for an argument: 0 is the hardware's number, but 1 in a process forked from
 /// the one that loaded the module. Threads do not survive a fork, and a program that forks uses processes for
@@ -60,6 +60,18 @@ unsigned threads_of(std::size_t requested);
 /// KeyboardInterrupt is raised.
 void run_batch(std::size_t n, unsigned threads,
                const std::function<void(std::size_t i, unsigned worker)>& work);
+
+/// Answers queries 0 .. n - 1 by ask(i, workspace of the thread), which returns an Expected, as run_batch()
+/// does.
+template <class Result, class Ask>
+std::vector<Result> ask_each(std::size_t n, unsigned threads, const Ask& ask) {
+  std::vector<Result> results(n);
+  std::vector<Workspace> workspaces(threads);
+  run_batch(n, threads, [&](std::size_t i, unsigned worker) {
+    results[i] = std::move(ask(i, workspaces[worker]).value());
+  });
+  return results;
+}
 
 /// Returns the workspace that single queries of the calling thread reuse. `threads`: of one query.
 Workspace& own_workspace(unsigned threads = 1);
@@ -87,9 +99,6 @@ class Progress {
 /// Queries pairs of bodies without the GIL, as run_batch() does.
 std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
                                       unsigned threads);
-
-/// Returns a distance as a Python object.
-py::object distance_object(DistanceResult result);
 
 /// The query's keyword arguments, in the order of the functions' parameters. None: the default of
 /// CollideRequest.

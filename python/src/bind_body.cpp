@@ -5,6 +5,7 @@
 
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
@@ -234,10 +235,9 @@ using BodyClass = py::class_<Body, BodyPtr>;
 
 void bind_making(BodyClass& c) {
   c.def(
-      py::init(&body_of_arrays), py::arg("vertices"), py::arg("faces"), py::kw_only(),
-      py::arg("regions") = true, py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
-      py::arg("name") = "body", py::arg("progress") = py::none(), py::arg("cache") = py::none(),
-      R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body', progress=None, cache=None)
+      py::init(&body_of_arrays),
+      Signature(
+          R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body', progress=None, cache=None)
 
 Makes a body from arrays.
 
@@ -253,16 +253,15 @@ cache: a folder that keeps LRB-reps, so that each mesh is built once; by default
     variable LRBSCOPE_CACHE, or none.
 
 Raises InputError, which names the element, for a mesh that cannot be queried at all. A surface that cannot
-have regions (open, not manifold) gives a body without them.)");
-  c.def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("regions") = true,
-               py::arg("lean") = false, py::arg("seed") = 1, py::arg("threads") = 0,
-               py::arg("progress") = py::none(), py::arg("cache") = py::none(),
-               R"(load(path, *, regions=True, lean=False, seed=1, threads=0, progress=None, cache=None)
+have regions (open, not manifold) gives a body without them.)"));
+  c.def_static(
+      "load", &load,
+      Signature(R"(load(path, *, regions=True, lean=False, seed=1, threads=0, progress=None, cache=None)
 
-Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)");
-  c.def("save", &save, py::arg("path"),
-        "save(path)\n\n"
-        "Writes the body: with its regions as .lrb, its faces alone as .ply or .obj.");
+Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)"));
+  define(c, &save,
+         "save(path)\n\n"
+         "Writes the body: with its regions as .lrb, its faces alone as .ply or .obj.");
   c.def(py::pickle(&pickled, &unpickled));
   c.def("__copy__", &itself);
   c.def("__deepcopy__", [](const py::object& self, const py::handle&) { return itself(self); });
@@ -273,15 +272,13 @@ void bind_geometry(BodyClass& c) {
   c.def_property_readonly(
       "vertices",
       [](const py::object& self) { return vertices_of(self, self.cast<const Body&>().vertex_count()); },
-      "(n, 3) float64, in 2D (n, 2): the mesh's vertices in its unit. Read-only; shares the "
-      "body's memory.");
+      R"((n, 3) float64, in 2D (n, 2): the mesh's vertices in its unit. Read-only; shares the body's memory.)");
   c.def_property_readonly(
       "all_vertices",
       [](const py::object& self) {
         return vertices_of(self, self.cast<const Body&>().rep().vertices().size());
       },
-      "(v, 3) float64, in 2D (v, 2): `vertices`, followed by the vertices that only pseudo "
-      "faces use.");
+      R"((v, 3) float64, in 2D (v, 2): `vertices`, followed by the vertices that only pseudo faces use.)");
   c.def_property_readonly(
       "faces",
       [](const py::object& self) {
@@ -294,53 +291,45 @@ void bind_geometry(BodyClass& c) {
       "(t, 3) uint32, in 2D (t, 2): the corners of each triangle; pairs index this array. A "
       "polygon is a fan of triangles from its first corner.");
   c.def_property_readonly("face_of_triangle", &face_of_triangle, "(t,) uint32: the face of each triangle.");
-  c.def("box", &box, py::arg("pose") = py::none(),
-        "box(pose=None)\n\n"
-        "Returns the exact bounding box of the body at a pose, (2, 3) float64: minimum and "
-        "maximum coordinates.");
+  define(c, &box,
+         "box(pose=None)\n\n"
+         "Returns the exact bounding box of the body at a pose, (2, 3) float64: minimum and "
+         "maximum coordinates.");
 }
 
 void bind_numbers(BodyClass& c) {
-  c.def_property_readonly(
-      "name", [](const Body& b) { return printable(b.rep().name()); }, "str: for messages.");
-  c.def_property_readonly(
-      "dim", [](const Body& b) { return b.rep().dim(); }, "int: 3, or 2 for a 2D body.");
-  c.def_property_readonly(
-      "is_solid", [](const Body& b) { return b.rep().closed(); },
-      "bool: the faces bound a solid, so that 'inside' is defined.");
-  c.def_property_readonly(
-      "real_face_count", [](const Body& b) { return b.rep().real_face_count(); }, "int: faces of the mesh.");
-  c.def_property_readonly(
-      "face_count", [](const Body& b) { return b.rep().face_count(); },
-      "int: faces of the LRB-rep, including pseudo faces.");
-  c.def_property_readonly(
-      "region_count", [](const Body& b) { return b.rep().region_count(); },
-      "int: number of regions of the LRB-rep.");
-  c.def_property_readonly(
-      "layer_count", [](const Body& b) { return b.rep().layer_count(); },
-      "int: passes of the build that made regions.");
-  c.def_property_readonly(
-      "hash", [](const Body& b) { return trace::to_hex(b.rep().hash()); },
+  const auto of_rep = [&c](const char* name, const auto& get, const char* text) {
+    property(
+        c, name, [get](const Body& b) { return std::invoke(get, b.rep()); }, text);
+  };
+  of_rep(
+      "name", [](const LrbRep& rep) { return printable(rep.name()); }, "str: for messages.");
+  of_rep("dim", &LrbRep::dim, "int: 3, or 2 for a 2D body.");
+  of_rep("is_solid", &LrbRep::closed, "bool: the faces bound a solid, so that 'inside' is defined.");
+  of_rep("real_face_count", &LrbRep::real_face_count, "int: faces of the mesh.");
+  of_rep("face_count", &LrbRep::face_count, "int: faces of the LRB-rep, including pseudo faces.");
+  of_rep("region_count", &LrbRep::region_count, "int: number of regions of the LRB-rep.");
+  of_rep("layer_count", &LrbRep::layer_count, "int: passes of the build that made regions.");
+  of_rep(
+      "hash", [](const LrbRep& rep) { return trace::to_hex(rep.hash()); },
       "str: 16 hexadecimal digits, equal for equal LRB-reps.");
-  c.def_property_readonly(
-      "notes", [](const Body& b) { return printable(b.notes()); },
+  of_rep("memory_bytes", &LrbRep::memory_bytes, "int");
+  property(
+      c, "notes", [](const Body& b) { return printable(b.notes()); },
       "list of str: changes made to the mesh and features not available, as text.");
-  c.def_property_readonly("build_seconds", &Body::build_seconds,
-                          "float: duration of the build; 0 if the body was not built.");
-  c.def_property_readonly(
-      "memory_bytes", [](const Body& b) { return b.rep().memory_bytes(); }, "int");
-  c.def("figures", &figures,
-        "figures()\n\n"
-        "Returns statistics of the LRB-rep, a dict with the keys of `lrbscope build --json`: "
-        "faces, regions, layers,\n"
-        "volumes (unit cubed) of solid, outermost wrapper and hull, bytes, build_seconds.");
-  c.def("levels", &levels, py::kw_only(), py::arg("threads") = 0,
-        "levels(*, threads=0)\n\n"
-        "Returns the levels of detail used by queries with a tolerance, coarsest first: a list of"
-        " dicts with `bound`\n"
-        "(maximum distance of the wrapper's points from the body, in the mesh's unit), `faces`, "
-        "`pseudo_faces`.\n"
-        "The first call makes them.");
+  property(c, "build_seconds", &Body::build_seconds,
+           "float: duration of the build; 0 if the body was not built.");
+  define(c, &figures,
+         "figures()\n\n"
+         "Returns statistics of the LRB-rep, a dict with the keys of `lrbscope build --json`: "
+         "faces, regions, layers,\n"
+         "volumes (unit cubed) of solid, outermost wrapper and hull, bytes, build_seconds.");
+  define(c, &levels,
+         R"(levels(*, threads=0)
+
+Returns the levels of detail used by queries with a tolerance, coarsest first: a list of dicts with `bound`
+(maximum distance of the wrapper's points from the body, in the mesh's unit), `faces`, `pseudo_faces`.
+The first call makes them.)");
 }
 
 }  // namespace
@@ -360,6 +349,21 @@ const BodyExtent& Body::extent() const {
   return *extent_;
 }
 
+namespace {
+
+/// Returns a Body, or that of a mesh of another library.
+py::object body_object(py::handle given, const char* what, const char* expected) {
+  if (py::isinstance<Body>(given)) {
+    given.cast<const Body&>();  // raises TypeError for an object without a value
+    return py::reinterpret_borrow<py::object>(given);
+  }
+  if (!py::hasattr(given, "vertices") || !(py::hasattr(given, "faces") || py::hasattr(given, "triangles")))
+    throw py::type_error(std::string(what) + ": expected " + expected + ", got " + described(given));
+  return py::module_::import("lrbscope.collision").attr("body_of")(given);
+}
+
+}  // namespace
+
 const Body& body(py::handle given, const char* what) {
   // Cached: the look-up in isinstance() and cast() gives the same result in each call and takes as long as a
   // query.
@@ -368,14 +372,13 @@ const Body& body(py::handle given, const char* what) {
     auto* object = reinterpret_cast<py::detail::instance*>(given.ptr());
     if (const auto* found = object->get_value_and_holder().value_ptr<Body>()) return *found;
   }
-  if (!py::isinstance<Body>(given))
-    throw py::type_error(std::string(what) + ": expected a Body, got " + described(given));
-  return given.cast<const Body&>();
+  const py::object found = body_object(given, what, "a Body");
+  py::detail::loader_life_support::add_patient(found);  // a mesh's body is kept until the call ends
+  return found.cast<const Body&>();
 }
 
-BodyPtr shared_body(py::handle given, const char* what) {
-  body(given, what);
-  return given.cast<BodyPtr>();
+BodyPtr shared_body(py::handle given, const char* what, const char* expected) {
+  return body_object(given, what, expected).cast<BodyPtr>();
 }
 
 void bind_body(py::module_& m) {

@@ -3,6 +3,7 @@
 
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/workspace.hpp>
@@ -39,7 +40,7 @@ Answer collide_next(QueryHandle& self, py::handle pose_b, py::handle pose_a) {
     const std::lock_guard lock(self.mutex);
     *result = self.query.collide(at_a, at_b);
   }
-  return {std::move(result), self.a->shared(), self.b->shared()};
+  return {std::move(result), self.a->shared(), self.b->shared(), at_a, at_b};
 }
 
 py::dict statistics(QueryHandle& self) {
@@ -49,13 +50,11 @@ py::dict statistics(QueryHandle& self) {
     const std::lock_guard lock(self.mutex);
     s = self.query.statistics();
   }
-  py::dict d;
-  d["from_cache"] = s.from_cache;
-  d["caches_made"] = s.caches_made;
-  d["swept_caches"] = s.swept_caches;
-  d["from_scratch"] = s.from_scratch;
-  d["tests_saved"] = s.tests_saved;
-  return d;
+  return dict_of({{"from_cache", s.from_cache},
+                  {"caches_made", s.caches_made},
+                  {"swept_caches", s.swept_caches},
+                  {"from_scratch", s.from_scratch},
+                  {"tests_saved", s.tests_saved}});
 }
 
 constexpr const char* kCoherentText =
@@ -74,27 +73,21 @@ tests).
 }  // namespace
 
 void bind_coherent(py::module_& m) {
-  const py::none no;
   py::class_<QueryHandle, QueryHandlePtr> c(m, "CoherentQuery", kCoherentText);
-  c.def(py::init(&make), py::arg("a"), py::arg("b"), py::kw_only(), py::arg("mode") = no,
-        py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
-        py::arg("always") = no, kCoherentText);
-  c.def("collide", &collide_next, py::arg("pose_b") = no, py::arg("pose_a") = no,
-        "collide(pose_b=None, pose_a=None)\n\n"
-        "Returns the Result for these poses, (4, 4); None: the identity.");
+  c.def(py::init(&make), Signature(kCoherentText));
+  define(c, &collide_next,
+         "collide(pose_b=None, pose_a=None)\n\n"
+         "Returns the Result for these poses, (4, 4); None: the identity.");
   c.def("__repr__", [](const QueryHandle& q) {
     return printable("<lrbscope.CoherentQuery of '" + q.a->rep().name() + "' and '" + q.b->rep().name() +
                      "'>");
   });
   c.def_property_readonly(
       "statistics", &statistics,
-      "dict of int: queries answered from_cache, caches_made for a query (swept_caches of them "
-      "for a motion),\n"
-      "queries from_scratch, tests_saved.");
-  c.def_property_readonly(
-      "a", [](const QueryHandle& q) { return q.a; }, "Body");
-  c.def_property_readonly(
-      "b", [](const QueryHandle& q) { return q.b; }, "Body");
+      R"(dict of int: queries answered from_cache, caches_made for a query (swept_caches of them for a motion),
+queries from_scratch, tests_saved.)");
+  property(c, "a", &QueryHandle::a, "Body");
+  property(c, "b", &QueryHandle::b, "Body");
 }
 
 }  // namespace lrb::python
@@ -121,17 +114,18 @@ py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const P
     const py::gil_scoped_release unlocked;
     *result = ask(a.rep(), pose_a, b.rep(), pose_b, request, own_workspace(threads));
   }
-  return py::cast(Answer{std::move(result), a.shared(), b.shared()});
+  return py::cast(Answer{std::move(result), a.shared(), b.shared(), pose_a, pose_b});
 }
 
 py::object collide_many(const Body& a, const Pose& pose_a, const Body& b, const std::vector<Pose>& poses_b,
                         const CollideRequest& request, unsigned threads) {
-  auto results = std::make_shared<std::vector<CollideResult>>(poses_b.size());
-  std::vector<Workspace> workspaces(threads);
-  run_batch(poses_b.size(), threads, [&](std::size_t i, unsigned worker) {
-    (*results)[i] = ask(a.rep(), pose_a, b.rep(), poses_b[i], request, workspaces[worker]);
-  });
-  return py::cast(Answers{std::move(results), a.shared(), b.shared(), {}});
+  Answers out;
+  for (const Pose& pose_b : poses_b) out.pairs.push_back({a.shared(), b.shared(), pose_a, pose_b});
+  out.all = std::make_shared<const std::vector<CollideResult>>(
+      ask_each<CollideResult>(poses_b.size(), threads, [&](std::size_t i, Workspace& memory) {
+        return lrb::collide(a.rep(), pose_a, b.rep(), poses_b[i], request, memory);
+      }));
+  return py::cast(std::move(out));
 }
 
 py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle mode,
@@ -181,7 +175,7 @@ py::list collide_pairs(const py::sequence& bodies_a, py::handle poses_a, const p
   const auto results = std::make_shared<std::vector<CollideResult>>(answers_of(pairs, request, n));
   py::list out;
   for (std::size_t i = 0; i < results->size(); ++i)
-    out.append(Answer{{results, &(*results)[i]}, a.reps[i], b.reps[i]});
+    out.append(Answer{{results, &(*results)[i]}, a.reps[i], b.reps[i], a.poses[i], b.poses[i]});
   return out;
 }
 
@@ -190,10 +184,14 @@ py::object contacts(py::handle a, py::handle b, py::handle poses_b, py::handle p
   const py::none no;
   const py::object found =
       collide(a, b, poses_b, pose_a, no, py::bool_(true), no, no, no, no, no, max_pairs, no, threads);
-  if (py::isinstance<Answer>(found)) return regions_of(found.cast<const Answer&>());
+  if (py::isinstance<Answer>(found)) return regions_of(found.cast<Answer&>());
   const auto& many = found.cast<const Answers&>();
+  std::vector<Answer> each;
+  for (std::size_t i = 0; i < many.all->size(); ++i) each.push_back(many.at(i));
+  run_batch(each.size(), threads_of(count(threads, "threads")),
+            [&](std::size_t i, unsigned) { each[i].depths = depths_of(each[i]); });
   py::list out;
-  for (std::size_t i = 0; i < many.all->size(); ++i) out.append(regions_of(many.at(i)));
+  for (Answer& answer : each) out.append(regions_of(answer));
   return out;
 }
 
@@ -282,18 +280,10 @@ CollideRequest request_of(const RequestArguments& given) {
 }
 
 void bind_collide(py::module_& m) {
-  const py::none no;
-  m.def("collide", &collide, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
-        py::kw_only(), py::arg("mode") = no, py::arg("contacts") = no, py::arg("interiors_overlap") = no,
-        py::arg("tolerance") = no, py::arg("max_tests") = no, py::arg("max_time") = no,
-        py::arg("separation") = no, py::arg("max_pairs") = no, py::arg("recursion") = no,
-        py::arg("threads") = no, kCollideText);
-  m.def("collide_pairs", &collide_pairs, py::arg("bodies_a"), py::arg("poses_a"), py::arg("bodies_b"),
-        py::arg("poses_b"), py::kw_only(), py::arg("mode") = no, py::arg("contacts") = no,
-        py::arg("max_pairs") = no, py::arg("threads") = no, kCollidePairsText);
+  define(m, &collide, kCollideText);
+  define(m, &collide_pairs, kCollidePairsText);
   m.def("_collide_alone", &collide_alone);
-  m.def("contacts", &contacts, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
-        py::kw_only(), py::arg("max_pairs") = no, py::arg("threads") = no, kContactsText);
+  define(m, &contacts, kContactsText);
 }
 
 }  // namespace lrb::python

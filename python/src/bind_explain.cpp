@@ -1,5 +1,6 @@
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
 #include "scenarios/run/explanations.hpp"
 #include <lrbscope/explain.hpp>
 
@@ -17,6 +18,7 @@ struct OfPair {
 struct OfWalk {
   WalkExplanation reported;
   std::shared_ptr<const LrbRep> a, b;
+  Pose pose_a, pose_b;
 
   std::string text() const { return run::explanation_text(reported); }
   std::string json() const { return run::explanation_json(reported).dump(); }
@@ -55,7 +57,8 @@ OfWalk explain_walk(py::handle a, py::handle b, py::handle pose_b, py::handle po
   const Body &body_a = body(a, "a"), &body_b = body(b, "b");
   const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
   const py::gil_scoped_release unlocked;
-  return {lrb::explain_walk(body_a.rep(), at_a, body_b.rep(), at_b), body_a.shared(), body_b.shared()};
+  return {lrb::explain_walk(body_a.rep(), at_a, body_b.rep(), at_b), body_a.shared(), body_b.shared(), at_a,
+          at_b};
 }
 
 /// Returns the points of a contact, or the closest points of disjoint faces.
@@ -66,41 +69,36 @@ py::array_t<double> points_of(const OfPair& e) {
   return array_of(points);
 }
 
-py::tuple hidden_by(const OfPair& e) {
-  const auto ids = [](const std::vector<RegionId>& regions) {
-    return array_of_ids(std::span<const RegionId>(regions));
-  };
-  return py::make_tuple(ids(e.reported.hidden_by[0]), ids(e.reported.hidden_by[1]));
-}
-
 void bind_pair(py::module_& m) {
-  py::class_<OfPair> c(m, "PairExplanation",
-                       "Why two triangles are in an answer or not. Made by explain_pair(). str() gives the "
-                       "explanation as text.");
+  py::class_<OfPair> c(
+      m, "PairExplanation",
+      R"(Why two triangles are in an answer or not. Made by explain_pair(). str() gives the explanation as text.)");
   c.def("__repr__", [](const OfPair& e) {
     return "<lrbscope.PairExplanation " + std::string(name_of(e.reported.meet)) + ", decided by " +
            std::string(name_of(e.reported.decided_by)) + ">";
   });
-  c.def_property_readonly(
-      "meet", [](const OfPair& e) { return py::str(std::string(name_of(e.reported.meet))); },
-      "str: 'disjoint', 'touch' or 'cross'.");
-  c.def_property_readonly(
-      "decided_by", [](const OfPair& e) { return py::str(std::string(name_of(e.reported.decided_by))); },
+  property(
+      c, "meet", [](const OfPair& e) { return e.reported.meet; }, "str: 'disjoint', 'touch' or 'cross'.");
+  property(
+      c, "decided_by", [](const OfPair& e) { return e.reported.decided_by; },
       "str: 'node_boxes', 'node_edges', 'face_boxes', 'planes', 'floats' or 'exact'.");
-  c.def_property_readonly(
-      "hidden_by", &hidden_by,
-      "((i,) uint32, (j,) uint32): the regions that hide the faces of A and B in the outermost "
-      "wrapper, from the outside inward.");
-  c.def_property_readonly(
-      "points", &points_of,
-      "(c, 3) float64: corners of the triangles' intersection, or (2, 3) their closest points; "
-      "world frame.");
-  c.def_property_readonly(
-      "distance",
+  property(
+      c, "hidden_by",
+      [](const OfPair& e) {
+        const auto& [of_a, of_b] = e.reported.hidden_by;
+        return py::make_tuple(column(of_a, std::identity()), column(of_b, std::identity()));
+      },
+      "((i,) uint32, (j,) uint32): the regions that hide the faces of A and B in the outermost wrapper, from the "
+      "outside inward.");
+  property(
+      c, "points", &points_of,
+      "(c, 3) float64: corners of the triangles' intersection, or (2, 3) their closest points; world frame.");
+  property(
+      c, "distance",
       [](const OfPair& e) { return e.reported.meet == exact::Meet::disjoint ? e.reported.distance : 0.0; },
       "float: of the triangles, in double arithmetic; the world's unit.");
-  c.def(
-      "dict", [](const OfPair& e) { return parsed(e.json()); },
+  define(
+      c, [](const OfPair& e) { return parsed(e.json()); },
       "dict()\n\nReturns everything: a dict with the keys of `lrbscope why --pair --json`.");
   c.def("__str__", [](const OfPair& e) { return printable(e.text()); });
 }
@@ -112,36 +110,26 @@ void bind_walk(py::module_& m) {
   c.def("__repr__", [](const OfWalk& e) {
     return "<lrbscope.WalkExplanation " + std::string(name_of(e.reported.result.relation)) + ">";
   });
-  c.def_property_readonly(
-      "result",
+  property(
+      c, "result",
       [](const OfWalk& e) {
-        return Answer{std::make_shared<const CollideResult>(e.reported.result), e.a, e.b};
+        return Answer{std::make_shared<const CollideResult>(e.reported.result), e.a, e.b, e.pose_a, e.pose_b};
       },
       "Result: the answer.");
-  c.def_property_readonly(
-      "plane",
+  property(
+      c, "plane",
       [](const OfWalk& e) -> py::object {
         if (!e.reported.plane) return py::none();
         return py::make_tuple(array_of(e.reported.plane->normal), e.reported.plane->of_a,
                               e.reported.plane->of_b);
       },
-      "((3,) float64, float, float) or None: normal n and numbers f < g with n x <= f for all "
-      "of A, n x >= g for all of B.");
-  c.def_property_readonly(
-      "near_pairs",
-      [](const OfWalk& e) {
-        py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(e.reported.near.size()), py::ssize_t{2}});
-        std::uint32_t* to = out.mutable_data();
-        for (const SimplexPair& p : e.reported.near) {
-          *to++ = p.a;
-          *to++ = p.b;
-        }
-        return out;
-      },
-      "(p, 2) uint32: triangle pairs that were compared individually and are disjoint, closest "
-      "first; at most five.");
-  c.def(
-      "dict", [](const OfWalk& e) { return parsed(e.json()); },
+      "((3,) float64, float, float) or None: normal n and numbers f < g with n x <= f for all of A, n x >= g for "
+      "all of B.");
+  property(
+      c, "near_pairs", [](const OfWalk& e) { return column(e.reported.near, kPairOf); },
+      R"((p, 2) uint32: triangle pairs that were compared individually and are disjoint, closest first; at most five.)");
+  define(
+      c, [](const OfWalk& e) { return parsed(e.json()); },
       "dict()\n\nReturns everything: a dict with the keys of `lrbscope why --json`.");
   c.def("__str__", [](const OfWalk& e) { return printable(e.text()); });
 }
@@ -149,11 +137,10 @@ void bind_walk(py::module_& m) {
 }  // namespace
 
 void bind_explain(py::module_& m) {
-  const py::none no;
   bind_pair(m);
   bind_walk(m);
-  m.def("explain_pair", &explain_pair, py::arg("a"), py::arg("b"), py::arg("pair"), py::arg("pose_b") = no,
-        py::arg("pose_a") = no, R"(explain_pair(a, b, pair, pose_b=None, pose_a=None)
+  define(m, &explain_pair,
+         R"(explain_pair(a, b, pair, pose_b=None, pose_a=None)
 
 Explains why two triangles are in an answer or not: the box pairs from the roots of both trees down, then the
 test that decides between the triangles.
@@ -163,8 +150,8 @@ pair: a triangle of A and one of B, as numbered in Result.pairs; poses: (4, 4). 
 >>> e = explain_pair(cube, cube, (0, 0), shifted(5, 0, 0))
 >>> e.meet, e.decided_by, e.distance
 ('disjoint', 'node_boxes', 5.0))");
-  m.def("explain_walk", &explain_walk, py::arg("a"), py::arg("b"), py::arg("pose_b") = no,
-        py::arg("pose_a") = no, R"(explain_walk(a, b, pose_b=None, pose_a=None)
+  define(m, &explain_walk,
+         R"(explain_walk(a, b, pose_b=None, pose_a=None)
 
 Explains how the complete query traverses both trees and, for disjoint bodies, what proves them separate.
 

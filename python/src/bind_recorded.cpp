@@ -1,5 +1,6 @@
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
 #include "scenarios/run/run_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -164,15 +165,12 @@ py::object render_bodies(py::handle a, py::handle b, py::handle pose_b, py::hand
 void bind_trace(py::module_& m) {
   py::class_<Recorded, RecordedPtr> c(
       m, "Trace",
-      "A recorded run: every event of its queries. Made by trace() and Scenario.record(). In a "
-      "notebook: a page\n"
-      "that shows the bodies, rotatable, after any event.");
+      R"(A recorded run: every event of its queries. Made by trace() and Scenario.record(). In a notebook: a page
+that shows the bodies, rotatable, after any event.)");
   c.def_property_readonly(
       "events", &events_of,
-      "(e,) records of a, b, cause, boundary (uint32), depth_a, depth_b (uint16), kind, side, "
-      "meet, detail (uint8);\n"
-      "`kind` indexes `kinds` and determines the meaning of a and b (docs/scenarios.md). Shares"
-      " the trace's memory.");
+      R"((e,) records of a, b, cause, boundary (uint32), depth_a, depth_b (uint16), kind, side, meet, detail (uint8);
+`kind` indexes `kinds` and determines the meaning of a and b (docs/scenarios.md). Shares the trace's memory.)");
   c.attr("kinds") = names<EventKind>();
   c.def_property_readonly(
       "steps", &steps_of,
@@ -180,17 +178,18 @@ void bind_trace(py::module_& m) {
   c.def_property_readonly(
       "results",
       [](const Recorded& r) {
-        return Answers{r.results, r.bodies[0], r.bodies.back(), {}};
+        Answers out{r.results, {}};
+        for (const trace::Step& s : r.trace.steps)
+          out.pairs.push_back({r.bodies[0], r.bodies.back(), s.pose_a, s.pose_b});
+        return out;
       },
       "Results: the answers of the steps.");
   c.def_property_readonly(
       "notes", [](const Recorded& r) { return printable(r.notes); }, "list of str: notes as text.");
-  c.def("json", &json_of,
-        "json()\n\nReturns the trace as text that ui.perfetto.dev opens (trace/schema/trace.schema.json).");
-  c.def("summary", &summary_of,
-        "summary()\n\nReturns the run's statistics, a dict with the keys of summary.json.");
-  c.def("save", &save, py::arg("path"),
-        "save(path)\n\nWrites json(), gzip-compressed if the path ends in .gz.");
+  define(c, &json_of,
+         "json()\n\nReturns the trace as text that ui.perfetto.dev opens (trace/schema/trace.schema.json).");
+  define(c, &summary_of, "summary()\n\nReturns the run's statistics, a dict with the keys of summary.json.");
+  define(c, &save, "save(path)\n\nWrites json(), gzip-compressed if the path ends in .gz.");
   c.def(
       "html", [](const Recorded& r) { return printable(html_of(r)); },
       "html()\n\nReturns the run's page: one file that opens in any browser.");
@@ -201,23 +200,19 @@ void bind_trace(py::module_& m) {
                      (r.trace.steps.size() == 1 ? " step, " : " steps, ") +
                      std::to_string(r.trace.events.size()) + " events>");
   });
-  with_picture_arguments([&](auto&&... names) {
-    c.def(
-        "picture",
-        [](const Recorded& r, py::handle step, py::handle size, py::handle view_from, py::handle up,
-           py::handle look_at, py::handle zoom, py::handle orthographic, py::handle wrappers,
-           py::handle close_up, py::handle colour_by, py::handle transparent) {
-          return picture(
-              r, step,
-              {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
-        },
-        py::arg("step") = -1, py::kw_only(), names...,
-        "picture(step=-1, *, size=(960, 720), view_from=None, up=(0, 0, 1), look_at=None, zoom=1, "
-        "orthographic=False,\n"
-        "        wrappers=False, close_up=False, colour_by='kind', transparent=False)\n\n"
-        "Draws the end of a step, counted from the end if negative. Options and result as in "
-        "render().");
-  });
+  define(
+      c,
+      [](const Recorded& r, py::handle step, py::handle size, py::handle view_from, py::handle up,
+         py::handle look_at, py::handle zoom, py::handle orthographic, py::handle wrappers,
+         py::handle close_up, py::handle colour_by, py::handle transparent) {
+        return picture(
+            r, step,
+            {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
+      },
+      R"(picture(step=-1, *, size=(960, 720), view_from=None, up=(0, 0, 1), look_at=None, zoom=1, orthographic=False,
+        wrappers=False, close_up=False, colour_by='kind', transparent=False)
+
+Draws the end of a step, counted from the end if negative. Options and result as in render().)");
 }
 
 }  // namespace
@@ -248,12 +243,8 @@ std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scen
 
 void bind_recorded(py::module_& m) {
   bind_trace(m);
-  const py::none no;
-  m.def("trace", &trace_of, py::arg("a"), py::arg("b"), py::arg("poses_b") = no, py::arg("pose_a") = no,
-        py::kw_only(), py::arg("events") = no, py::arg("max_events") = no, py::arg("mode") = no,
-        py::arg("contacts") = no, py::arg("tolerance") = no, py::arg("max_tests") = no,
-        py::arg("separation") = no, py::arg("recursion") = no,
-        R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all',
+  define(m, &trace_of,
+         R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all',
       contacts=None, tolerance=0, max_tests=0, separation=False, recursion='complete')
 
 Records the query of two bodies at each pose, one step per pose: every comparison and every refinement.
@@ -269,19 +260,16 @@ Returns a Trace.
 ['crossing']
 >>> int(sum(t.events['kind'] == Trace.kinds.index('contact'))) == len(t.results[0].pairs)
 True)");
-  with_picture_arguments([&](auto&&... names) {
-    m.def(
-        "render",
-        [](py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle size,
-           py::handle view_from, py::handle up, py::handle look_at, py::handle zoom, py::handle orthographic,
-           py::handle wrappers, py::handle close_up, py::handle colour_by, py::handle transparent) {
-          return render_bodies(
-              a, b, pose_b, pose_a,
-              {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
-        },
-        py::arg("a"), py::arg("b") = no, py::arg("pose_b") = no, py::arg("pose_a") = no, py::kw_only(),
-        names...,
-        R"(render(a, b=None, pose_b=None, pose_a=None, *, size=(960, 720), view_from=None, up=(0, 0, 1),
+  define(
+      m,
+      [](py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle size,
+         py::handle view_from, py::handle up, py::handle look_at, py::handle zoom, py::handle orthographic,
+         py::handle wrappers, py::handle close_up, py::handle colour_by, py::handle transparent) {
+        return render_bodies(
+            a, b, pose_b, pose_a,
+            {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
+      },
+      R"(render(a, b=None, pose_b=None, pose_a=None, *, size=(960, 720), view_from=None, up=(0, 0, 1),
        look_at=None, zoom=1, orthographic=False, wrappers=False, close_up=False, colour_by='kind',
        transparent=False)
 
@@ -297,7 +285,6 @@ Returns a Picture, (height, width, 3) uint8; transparent: (height, width, 4).
 
 >>> render(cube, cube, shifted(0.5, 0.25, 0.125), size=(320, 240)).shape
 (240, 320, 3))");
-  });
 }
 
 namespace {
@@ -331,20 +318,20 @@ py::list shipped() {
 
 void bind_outcome(py::module_& m) {
   py::class_<Outcome> c(m, "Outcome", "What Scenario.run() wrote.");
-  c.def_property_readonly(
-      "folder", [](const Outcome& o) { return path_of(o.folder); }, "str");
-  c.def_property_readonly(
-      "page", [](const Outcome& o) { return path_of(o.folder + "/index.html"); },
+  property(
+      c, "folder", [](const Outcome& o) { return path_of(o.folder); }, "str");
+  property(
+      c, "page", [](const Outcome& o) { return path_of(o.folder + "/index.html"); },
       "str: path of the run's page.");
-  c.def_property_readonly(
-      "frames", [](const Outcome& o) { return o.run.frames; }, "int: the number of pictures in frames/.");
-  c.def_property_readonly(
-      "mismatches", [](const Outcome& o) { return printable(o.run.mismatches); },
+  property(
+      c, "frames", [](const Outcome& o) { return o.run.frames; }, "int: the number of pictures in frames/.");
+  property(
+      c, "mismatches", [](const Outcome& o) { return printable(o.run.mismatches); },
       "list of str: expectations that were not met.");
-  c.def_property_readonly(
-      "notes", [](const Outcome& o) { return printable(o.run.notes); }, "list of str: notes as text.");
-  c.def_property_readonly(
-      "summary", [](const Outcome& o) { return py::module_::import("json").attr("loads")(o.run.summary); },
+  property(
+      c, "notes", [](const Outcome& o) { return printable(o.run.notes); }, "list of str: notes as text.");
+  property(
+      c, "summary", [](const Outcome& o) { return py::module_::import("json").attr("loads")(o.run.summary); },
       "dict: the run's statistics, summary.json.");
   c.def("__repr__", [](const Outcome& o) { return printable("<lrbscope.Outcome in '" + o.folder + "'>"); });
 }
@@ -364,24 +351,20 @@ void bind_scenario(py::module_& m) {
           return spec::open_scenario(py::isinstance<py::str>(given) ? text(given, "scenario")
                                                                     : path(given, "scenario"));
         }),
-        py::arg("path_or_name"),
-        "Scenario(path_or_name)\n\n"
-        "Opens a shipped scenario by its name (see scenarios()), or a file by its path.");
-  c.def_property_readonly(
-      "name", [](const spec::Scenario& s) { return s.name; }, "str");
-  c.def_property_readonly(
-      "purpose", [](const spec::Scenario& s) { return s.purpose; },
-      "str: the expected content of the pictures.");
-  c.def("record", &record_scenario, py::kw_only(), py::arg("progress") = py::none(),
-        "record(*, progress=None)\n\n"
-        "Runs the scenario without drawing. progress(what, done, total) is called at intervals. "
-        "Returns a Trace.");
-  c.def("run", &run_into, py::arg("out"), py::kw_only(), py::arg("progress") = py::none(),
-        "run(out, *, progress=None)\n\n"
-        "Runs the scenario and writes page, frames, trace, statistics and bodies to the folder "
-        "`out`. Returns an Outcome.");
+        Signature("Scenario(path_or_name)\n\n"
+                  "Opens a shipped scenario by its name (see scenarios()), or a file by its path."));
+  property(c, "name", &spec::Scenario::name, "str");
+  property(c, "purpose", &spec::Scenario::purpose, "str: the expected content of the pictures.");
+  define(c, &record_scenario,
+         "record(*, progress=None)\n\n"
+         "Runs the scenario without drawing. progress(what, done, total) is called at intervals. "
+         "Returns a Trace.");
+  define(c, &run_into,
+         "run(out, *, progress=None)\n\n"
+         "Runs the scenario and writes page, frames, trace, statistics and bodies to the folder "
+         "`out`. Returns an Outcome.");
   c.def("__repr__", [](const spec::Scenario& s) { return "<lrbscope.Scenario '" + s.name + "'>"; });
-  m.def("scenarios", &shipped, "scenarios()\n\nReturns the names of the shipped scenarios.");
+  define(m, &shipped, "scenarios()\n\nReturns the names of the shipped scenarios.");
   m.def("_encode_png", &png_of, py::arg("pixels"));
 }
 

@@ -1,10 +1,11 @@
-// Near pairs, self-intersections and distances of points: answers with a row for each pair or point.
+// Near pairs, contact manifolds, self-intersections and distances of points: answers with a row for each pair
+// or point.
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/point_distance.hpp>
@@ -12,32 +13,6 @@
 
 namespace lrb::python {
 namespace {
-
-/// Returns an array with get(item) for each item.
-template <class T, class Item, class Get>
-py::array_t<T> each_of(const std::vector<Item>& items, const Get& get) {
-  py::array_t<T> out(static_cast<py::ssize_t>(items.size()));
-  std::transform(items.begin(), items.end(), out.mutable_data(), get);
-  return out;
-}
-
-/// Returns an array (n, width) with get(item, j) for each item and column j.
-template <class T, class Item, class Get>
-py::array_t<T> rows_of(const std::vector<Item>& items, std::size_t width, const Get& get) {
-  py::array_t<T> out({items.size(), width});
-  T* to = out.mutable_data();
-  for (const Item& item : items)
-    for (std::size_t j = 0; j < width; ++j) *to++ = get(item, j);
-  return out;
-}
-
-/// Returns an array (n, 2, 3) of two points of each item.
-template <class Item, class Get>
-py::object point_pairs_of(const std::vector<Item>& items, const Get& get) {
-  const auto rows = static_cast<py::ssize_t>(items.size());
-  return rows_of<double>(items, 6, [&](const Item& item, std::size_t j) { return get(item, j / 3)[j % 3]; })
-      .reshape({rows, py::ssize_t{2}, py::ssize_t{3}});
-}
 
 struct NearPairs {
   NearPairsResult result;
@@ -65,64 +40,35 @@ py::object near_pairs(py::handle a, py::handle b, py::handle pose_b, py::handle 
 }
 
 void bind_near_pairs_result(py::module_& m) {
-  py::class_<NearPairs> c(m, "NearPairs",
-                          "Pairs of triangles (2D: segments) within a distance: arrays with a row for each "
-                          "pair. Made by near_pairs().");
+  py::class_<NearPairs> c(
+      m, "NearPairs",
+      R"(Pairs of triangles (2D: segments) within a distance: arrays with a row for each pair. Made by near_pairs().)");
+  const auto of_pair = [&c](const char* name, const auto& get, const char* text) {
+    property(
+        c, name, [get](const NearPairs& p) { return column(p.result.pairs, get); }, text);
+  };
   c.def("__len__", [](const NearPairs& p) { return p.result.pairs.size(); });
-  c.def_property_readonly(
-      "found", [](const NearPairs& p) { return p.result.found; },
+  property(
+      c, "found", [](const NearPairs& p) { return p.result.found; },
       "int: number of all pairs within the distance; more than len() if `nearest` was given.");
-  c.def_property_readonly(
-      "triangles",
-      [](const NearPairs& p) {
-        return rows_of<std::uint32_t>(p.result.pairs, 2, [](const NearPair& pair, std::size_t j) {
-          return (j == 0 ? pair.a : pair.b).value();
-        });
-      },
-      "(n, 2) uint32: a triangle of A and one of B.");
-  c.def_property_readonly(
-      "faces",
-      [](const NearPairs& p) {
-        return rows_of<std::uint32_t>(
-            p.faces, 2, [](const std::array<FaceId, 2>& faces, std::size_t j) { return faces[j].value(); });
-      },
+  of_pair("triangles", kPairOf, "(n, 2) uint32: a triangle of A and one of B.");
+  property(
+      c, "faces", [](const NearPairs& p) { return column(p.faces, std::identity()); },
       "(n, 2) uint32: the faces of these triangles.");
-  c.def_property_readonly(
-      "meet",
-      [](const NearPairs& p) {
-        return each_of<std::uint8_t>(
-            p.result.pairs, [](const NearPair& pair) { return static_cast<std::uint8_t>(pair.meet); });
-      },
-      "(n,) uint8: 0 disjoint, 1 touch, 2 cross.");
-  c.def_property_readonly(
-      "lower",
-      [](const NearPairs& p) {
-        return each_of<double>(p.result.pairs, [](const NearPair& pair) { return pair.lower; });
-      },
-      "(n,) float64: lower ends of the distances; 0 for pairs that intersect.");
-  c.def_property_readonly(
-      "upper",
-      [](const NearPairs& p) {
-        return each_of<double>(p.result.pairs, [](const NearPair& pair) { return pair.upper; });
-      },
-      "(n,) float64: upper ends.");
-  c.def_property_readonly(
-      "points",
-      [](const NearPairs& p) {
-        return point_pairs_of(p.result.pairs,
-                              [](const NearPair& pair, std::size_t j) { return pair.point[j]; });
-      },
-      "(n, 2, 3) float64: the closest points of A and of B, world frame; equal if the pair intersects.");
-  c.def_property_readonly(
-      "counters",
+  of_pair("meet", &NearPair::meet, "(n,) uint8: 0 disjoint, 1 touch, 2 cross.");
+  of_pair("lower", &NearPair::lower,
+          "(n,) float64: lower ends of the distances; 0 for pairs that intersect.");
+  of_pair("upper", &NearPair::upper, "(n,) float64: upper ends.");
+  of_pair("points", &NearPair::point,
+          "(n, 2, 3) float64: the closest points of A and of B, world frame; equal if the pair intersects.");
+  property(
+      c, "counters",
       [](const NearPairs& p) {
         const NearPairsCounters& n = p.result.counters;
-        py::dict d;
-        d["node_pairs"] = n.node_pairs;
-        d["box_tests"] = n.box_tests;
-        d["candidates"] = n.candidates;
-        d["pairs_exact"] = n.pairs_exact;
-        return d;
+        return dict_of({{"node_pairs", n.node_pairs},
+                        {"box_tests", n.box_tests},
+                        {"candidates", n.candidates},
+                        {"pairs_exact", n.pairs_exact}});
       },
       "dict: the work, in numbers of operations.");
   c.def("__repr__", [](const NearPairs& p) {
@@ -134,11 +80,8 @@ void bind_near_pairs_result(py::module_& m) {
 
 void bind_near_pairs(py::module_& m) {
   bind_near_pairs_result(m);
-  const py::none no;
-  m.def("near_pairs", &near_pairs, py::arg("a"), py::arg("b"), py::arg("pose_b") = no, py::arg("pose_a") = no,
-        py::kw_only(), py::arg("within"), py::arg("nearest") = no, py::arg("max_pairs") = no,
-        py::arg("threads") = no,
-        R"(near_pairs(a, b, pose_b=None, pose_a=None, *, within, nearest=0, max_pairs=0, threads=0)
+  define(m, &near_pairs,
+         R"(near_pairs(a, b, pose_b=None, pose_a=None, *, within, nearest=0, max_pairs=0, threads=0)
 
 Finds all pairs of triangles (2D: segments) whose distance is at most `within`, exactly.
 
@@ -192,78 +135,49 @@ py::object contact_manifolds(py::handle a, py::handle b, py::handle pose_b, py::
 }
 
 void bind_contact_manifolds_result(py::module_& m) {
-  py::class_<Manifolds> c(m, "Manifolds",
-                          "Contact manifolds: arrays with a row for each manifold, point or pair. Made by "
-                          "contact_manifolds().");
+  py::class_<Manifolds> c(
+      m, "Manifolds",
+      R"(Contact manifolds: arrays with a row for each manifold, point or pair. Made by contact_manifolds().)");
+  const auto of_manifold = [&c](const char* name, const auto& get, const char* text) {
+    property(
+        c, name, [get](const Manifolds& x) { return column(x.result.manifolds, get); }, text);
+  };
+  const auto of_point = [&c](const char* name, const auto& get, const char* text) {
+    property(
+        c, name, [get](const Manifolds& x) { return column(x.points, get); }, text);
+  };
   c.def("__len__", [](const Manifolds& x) { return x.result.manifolds.size(); });
-  c.def_property_readonly(
-      "normals",
-      [](const Manifolds& x) {
-        return rows_of<double>(x.result.manifolds, 3,
-                               [](const ContactManifold& each, std::size_t j) { return each.normal[j]; });
-      },
-      "(m, 3) float64: unit vectors from A to B; zero if no face of the region has an area.");
-  c.def_property_readonly(
-      "regions",
-      [](const Manifolds& x) {
-        return each_of<std::uint32_t>(x.result.manifolds,
-                                      [](const ContactManifold& each) { return each.region; });
-      },
-      "(m,) uint32: the connected region of each manifold.");
-  c.def_property_readonly(
-      "intersects",
-      [](const Manifolds& x) {
-        return each_of<bool>(x.result.manifolds, [](const ContactManifold& each) { return each.intersects; });
-      },
-      "(m,) bool: a pair of the manifold intersects; otherwise all its contacts are speculative.");
-  c.def_property_readonly(
-      "manifold",
-      [](const Manifolds& x) { return each_of<std::uint32_t>(x.manifold_of, [](auto i) { return i; }); },
+  of_manifold("normals", &ContactManifold::normal,
+              "(m, 3) float64: unit vectors from A to B; zero if no face of the region has an area.");
+  of_manifold("regions", &ContactManifold::region, "(m,) uint32: the connected region of each manifold.");
+  of_manifold("intersects", &ContactManifold::intersects,
+              "(m,) bool: a pair of the manifold intersects; otherwise all its contacts are speculative.");
+  property(
+      c, "manifold", [](const Manifolds& x) { return column(x.manifold_of, std::identity()); },
       "(k,) uint32: the manifold of each point, ascending; the deepest point of each comes first.");
-  c.def_property_readonly(
-      "points",
-      [](const Manifolds& x) {
-        return point_pairs_of(x.points,
-                              [](const ManifoldPoint* p, std::size_t side) { return p->point[side]; });
-      },
-      "(k, 2, 3) float64: on A and on B, world frame.");
-  c.def_property_readonly(
-      "depths",
-      [](const Manifolds& x) {
-        return each_of<double>(x.points, [](const ManifoldPoint* p) { return p->depth; });
-      },
-      "(k,) float64: along the normal; positive if the surfaces overlap, negative for a gap.");
-  c.def_property_readonly(
-      "ids",
-      [](const Manifolds& x) {
-        return each_of<std::uint64_t>(x.points, [](const ManifoldPoint* p) { return p->id; });
-      },
-      "(k,) uint64: a point that continues one of the previous answer keeps its id.");
-  c.def_property_readonly(
+  of_point("points", &ManifoldPoint::point, "(k, 2, 3) float64: on A and on B, world frame.");
+  of_point("depths", &ManifoldPoint::depth,
+           "(k,) float64: along the normal; positive if the surfaces overlap, negative for a gap.");
+  of_point("ids", &ManifoldPoint::id,
+           "(k,) uint64: a point that continues one of the previous answer keeps its id.");
+  of_point(
       "features",
-      [](const Manifolds& x) {
-        const auto points = static_cast<py::ssize_t>(x.points.size());
-        return py::object(
-            rows_of<std::uint32_t>(x.points, 6, [](const ManifoldPoint* p, std::size_t j) {
-              const SurfaceFeatureId& f = p->on[j / 3];
-              return j % 3 == 0 ? static_cast<std::uint32_t>(f.kind) : j % 3 == 1 ? f.first : f.second;
-            }).reshape({points, py::ssize_t{2}, py::ssize_t{3}}));
+      [](const ManifoldPoint* p) {
+        const auto row = [](const SurfaceFeatureId& f) {
+          return std::array{static_cast<std::uint32_t>(f.kind), f.first, f.second};
+        };
+        return std::array{row(p->on[0]), row(p->on[1])};
       },
       "(k, 2, 3) uint32: features of A and of B. 0, v, v: a vertex; 1, v, w: an edge; 2, t, t: a triangle.");
-  c.def_property_readonly(
-      "triangles",
-      [](const Manifolds& x) {
-        return rows_of<std::uint32_t>(x.result.pairs, 2, [](const NearPair& pair, std::size_t j) {
-          return (j == 0 ? pair.a : pair.b).value();
-        });
-      },
+  property(
+      c, "triangles", [](const Manifolds& x) { return column(x.result.pairs, kPairOf); },
       "(p, 2) uint32: all pairs of triangles that intersect or are at most `margin` apart.");
-  c.def_property_readonly(
-      "pairs",
+  property(
+      c, "pairs",
       [](const Manifolds& x) {
         py::list out;
         for (const ContactManifold& each : x.result.manifolds)
-          out.append(each_of<std::uint32_t>(each.pairs, [](auto i) { return i; }));
+          out.append(column(each.pairs, std::identity()));
         return out;
       },
       "list of (q,) uint32: the rows of `triangles` of each manifold; each row is in one of them.");
@@ -277,11 +191,8 @@ void bind_contact_manifolds_result(py::module_& m) {
 
 void bind_contact_manifolds(py::module_& m) {
   bind_contact_manifolds_result(m);
-  const py::none no;
-  m.def(
-      "contact_manifolds", &contact_manifolds, py::arg("a"), py::arg("b"), py::arg("pose_b") = no,
-      py::arg("pose_a") = no, py::kw_only(), py::arg("margin") = no, py::arg("previous") = no,
-      py::arg("max_pairs") = no, py::arg("threads") = no,
+  define(
+      m, &contact_manifolds,
       R"(contact_manifolds(a, b, pose_b=None, pose_a=None, *, margin=0, previous=None, max_pairs=0, threads=0)
 
 Finds a normal and at most 4 points (2D: 2) with depths for each region of contact, for a solver.
@@ -317,52 +228,28 @@ void bind_self_intersections(py::module_& m) {
   py::class_<SelfIntersections> c(m, "SelfIntersections",
                                   "Pairs of faces in which a body intersects itself: arrays with a row for "
                                   "each pair. Made by self_intersections().");
-  const auto column = [&c](const char* name, const char* text, std::uint32_t SelfIntersection::*member) {
-    c.def_property_readonly(
-        name,
-        [member](const SelfIntersections& s) {
-          return each_of<std::uint32_t>(s.pairs, [&](const SelfIntersection& pair) { return pair.*member; });
-        },
-        text);
+  const auto of_pair = [&c](const char* name, const auto& get, const char* text) {
+    property(
+        c, name, [get](const SelfIntersections& s) { return column(s.pairs, get); }, text);
   };
   c.def("__len__", [](const SelfIntersections& s) { return s.pairs.size(); });
-  c.def_property_readonly(
-      "faces",
-      [](const SelfIntersections& s) {
-        return rows_of<std::uint32_t>(s.pairs, 2, [](const SelfIntersection& pair, std::size_t j) {
-          return (j == 0 ? pair.a : pair.b).value();
-        });
-      },
-      "(n, 2) uint32: the faces, ascending.");
-  c.def_property_readonly(
-      "kind",
-      [](const SelfIntersections& s) {
-        return each_of<std::uint8_t>(
-            s.pairs, [](const SelfIntersection& pair) { return static_cast<std::uint8_t>(pair.kind); });
-      },
-      "(n,) uint8: 0 touch, 1 cross, 2 overlap in an area of one plane.");
-  column("shared", "(n,) uint32: number of corners in common.", &SelfIntersection::shared);
-  column("curve", "(n,) uint32: connected component of the segments.", &SelfIntersection::curve);
-  column("first_segment", "(n,) uint32: index of the pair's first segment in `segments`.",
-         &SelfIntersection::first_segment);
-  column("segment_counts", "(n,) uint32: number of the pair's segments.", &SelfIntersection::segments);
-  c.def_property_readonly(
-      "segments",
-      [](const SelfIntersections& s) {
-        return point_pairs_of(
-            s.segments, [](const std::array<Eigen::Vector3d, 2>& ends, std::size_t j) { return ends[j]; });
-      },
+  of_pair("faces", kPairOf, "(n, 2) uint32: the faces, ascending.");
+  of_pair("kind", &SelfIntersection::kind,
+          "(n,) uint8: 0 touch, 1 cross, 2 overlap in an area of one plane.");
+  of_pair("shared", &SelfIntersection::shared, "(n,) uint32: number of corners in common.");
+  of_pair("curve", &SelfIntersection::curve, "(n,) uint32: connected component of the segments.");
+  of_pair("first_segment", &SelfIntersection::first_segment,
+          "(n,) uint32: index of the pair's first segment in `segments`.");
+  of_pair("segment_counts", &SelfIntersection::segments, "(n,) uint32: number of the pair's segments.");
+  property(
+      c, "segments", [](const SelfIntersections& s) { return column(s.segments, std::identity()); },
       "(m, 2, 3) float64: ends of the segments of all pairs, body frame; equal for points.");
-  c.def_property_readonly(
-      "curves", [](const SelfIntersections& s) { return s.curves; },
-      "int: number of connected components of the segments.");
+  property(c, "curves", &SelfIntersections::curves, "int: number of connected components of the segments.");
   c.def("__repr__", [](const SelfIntersections& s) {
     return "<lrbscope.SelfIntersections of " + std::to_string(s.pairs.size()) + " pairs>";
   });
-  const py::none no;
-  m.def("self_intersections", &self_intersections, py::arg("body"), py::kw_only(), py::arg("max_pairs") = no,
-        py::arg("threads") = no,
-        R"(self_intersections(body, *, max_pairs=0, threads=0)
+  define(m, &self_intersections,
+         R"(self_intersections(body, *, max_pairs=0, threads=0)
 
 Finds all pairs of faces of a body that intersect beyond the corners and edges that they share, exactly.
 
@@ -407,44 +294,29 @@ py::object signed_distance(py::handle of, py::handle points, py::handle at, py::
 }
 
 void bind_point_distances(py::module_& m) {
-  py::class_<PointDistances> c(m, "PointDistances",
-                               "Signed distances of n points to a body, as proven intervals. Made by "
-                               "signed_distance().");
+  py::class_<PointDistances> c(
+      m, "PointDistances",
+      R"(Signed distances of n points to a body, as proven intervals. Made by signed_distance().)");
+  const auto of_point = [&c](const char* name, const auto& get, const char* text) {
+    property(
+        c, name, [get](const PointDistances& d) { return column(d.all, get); }, text);
+  };
   c.def("__len__", [](const PointDistances& d) { return d.all.size(); });
-  c.def_property_readonly(
-      "lower",
-      [](const PointDistances& d) {
-        return each_of<double>(d.all, [](const PointDistance& p) { return p.signed_lower(); });
-      },
-      "(n,) float64: lower ends of the signed distances; negative inside.");
-  c.def_property_readonly(
-      "upper",
-      [](const PointDistances& d) {
-        return each_of<double>(d.all, [](const PointDistance& p) { return p.signed_upper(); });
-      },
-      "(n,) float64: upper ends.");
-  c.def_property_readonly(
+  of_point("lower", &PointDistance::signed_lower,
+           "(n,) float64: lower ends of the signed distances; negative inside.");
+  of_point("upper", &PointDistance::signed_upper, "(n,) float64: upper ends.");
+  of_point(
       "side",
-      [](const PointDistances& d) {
-        return each_of<std::int8_t>(d.all, [](const PointDistance& p) -> std::int8_t {
-          if (!p.side) return 2;
-          return p.side == Where::inside ? -1 : p.side == Where::outside ? 1 : 0;
-        });
+      [](const PointDistance& p) -> std::int8_t {
+        if (!p.side) return 2;
+        return p.side == Where::inside ? -1 : p.side == Where::outside ? 1 : 0;
       },
       "(n,) int8: -1 inside, 0 on the surface, 1 outside; 2 unknown, because the body is not closed.");
-  c.def_property_readonly(
-      "points",
-      [](const PointDistances& d) {
-        std::vector<Eigen::Vector3d> closest;
-        for (const PointDistance& p : d.all) closest.push_back(p.closest.point);
-        return array_of(closest);
-      },
+  of_point(
+      "points", [](const PointDistance& p) { return p.closest.point; },
       "(n, 3) float64: the closest points of the surface, world frame.");
-  c.def_property_readonly(
-      "faces",
-      [](const PointDistances& d) {
-        return each_of<std::uint32_t>(d.all, [](const PointDistance& p) { return p.closest.face.value(); });
-      },
+  of_point(
+      "faces", [](const PointDistance& p) { return p.closest.face; },
       "(n,) uint32: the faces of these points; 4294967295 for a body without faces.");
   c.def("__repr__", [](const PointDistances& d) {
     return "<lrbscope.PointDistances of " + std::to_string(d.all.size()) + " points>";
@@ -455,10 +327,8 @@ void bind_point_distances(py::module_& m) {
 
 void bind_signed_distance(py::module_& m) {
   bind_point_distances(m);
-  const py::none no;
-  m.def("signed_distance", &signed_distance, py::arg("body"), py::arg("points"), py::arg("pose") = no,
-        py::kw_only(), py::arg("tolerance") = no, py::arg("relative_tolerance") = no, py::arg("threads") = no,
-        R"(signed_distance(body, points, pose=None, *, tolerance=0, relative_tolerance=0, threads=0)
+  define(m, &signed_distance,
+         R"(signed_distance(body, points, pose=None, *, tolerance=0, relative_tolerance=0, threads=0)
 
 Finds the signed distance of points to the surface of a body, as proven intervals, negative inside.
 

@@ -4,6 +4,7 @@
 
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
 #include <lrbscope/broad_phase.hpp>
 #include <lrbscope/scene.hpp>
 
@@ -41,11 +42,10 @@ void bind_boxes(py::module_& m) {
 >>> SweepAndPrune().update(boxes).tolist()
 [[0, 1]])")
       .def(py::init<>(), "SweepAndPrune()\n\nStarts without boxes.")
-      .def("update", &pairs_of, py::arg("boxes"),
-           "update(boxes)\n\n"
-           "Returns the pairs of boxes with a point in common, (p, 2) uint32 ascending. boxes: (n, "
-           "2, 3) float, minimum\n"
-           "and maximum coordinates.");
+      .def("update", &pairs_of, Signature(R"(update(boxes)
+
+Returns the pairs of boxes with a point in common, (p, 2) uint32 ascending. boxes: (n, 2, 3) float, minimum
+and maximum coordinates.)"));
 }
 
 namespace {
@@ -77,9 +77,7 @@ Others others_of(const SceneHandle& self, py::handle given, py::handle pose_of_b
     if (&scene == &self)
       throw InputError("other: expected another scene, got the scene itself; leave it out");
   } else if (!given.is_none()) {
-    if (!py::isinstance<Body>(given))
-      throw py::type_error("other: expected a Scene or a Body, got " + described(given));
-    out.body = shared_body(given, "other");
+    out.body = shared_body(given, "other", "a Scene or a Body");
   }
   if (!out.body && !pose_of_body.is_none()) throw InputError("pose: only allowed if `other` is a Body");
   out.pose = pose(pose_of_body, "pose");
@@ -243,7 +241,7 @@ struct Meetings : Answers {
 /// Pairs of a scene to be queried, with shared ownership of their bodies.
 struct Questions {
   std::vector<PosedPair> pairs;
-  std::vector<std::array<std::shared_ptr<const LrbRep>, 2>> reps;
+  std::vector<Answers::Pair> kept;
 };
 
 Questions questions_of(const SceneHandle& self, const Others& others, std::span<const std::int64_t> keys) {
@@ -259,7 +257,7 @@ Questions questions_of(const SceneHandle& self, const Others& others, std::span<
     PosedPair p;
     const auto a = add(&self, keys[i], p.a, p.pose_a), b = add(second, keys[i + 1], p.b, p.pose_b);
     out.pairs.push_back(p);
-    out.reps.push_back({a, b});
+    out.kept.push_back({a, b, p.pose_a, p.pose_b});
   }
   return out;
 }
@@ -283,7 +281,7 @@ Meetings collide(SceneHandle& self, py::handle other, py::handle at, py::handle 
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!in_contact(answers[i])) continue;
     reported->push_back(std::move(answers[i]));
-    out.each.push_back(questions.reps[i]);
+    out.pairs.push_back(questions.kept[i]);
     out.keys.insert(out.keys.end(), {near.keys[2 * i], near.keys[2 * i + 1]});
   }
   out.all = std::move(reported);
@@ -319,7 +317,7 @@ py::object nearest(SceneHandle& self, py::handle other, py::handle at, py::handl
       with_others(others, [&](auto&&... whose) { return self.scene.nearest(whose..., request, apart); });
   if (!found) return py::none();
   return py::make_tuple(others.body ? -1 : number_of(found->a), number_of(found->b),
-                        distance_object(std::move(found->result).value()));
+                        py::cast(std::move(found->result).value()));
 }
 
 std::size_t size_of(SceneHandle& self) {
@@ -348,18 +346,17 @@ outside the scene. The outside body is A of the pair, with key -1.
 using SceneClass = py::class_<SceneHandle, ScenePtr>;
 
 void bind_bodies(SceneClass& c) {
-  const py::none no;
   c.def(py::init([](py::handle threads) { return std::make_shared<SceneHandle>(count(threads, "threads")); }),
-        py::kw_only(), py::arg("threads") = no, kSceneText);
-  c.def("add", &add, py::arg("body"), py::arg("pose") = no,
-        "add(body, pose=None)\n\n"
-        "Adds a Body at a pose, (4, 4); None: the identity. The same Body may be added "
-        "repeatedly. Returns its key.");
-  c.def("remove", &remove, py::arg("key"), "remove(key)\n\nRemoves a body.");
-  c.def("move", &move, py::arg("key"), py::arg("pose"),
-        "move(key, pose)\n\nMoves a body: key int, pose (4, 4); or many: key (k,) int, pose (k, 4, 4).");
-  c.def("body", &body_at, py::arg("key"), "body(key)\n\nReturns the Body of a key.");
-  c.def("pose", &pose_at, py::arg("key"), "pose(key)\n\nReturns the pose of a body, (4, 4) float64.");
+        Signature("Scene(*, threads=0)\n\nMakes an empty scene. threads: of queries; 0: all cores."));
+  define(c, &add,
+         "add(body, pose=None)\n\n"
+         "Adds a Body at a pose, (4, 4); None: the identity. The same Body may be added "
+         "repeatedly. Returns its key.");
+  define(c, &remove, "remove(key)\n\nRemoves a body.");
+  define(c, &move,
+         "move(key, pose)\n\nMoves a body: key int, pose (4, 4); or many: key (k,) int, pose (k, 4, 4).");
+  define(c, &body_at, "body(key)\n\nReturns the Body of a key.");
+  define(c, &pose_at, "pose(key)\n\nReturns the pose of a body, (4, 4) float64.");
   c.def_property_readonly("keys", &keys, "(n,) int64: of all bodies, ascending.");
   c.def("__len__", &size_of);
   c.def("__contains__", &contains, py::arg("key"));
@@ -368,34 +365,31 @@ void bind_bodies(SceneClass& c) {
 }
 
 void bind_questions(SceneClass& c) {
-  const py::none no;
-  c.def("near", &near, py::arg("within") = no, py::arg("other") = no, py::arg("pose") = no,
-        "near(within=0, other=None, pose=None)\n\n"
-        "Returns the pairs of bodies whose boxes are at most `within` apart (the world's unit), "
-        "closest first:\n"
-        "their keys, (p, 2) int64, and the gaps of the boxes, (p,) float64. At 0 these are the "
-        "pairs that collide() tests.");
-  c.def("nearest_boxes", &nearest_boxes, py::arg("other") = no, py::arg("pose") = no,
-        "nearest_boxes(other=None, pose=None)\n\n"
-        "Returns the keys of the pair with the closest boxes, and their gap: (int, int, float); "
-        "None if there is no pair.");
-  c.def("collide", &collide, py::arg("other") = no, py::arg("pose") = no, py::kw_only(), py::arg("mode") = no,
-        py::arg("contacts") = no, py::arg("interiors_overlap") = no, py::arg("max_pairs") = no,
-        "collide(other=None, pose=None, *, mode='all', contacts=False, interiors_overlap=False, "
-        "max_pairs=0)\n\n"
-        "Finds all pairs of bodies that intersect or contain one another, in "
-        "ascending order of their keys. For the\n"
-        "options see collide(). Returns Meetings.");
-  c.def("any_meet", &any_meet, py::arg("other") = no, py::arg("pose") = no,
-        "any_meet(other=None, pose=None)\n\n"
-        "Returns True if collide() would find a pair; stops at the first.");
-  c.def("nearest", &nearest, py::arg("other") = no, py::arg("pose") = no, py::kw_only(),
-        py::arg("solids") = no, py::arg("relative_tolerance") = no, py::arg("tolerance") = no,
-        "nearest(other=None, pose=None, *, solids=False, relative_tolerance=0, tolerance=0)\n\n"
-        "Finds the pair of bodies with the closest surfaces, or the closest solids: their "
-        "distance is also 0 if one contains the\n"
-        "other. Returns their keys and a Distance, (int, int, Distance); None if there is no "
-        "pair.");
+  define(c, &near,
+         "near(within=0, other=None, pose=None)\n\n"
+         "Returns the pairs of bodies whose boxes are at most `within` apart (the world's unit), "
+         "closest first:\n"
+         "their keys, (p, 2) int64, and the gaps of the boxes, (p,) float64. At 0 these are the "
+         "pairs that collide() tests.");
+  define(c, &nearest_boxes,
+         "nearest_boxes(other=None, pose=None)\n\n"
+         "Returns the keys of the pair with the closest boxes, and their gap: (int, int, float); "
+         "None if there is no pair.");
+  define(
+      c, &collide,
+      R"(collide(other=None, pose=None, *, mode='all', contacts=False, interiors_overlap=False, max_pairs=0)
+
+Finds all pairs of bodies that intersect or contain one another, in ascending order of their keys. For the
+options see collide(). Returns Meetings.)");
+  define(c, &any_meet,
+         "any_meet(other=None, pose=None)\n\n"
+         "Returns True if collide() would find a pair; stops at the first.");
+  define(c, &nearest,
+         "nearest(other=None, pose=None, *, solids=False, relative_tolerance=0, tolerance=0)\n\n"
+         "Finds the pair of bodies with the closest surfaces, or the closest solids: their "
+         "distance is also 0 if one contains the\n"
+         "other. Returns their keys and a Distance, (int, int, Distance); None if there is no "
+         "pair.");
 }
 
 }  // namespace
@@ -403,8 +397,7 @@ void bind_questions(SceneClass& c) {
 void bind_scene(py::module_& m) {
   py::class_<Meetings, Answers>(
       m, "Meetings",
-      "The intersecting pairs of a scene's bodies: a sequence of Result, in the order of "
-      "`keys`.")
+      R"(The intersecting pairs of a scene's bodies: a sequence of Result, in the order of `keys`.)")
       .def_property_readonly(
           "keys", [](const Meetings& s) { return array_of_keys(s.keys); },
           "(k, 2) int64: the keys of A and B of each; -1 for a body outside the scene. Ascending.")

@@ -1,5 +1,6 @@
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 
 namespace lrb::python {
@@ -27,24 +28,18 @@ BodyWrapper at(py::handle given, py::handle tolerance, py::handle threads) {
   return {std::move(body), bodies::wrapper_at(rep, within, n)};
 }
 
-RegionId region(const BodyWrapper& w, py::handle given) {
-  const std::uint64_t i = count(given, "region");
-  const std::uint32_t n = w.body->rep().region_count();
+std::uint32_t checked(py::handle given, const char* what, std::uint32_t n) {
+  const std::uint64_t i = count(given, what);
   if (i >= n)
-    throw InputError("region: expected a number below " + std::to_string(n) + ", got " + std::to_string(i));
-  return RegionId(i);
+    throw InputError(std::string(what) + ": expected a number below " + std::to_string(n) + ", got " +
+                     std::to_string(i));
+  return static_cast<std::uint32_t>(i);
+}
+RegionId region(const BodyWrapper& w, py::handle given) {
+  return RegionId(checked(given, "region", w.body->rep().region_count()));
 }
 FaceId face(const BodyWrapper& w, py::handle given) {
-  const std::uint64_t i = count(given, "face");
-  const std::uint32_t n = w.body->rep().face_count();
-  if (i >= n)
-    throw InputError("face: expected a number below " + std::to_string(n) + ", got " + std::to_string(i));
-  return FaceId(i);
-}
-
-py::array_t<std::uint32_t> faces_of(const BodyWrapper& w) {
-  const std::vector<FaceId> all = w.wrapper.boundary();
-  return array_of_ids(std::span<const FaceId>(all));
+  return FaceId(checked(given, "face", w.body->rep().face_count()));
 }
 
 py::array_t<std::uint32_t> triangles_of(const BodyWrapper& w) {
@@ -60,13 +55,6 @@ py::array_t<std::uint32_t> triangles_of(const BodyWrapper& w) {
   }
   return array_of_ids(std::span<const VertexId>(corners))
       .reshape({py::ssize_t{-1}, py::ssize_t{rep.simplex_size()}});
-}
-
-py::array_t<bool> real_of(const BodyWrapper& w) {
-  const std::vector<FaceId> all = w.wrapper.boundary();
-  py::array_t<bool> out(static_cast<py::ssize_t>(all.size()));
-  for (std::size_t i = 0; i < all.size(); ++i) out.mutable_data()[i] = w.body->rep().is_real(all[i]);
-  return out;
 }
 
 /// Returns the wrapper's region behind a face of its boundary, on either side, or None.
@@ -90,52 +78,47 @@ void bind_wrapper(py::module_& m) {
 >>> w.refine_all()
 >>> len(w) == cube.real_face_count
 True)");
-  c.def(py::init(&made), py::arg("body"), py::arg("mode") = py::none(),
-        "Wrapper(body, mode='regularised')\n\n"
-        "Makes the outermost wrapper. mode 'unregularised': refining a face discards that\n"
-        "face alone.");
-  c.def_static("at", &at, py::arg("body"), py::arg("tolerance"), py::kw_only(), py::arg("threads") = 0,
-               "at(body, tolerance, *, threads=0)\n\n"
-               "Makes the coarsest wrapper whose maximum deviation from the body is within a\n"
-               "tolerance (the mesh's unit).");
-  c.def(
-      "refine", [](BodyWrapper& w, py::handle r) { return w.wrapper.refine(region(w, r)); },
-      py::arg("region"), "refine(region)\n\nExcludes a region. Returns False if it was already excluded.");
-  c.def(
-      "refine_face", [](BodyWrapper& w, py::handle f) { return w.wrapper.refine_face(face(w, f)); },
-      py::arg("face"),
-      "refine_face(face)\n\n"
-      "Refines the region behind a face. Returns False if the face is real or not on the "
-      "boundary.");
-  c.def(
-      "coarsen", [](BodyWrapper& w, py::handle r) { return w.wrapper.coarsen(region(w, r)); },
-      py::arg("region"),
-      "coarsen(region)\n\n"
-      "Includes a region again. Returns False if it is already included.");
-  c.def(
-      "refine_all", [](BodyWrapper& w) { w.wrapper.refine_all(); },
+  c.def(py::init(&made), Signature(R"(Wrapper(body, mode='regularised')
+
+Makes the outermost wrapper. mode 'unregularised': refining a face discards that face alone.)"));
+  c.def_static("at", &at, Signature(R"(at(body, tolerance, *, threads=0)
+
+Makes the coarsest wrapper whose maximum deviation from the body is within a tolerance (the mesh's unit).)"));
+  define(
+      c, [](BodyWrapper& w, py::handle r) { return w.wrapper.refine(region(w, r)); },
+      "refine(region)\n\nExcludes a region. Returns False if it was already excluded.");
+  define(
+      c, [](BodyWrapper& w, py::handle f) { return w.wrapper.refine_face(face(w, f)); }, R"(refine_face(face)
+
+Refines the region behind a face. Returns False if the face is real or not on the boundary.)");
+  define(
+      c, [](BodyWrapper& w, py::handle r) { return w.wrapper.coarsen(region(w, r)); },
+      "coarsen(region)\n\nIncludes a region again. Returns False if it is already included.");
+  define(
+      c, [](BodyWrapper& w) { w.wrapper.refine_all(); },
       "refine_all()\n\nExcludes all regions: only the real faces remain.");
-  c.def(
-      "reset", [](BodyWrapper& w) { w.wrapper.reset(); }, "reset()\n\nResets to the outermost wrapper.");
-  c.def(
-      "includes", [](const BodyWrapper& w, py::handle r) { return w.wrapper.included(region(w, r)); },
-      py::arg("region"), "includes(region)\n\nReturns True if a region is included in the wrapper.");
-  c.def("region_behind", &region_behind, py::arg("face"),
-        "region_behind(face)\n\n"
-        "Returns the region behind a face of the boundary, or None if the face is real or not on "
-        "the boundary.");
-  c.def_property_readonly(
-      "body", [](const BodyWrapper& w) { return w.body; }, "Body");
-  c.def_property_readonly("faces", &faces_of,
-                          "(f,) uint32: the faces of the boundary, ascending; real faces are less than "
-                          "body.real_face_count.");
-  c.def_property_readonly("is_real", &real_of,
-                          "(f,) bool: for each of these, True if it is a face of the mesh.");
-  c.def_property_readonly("triangles", &triangles_of,
-                          "(t, 3) uint32: the boundary's triangles, as indices into body.all_vertices.");
-  c.def_property_readonly(
-      "excluded",
-      [](const BodyWrapper& w) { return array_of_ids(std::span<const RegionId>(w.wrapper.excluded())); },
+  define(
+      c, [](BodyWrapper& w) { w.wrapper.reset(); }, "reset()\n\nResets to the outermost wrapper.");
+  define(
+      c, [](const BodyWrapper& w, py::handle r) { return w.wrapper.included(region(w, r)); },
+      "includes(region)\n\nReturns True if a region is included in the wrapper.");
+  define(c, &region_behind, R"(region_behind(face)
+
+Returns the region behind a face of the boundary, or None if the face is real or not on the boundary.)");
+  property(c, "body", &BodyWrapper::body, "Body");
+  property(
+      c, "faces", [](const BodyWrapper& w) { return column(w.wrapper.boundary(), std::identity()); },
+      "(f,) uint32: the faces of the boundary, ascending; real faces are less than body.real_face_count.");
+  property(
+      c, "is_real",
+      [](const BodyWrapper& w) {
+        return column(w.wrapper.boundary(), [&](FaceId f) { return w.body->rep().is_real(f); });
+      },
+      "(f,) bool: for each of these, True if it is a face of the mesh.");
+  property(c, "triangles", &triangles_of,
+           "(t, 3) uint32: the boundary's triangles, as indices into body.all_vertices.");
+  property(
+      c, "excluded", [](const BodyWrapper& w) { return column(w.wrapper.excluded(), std::identity()); },
       "(r,) uint32: the excluded regions, in order of refinement.");
   c.def("__len__", [](const BodyWrapper& w) { return w.wrapper.boundary_size(); });
   c.def("__repr__", [](const BodyWrapper& w) {

@@ -113,8 +113,7 @@ void raise(std::exception_ptr thrown) {
 void bind_exceptions(py::module_& m) {
   py::exception<InputError> input(m, "InputError", PyExc_ValueError);
   input.doc() =
-      "Raised for invalid input. The message is one line that names the argument, file or "
-      "element.";
+      R"(Raised for invalid input. The message is one line that names the argument, file or element.)";
   py::exception<EnvironmentError> environment(m, "EnvironmentError", PyExc_OSError);
   environment.doc() = "Raised when the machine cannot do what was requested: a full disk, a missing font.";
   input_error = input.release().ptr();

@@ -41,9 +41,10 @@ class Body {
 
 using BodyPtr = std::shared_ptr<Body>;
 
-/// Returns the body of an argument. Throws TypeError for any other object.
+/// Returns the body of an argument: a Body, or an object with vertices and faces, whose body lives until the
+/// call from Python ends. Throws TypeError for any other object.
 const Body& body(py::handle given, const char* what);
-BodyPtr shared_body(py::handle given, const char* what);
+BodyPtr shared_body(py::handle given, const char* what, const char* expected = "a Body");
 
 /// The Python class Trace: the input of the pictures and pages of scenarios/run, with shared bodies.
 class Recorded {
@@ -66,15 +67,6 @@ std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scen
 struct PictureArguments {
   py::handle size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent;
 };
-
-/// Calls bind(names...) with the names of PictureArguments, in their order.
-template <class Bind>
-void with_picture_arguments(const Bind& bind) {
-  const py::none no;
-  bind(py::arg("size") = no, py::arg("view_from") = no, py::arg("up") = no, py::arg("look_at") = no,
-       py::arg("zoom") = no, py::arg("orthographic") = no, py::arg("wrappers") = no, py::arg("close_up") = no,
-       py::arg("colour_by") = no, py::arg("transparent") = no);
-}
 
 /// Draws the end of a step of a run as a lrbscope.Picture. The GIL must be held, and is released while
 /// drawing.
