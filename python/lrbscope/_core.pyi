@@ -1,11 +1,12 @@
 from collections.abc import Callable, Iterator, Sequence
 from os import PathLike
-from typing import Any, Literal, Protocol, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from ._picture import Picture
+from .collision import _Mesh
 from .report import Report
 
 __version__: str
@@ -59,12 +60,6 @@ _Progress = Callable[[str, int, int], object] | bool
 
 class InputError(ValueError): ...
 class EnvironmentError(OSError): ...
-
-class _Mesh(Protocol):
-    @property
-    def vertices(self) -> Any: ...
-    @property
-    def faces(self) -> Any: ...
 
 _Shape = Body | _Mesh  # a mesh of another library, such as a trimesh.Trimesh
 

@@ -19,8 +19,9 @@ from __future__ import annotations
 
 import hashlib
 import math
+import threading
 from collections import OrderedDict
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,11 +29,11 @@ from . import _core
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterator, Sequence
-    from typing import Literal, Optional, Protocol
+    from typing import Optional, Protocol
 
     import numpy.typing as npt
 
-    from ._core import Body, Result, Scene
+    from ._core import Body, Result
 
     class _Mesh(Protocol):
         @property
@@ -42,13 +43,10 @@ if TYPE_CHECKING:
 
     _Floats = npt.NDArray[np.float64]
     _Pose = Optional[npt.ArrayLike]
+    _Placed = tuple[Body, _Floats]
     _Names = tuple[Any, Any]
     _Contacts = list["ContactData"]
     _Nearest = Optional["DistanceData"]
-    _No = Literal[False]
-    _Yes = Literal[True]
-
-_EXTERNAL = "__external"
 
 
 class Shown:
@@ -65,106 +63,146 @@ def _short(value: Any) -> str:
     """Return a value in a few characters: numbers rounded, lists and large arrays counted."""
     if isinstance(value, float):
         return f"{value:.6g}"
-    if isinstance(value, np.ndarray):
-        if value.size > 4:
-            return f"({', '.join(map(str, value.shape))}) array"
-        return "[" + ", ".join(f"{x:.4g}" for x in value.ravel()) + "]"
+    if isinstance(value, np.ndarray) and value.size > 4:
+        return f"({', '.join(map(str, value.shape))}) array"
     if isinstance(value, list) and len(value) > 2:
         return f"[{len(value)} items]"
-    if isinstance(value, list):
+    if isinstance(value, (list, np.ndarray)):
         return "[" + ", ".join(map(_short, value)) + "]"
     text = repr(value)
     return text if len(text) <= 80 else f"<{type(value).__name__}>"
 
 
-class ContactData(Shown):
+class Crowd:
+    """Labelled objects in a Scene: the core of both collision managers."""
+
+    def __init__(self) -> None:
+        self.scene = _core.Scene()
+        self.labels: dict[int, Any] = {}  # by key
+
+    def add(self, label: Any, body: Body, pose: _Floats) -> int:
+        """Add an object. Returns its key."""
+        key = self.scene.add(body, pose)
+        self.labels[key] = label
+        return key
+
+    def remove(self, key: int) -> None:
+        """Remove an object."""
+        self.scene.remove(key)
+        del self.labels[key]
+
+    def copy(self) -> Crowd:
+        """Return a scene of the same objects."""
+        copy = Crowd()
+        for key, label in self.labels.items():
+            copy.add(label, *self.placed(key))
+        return copy
+
+    def placed(self, key: int) -> _Placed:
+        """Return the body of an object and its pose."""
+        return self.scene.body(key), self.scene.pose(key)
+
+    def against(
+        self, other: Crowd | _Placed | None, outside: Any = None
+    ) -> tuple[tuple[Any, ...], Callable[[int, int], _Names]]:
+        """Return the arguments that select `other` in the scene's functions, and a function from pairs of keys
+        to labels. outside: the label of a body that is not in a scene, the first of a pair.
+        """
+        if isinstance(other, Crowd):
+            theirs = other.labels
+            return (other.scene,), lambda a, b: (self.labels[a], theirs[b])
+        if other is None:
+            return (), lambda a, b: (self.labels[a], self.labels[b])
+        return other, lambda _, b: (outside, self.labels[b])
+
+
+def contacts_of(result: Result, a: _Placed, b: _Placed) -> Iterator[tuple[int, _Floats, _Floats, float]]:
+    """Yield (index of the pair, point, normal, depth) for each pair of a result with contacts of two bodies at
+    their poses: the centre of the intersection of its triangles, normal and depth of its contact manifold.
+    """
+    points, pair_of_point = result.points
+    centroids = np.zeros((len(result.pairs), 3))
+    np.add.at(centroids, pair_of_point, points)
+    centroids /= np.maximum(np.bincount(pair_of_point, minlength=len(centroids)), 1)[:, None]
+    manifolds = _core.contact_manifolds(a[0], b[0], b[1], a[1])
+    deepest = manifolds.depths[np.searchsorted(manifolds.manifold, range(len(manifolds)))]
+    manifold_of = np.zeros(len(centroids), dtype=int)
+    for m, pairs in enumerate(manifolds.pairs):
+        manifold_of[pairs] = m
+    for i, m in enumerate(manifold_of):
+        yield i, centroids[i], manifolds.normals[m], max(float(deepest[m]), 0.0)
+
+
+class _OfPair(Shown):
+    def __init__(self, names: _Names, faces: Sequence[int]) -> None:
+        self.names: set[Any] = set(names)
+        self._faces: dict[Any, int] = dict(zip(names, faces))
+
+    def index(self, name: Hashable) -> int:
+        """Return the intersecting, or closest, face of the object of this name."""
+        return self._faces[name]
+
+
+class ContactData(_OfPair):
     """A contact: a triangle of one object that intersects a triangle of another.
 
-    names: set of the two objects' names. Points and vectors are in the world frame.
+    names: set of the two objects' names; point, (3,) float: the centre of the triangles' intersection; normal,
+    (3,) float, and depth: of their contact manifold. The normal is a unit vector from the first object to the
+    second, or zero if undefined. World frame.
     """
 
     def __init__(
         self, names: _Names, faces: Sequence[int], point: _Floats, normal: _Floats, depth: float
     ) -> None:
-        self.names: set[Any] = set(names)
-        self._faces: dict[Any, int] = dict(zip(names, faces))
-        self._point, self._normal, self._depth = point, normal, depth
-
-    @property
-    def normal(self) -> _Floats:
-        """(3,) float: unit, from the first object to the second, averaged over the contact region, or the
-        normal of the first's face if undefined.
-        """
-        return self._normal
-
-    @property
-    def point(self) -> _Floats:
-        """(3,) float: the centre of the intersection of the two triangles."""
-        return self._point
-
-    @property
-    def depth(self) -> float:
-        """float: an estimate of the penetration depth in the contact region, along the normal."""
-        return self._depth
-
-    def index(self, name: Hashable) -> int:
-        """Return the intersecting face of the object of this name."""
-        return self._faces[name]
+        super().__init__(names, faces)
+        self.point: _Floats = point
+        self.normal: _Floats = normal
+        self.depth: float = depth
 
 
-class DistanceData(Shown):
-    """The closest points of two objects. names: set of their names."""
+class DistanceData(_OfPair):
+    """The closest points of two objects. names: set of their names; distance: float, the world's unit."""
 
     def __init__(self, names: _Names, faces: Sequence[int], points: _Floats, distance: float) -> None:
-        self.names: set[Any] = set(names)
-        self._faces: dict[Any, int] = dict(zip(names, faces))
+        super().__init__(names, faces)
         self._points: dict[Any, _Floats] = dict(zip(names, points))
-        self._distance = distance
-
-    @property
-    def distance(self) -> float:
-        """float: the distance between the two objects, the world's unit."""
-        return self._distance
-
-    def index(self, name: Hashable) -> int:
-        """Return the closest face of the object of this name."""
-        return self._faces[name]
+        self.distance: float = distance
 
     def point(self, name: Hashable) -> _Floats:
         """Return the closest point on the object of this name, (3,) float, world frame."""
         return self._points[name]
 
 
-class _BodyCache:
-    """Cache of the bodies of recently used meshes, so that a mesh is converted only once."""
+_MOST = 64
+_bodies: OrderedDict[Any, Body] = OrderedDict()  # of recently used meshes, by their contents
+_lock = threading.Lock()
 
-    _MOST = 64
 
-    def __init__(self) -> None:
-        self._bodies: OrderedDict[Any, Body] = OrderedDict()
-
-    def body(self, mesh: _Mesh) -> Body:
-        """Return the body of an object with `vertices` and `faces`, without regions, which this module does not
-        use.
-        """
-        if isinstance(mesh, _core.Body):
-            return mesh
-        try:
-            vertices, faces = mesh.vertices, mesh.faces
-        except AttributeError:
-            kind = type(mesh).__name__
-            raise TypeError(f"mesh: expected something with vertices and faces, got {kind}") from None
-        vertices, faces = np.ascontiguousarray(vertices), np.ascontiguousarray(faces)
-        key = tuple(
-            (a.dtype.str, a.shape, hashlib.blake2b(a.view(np.uint8).reshape(-1) if a.size else b"").digest())
-            for a in (vertices, faces)
-        )
-        if key not in self._bodies:
-            self._bodies[key] = _core.Body(vertices, faces, regions=False, name="mesh")
-            if len(self._bodies) > self._MOST:
-                self._bodies.popitem(last=False)
-        self._bodies.move_to_end(key)
-        return self._bodies[key]
+def body_of(mesh: _Mesh) -> Body:
+    """Return the body of an object with `vertices` and `faces` (or `triangles`, as Open3D has them), without
+    regions. A mesh that was used recently is not converted again.
+    """
+    if isinstance(mesh, _core.Body):
+        return mesh
+    found = [getattr(mesh, name, None) for name in ("vertices", "faces", "triangles")]
+    vertices, faces = found[0], found[2] if found[1] is None else found[1]
+    if vertices is None or faces is None:
+        kind = type(mesh).__name__
+        raise TypeError(f"mesh: expected something with vertices and faces, got {kind}")
+    vertices, faces = np.ascontiguousarray(vertices), np.ascontiguousarray(faces)
+    key = tuple(
+        (a.dtype.str, a.shape, hashlib.blake2b(a.view(np.uint8).reshape(-1) if a.size else b"").digest())
+        for a in (vertices, faces)
+    )
+    with _lock:
+        body = _bodies.pop(key, None)
+    if body is None:
+        body = _core.Body(vertices, faces, regions=False, name="mesh")
+    with _lock:
+        _bodies[key] = body
+        if len(_bodies) > _MOST:
+            _bodies.popitem(last=False)
+    return body
 
 
 def _pose_of(transform: _Pose) -> _Floats:
@@ -172,35 +210,6 @@ def _pose_of(transform: _Pose) -> _Floats:
     if pose.shape != (4, 4):
         raise _core.InputError(f"transform: expected shape (4, 4), got {pose.shape}")
     return pose
-
-
-def _face_normal(body: Body, pose: _Floats, face: int) -> _Floats:
-    corners = body.vertices[body.faces[face][:3]] @ pose[:3, : body.dim].T
-    along = [0, 0, 1] if body.dim == 2 else corners[2] - corners[0]
-    normal: _Floats = np.cross(corners[1] - corners[0], along)
-    length = np.linalg.norm(normal)
-    return normal / length if length > 0 else normal
-
-
-def contacts_of(result: Result, body: Body, pose: _Floats) -> Iterator[tuple[int, _Floats, _Floats, float]]:
-    """Yield (index of the pair, point, normal, depth) for each pair of a result with contacts. body, pose: A."""
-    points, pair_of_point = result.points
-    centroids = np.zeros((len(result.pairs), 3))
-    np.add.at(centroids, pair_of_point, points)
-    centroids /= np.maximum(np.bincount(pair_of_point, minlength=len(centroids)), 1)[:, None]
-    faces = result.face_pairs
-    for region in result.regions:
-        normal, depth = region.normal, region.depth_estimate
-        for i in region.pairs:
-            yield int(i), centroids[i], normal if normal.any() else _face_normal(body, pose, faces[i, 0]), depth
-
-
-def _contact_data(names: _Names, result: Result, body: Body, pose: _Floats) -> _Contacts:
-    faces = result.face_pairs
-    return [
-        ContactData(names, (int(faces[i, 0]), int(faces[i, 1])), point, normal, depth)
-        for i, point, normal, depth in contacts_of(result, body, pose)
-    ]
 
 
 def _answer(first: Any, *rest: tuple[bool, Any]) -> Any:
@@ -224,56 +233,33 @@ class CollisionManager:
     `faces`, or a Body. The objects are bodies of a Scene.
     """
 
-    # The type of the return value depends on two flags; if these are not literals, it is Any.
+    # What queries return depends on two flags: a bool or float alone, or a tuple.
 
     def __init__(self) -> None:
-        self._cache = _BodyCache()
-        self._scene = _core.Scene()
+        self._crowd = Crowd()
         self._keys: dict[Any, int] = {}  # by name
-        self._names: dict[int, Any] = {}  # by key
 
     def __repr__(self) -> str:
         return f"<lrbscope.CollisionManager of {len(self._keys)} objects>"
 
     def add_object(self, name: Hashable, mesh: _Mesh, transform: _Pose = None) -> Body:
         """Add an object, or replace the one of this name. transform: (4, 4) float. Returns its Body."""
-        body = self._cache.body(mesh)
-        key = self._scene.add(body, _pose_of(transform))
+        body = body_of(mesh)
+        key = self._crowd.add(name, body, _pose_of(transform))
         if name in self._keys:
             self.remove_object(name)
-        self._keys[name], self._names[key] = key, name
+        self._keys[name] = key
         return body
 
     def remove_object(self, name: Hashable) -> None:
         """Remove an object. Raises ValueError if the name is unknown."""
-        key = self._known(name)
-        self._scene.remove(key)
-        del self._keys[name], self._names[key]
+        self._crowd.remove(self._known(name))
+        del self._keys[name]
 
     def set_transform(self, name: Hashable, transform: npt.ArrayLike) -> None:
         """Move an object. transform: (4, 4) float. Raises ValueError if the name is unknown."""
-        self._scene.move(self._known(name), _pose_of(transform))
+        self._crowd.scene.move(self._known(name), _pose_of(transform))
 
-    @overload
-    def in_collision_single(
-        self, mesh: _Mesh, transform: _Pose = None, return_names: _No = False, return_data: _No = False
-    ) -> bool: ...
-    @overload
-    def in_collision_single(
-        self, mesh: _Mesh, transform: _Pose = None, *, return_names: _Yes, return_data: _No = False
-    ) -> tuple[bool, set[Any]]: ...
-    @overload
-    def in_collision_single(
-        self, mesh: _Mesh, transform: _Pose = None, return_names: _No = False, *, return_data: _Yes
-    ) -> tuple[bool, _Contacts]: ...
-    @overload
-    def in_collision_single(
-        self, mesh: _Mesh, transform: _Pose = None, *, return_names: _Yes, return_data: _Yes
-    ) -> tuple[bool, set[Any], _Contacts]: ...
-    @overload
-    def in_collision_single(
-        self, mesh: _Mesh, transform: _Pose = None, return_names: bool = False, return_data: bool = False
-    ) -> Any: ...
     def in_collision_single(
         self, mesh: _Mesh, transform: _Pose = None, return_names: bool = False, return_data: bool = False
     ) -> Any:
@@ -282,26 +268,10 @@ class CollisionManager:
         With return_names also a set of names; with return_data also a list of ContactData, in which the mesh is
         called '__external' and is the first object.
         """
-        outside = self._cache.body(mesh), _pose_of(transform)
-        hit, names, data = self._collide(return_names, return_data, outside=outside)
+        outside = body_of(mesh), _pose_of(transform)
+        hit, names, data = self._collide(return_names, return_data, outside)
         return _answer(hit, (return_names, {b for _, b in names}), (return_data, data))
 
-    @overload
-    def in_collision_internal(self, return_names: _No = False, return_data: _No = False) -> bool: ...
-    @overload
-    def in_collision_internal(
-        self, return_names: _Yes, return_data: _No = False
-    ) -> tuple[bool, set[_Names]]: ...
-    @overload
-    def in_collision_internal(
-        self, return_names: _No = False, *, return_data: _Yes
-    ) -> tuple[bool, _Contacts]: ...
-    @overload
-    def in_collision_internal(
-        self, return_names: _Yes, return_data: _Yes
-    ) -> tuple[bool, set[_Names], _Contacts]: ...
-    @overload
-    def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any: ...
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Return True if any two objects collide.
 
@@ -311,26 +281,6 @@ class CollisionManager:
         hit, names, data = self._collide(return_names, return_data)
         return _answer(hit, (return_names, {_sorted_names(n) for n in names}), (return_data, data))
 
-    @overload
-    def in_collision_other(
-        self, other_manager: CollisionManager, return_names: _No = False, return_data: _No = False
-    ) -> bool: ...
-    @overload
-    def in_collision_other(
-        self, other_manager: CollisionManager, return_names: _Yes, return_data: _No = False
-    ) -> tuple[bool, set[_Names]]: ...
-    @overload
-    def in_collision_other(
-        self, other_manager: CollisionManager, return_names: _No = False, *, return_data: _Yes
-    ) -> tuple[bool, _Contacts]: ...
-    @overload
-    def in_collision_other(
-        self, other_manager: CollisionManager, return_names: _Yes, return_data: _Yes
-    ) -> tuple[bool, set[_Names], _Contacts]: ...
-    @overload
-    def in_collision_other(
-        self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
-    ) -> Any: ...
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
@@ -339,29 +289,9 @@ class CollisionManager:
         With return_names also a set of pairs of names, this manager's first; with return_data also a list of
         ContactData.
         """
-        hit, names, data = self._collide(return_names, return_data, other=other_manager)
+        hit, names, data = self._collide(return_names, return_data, self._other(other_manager))
         return _answer(hit, (return_names, set(names)), (return_data, data))
 
-    @overload
-    def min_distance_single(
-        self, mesh: _Mesh, transform: _Pose = None, return_name: _No = False, return_data: _No = False
-    ) -> float: ...
-    @overload
-    def min_distance_single(
-        self, mesh: _Mesh, transform: _Pose = None, *, return_name: _Yes, return_data: _No = False
-    ) -> tuple[float, Any]: ...
-    @overload
-    def min_distance_single(
-        self, mesh: _Mesh, transform: _Pose = None, return_name: _No = False, *, return_data: _Yes
-    ) -> tuple[float, _Nearest]: ...
-    @overload
-    def min_distance_single(
-        self, mesh: _Mesh, transform: _Pose = None, *, return_name: _Yes, return_data: _Yes
-    ) -> tuple[float, Any, _Nearest]: ...
-    @overload
-    def min_distance_single(
-        self, mesh: _Mesh, transform: _Pose = None, return_name: bool = False, return_data: bool = False
-    ) -> Any: ...
     def min_distance_single(
         self, mesh: _Mesh, transform: _Pose = None, return_name: bool = False, return_data: bool = False
     ) -> Any:
@@ -370,24 +300,9 @@ class CollisionManager:
         With return_name also its name; with return_data also a DistanceData, in which the mesh is called
         '__external'.
         """
-        outside = self._cache.body(mesh), _pose_of(transform)
-        distance, names, data = self._nearest(outside=outside)
+        distance, names, data = self._nearest((body_of(mesh), _pose_of(transform)))
         return _answer(distance, (return_name, names[1]), (return_data, data))
 
-    @overload
-    def min_distance_internal(self, return_names: _No = False, return_data: _No = False) -> float: ...
-    @overload
-    def min_distance_internal(self, return_names: _Yes, return_data: _No = False) -> tuple[float, _Names]: ...
-    @overload
-    def min_distance_internal(
-        self, return_names: _No = False, *, return_data: _Yes
-    ) -> tuple[float, _Nearest]: ...
-    @overload
-    def min_distance_internal(
-        self, return_names: _Yes, return_data: _Yes
-    ) -> tuple[float, _Names, _Nearest]: ...
-    @overload
-    def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any: ...
     def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Return the minimum distance between two objects, or inf if there are fewer than two.
 
@@ -397,26 +312,6 @@ class CollisionManager:
         names = names if data is None else _sorted_names(names)
         return _answer(distance, (return_names, names), (return_data, data))
 
-    @overload
-    def min_distance_other(
-        self, other_manager: CollisionManager, return_names: _No = False, return_data: _No = False
-    ) -> float: ...
-    @overload
-    def min_distance_other(
-        self, other_manager: CollisionManager, return_names: _Yes, return_data: _No = False
-    ) -> tuple[float, _Names]: ...
-    @overload
-    def min_distance_other(
-        self, other_manager: CollisionManager, return_names: _No = False, *, return_data: _Yes
-    ) -> tuple[float, _Nearest]: ...
-    @overload
-    def min_distance_other(
-        self, other_manager: CollisionManager, return_names: _Yes, return_data: _Yes
-    ) -> tuple[float, _Names, _Nearest]: ...
-    @overload
-    def min_distance_other(
-        self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
-    ) -> Any: ...
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
@@ -424,59 +319,43 @@ class CollisionManager:
 
         With return_names also the names, this manager's first; with return_data also a DistanceData.
         """
-        found = self._nearest(other=other_manager)
-        return _answer(found[0], (return_names, found[1]), (return_data, found[2]))
+        distance, names, data = self._nearest(self._other(other_manager))
+        return _answer(distance, (return_names, names), (return_data, data))
 
     def _known(self, name: Hashable) -> int:
         if name not in self._keys:
             raise ValueError(f"{name} not in collision manager!")
         return self._keys[name]
 
-    def _others(
-        self, outside: tuple[Body, _Floats] | None, other: CollisionManager | None
-    ) -> tuple[tuple[Scene | Body | None, _Floats | None], Callable[[int, int], _Names]]:
-        """Return the arguments that select the others in a scene's functions, and a function from pairs of
-        keys to names.
-        """
-        if outside is not None:
-            return outside, lambda a, b: (_EXTERNAL, self._names[b])
-        if other is self:  # each object intersects itself
-            other = self._copy()
-        names = self._names if other is None else other._names
-        scene = None if other is None else other._scene
-        return (scene, None), lambda a, b: (self._names[a], names[b])
-
-    def _copy(self) -> CollisionManager:
-        copy = CollisionManager()
-        for name, key in self._keys.items():
-            copy.add_object(name, self._scene.body(key), self._scene.pose(key))
-        return copy
+    def _other(self, manager: CollisionManager) -> Crowd:
+        crowd = manager._crowd
+        return crowd.copy() if crowd is self._crowd else crowd  # with itself: each object intersects itself
 
     def _collide(
-        self,
-        want_names: bool,
-        want_data: bool,
-        outside: tuple[Body, _Floats] | None = None,
-        other: CollisionManager | None = None,
+        self, want_names: bool, want_data: bool, other: Crowd | _Placed | None = None
     ) -> tuple[bool, list[_Names], _Contacts]:
         """Return whether any pair collides, the names of colliding objects, and their contacts."""
-        others, names_of = self._others(outside, other)
+        others, names_of = self._crowd.against(other, "__external")
+        scene = self._crowd.scene
         if not (want_names or want_data):
-            return self._scene.any_meet(*others), [], []
-        met = self._scene.collide(*others, mode="all" if want_data else "any", contacts=want_data)
+            return scene.any_meet(*others), [], []
+        met = scene.collide(*others, mode="all" if want_data else "any", contacts=want_data)
         keys = met.keys.tolist()
         names, data = [names_of(a, b) for a, b in keys], []
-        if want_data:
-            for pair, (a, _), result in zip(names, keys, met):
-                data += _contact_data(pair, result, *outside or (self._scene.body(a), self._scene.pose(a)))
+        theirs = other if isinstance(other, Crowd) else self._crowd
+        if not want_data:
+            return bool(names), names, data
+        for pair, (a, b), result in zip(names, keys, met):
+            first = other if isinstance(other, tuple) else self._crowd.placed(a)
+            faces = result.face_pairs.tolist()
+            for i, point, normal, depth in contacts_of(result, first, theirs.placed(b)):
+                data.append(ContactData(pair, faces[i], point, normal, depth))
         return bool(names), names, data
 
-    def _nearest(
-        self, outside: tuple[Body, _Floats] | None = None, other: CollisionManager | None = None
-    ) -> tuple[float, _Names, _Nearest]:
+    def _nearest(self, other: Crowd | _Placed | None = None) -> tuple[float, _Names, _Nearest]:
         """Return distance, names and data of the closest pair."""
-        others, names_of = self._others(outside, other)
-        found = self._scene.nearest(*others, solids=True)
+        others, names_of = self._crowd.against(other, "__external")
+        found = self._crowd.scene.nearest(*others, solids=True)
         if found is None:
             return math.inf, (None, None), None
         a, b, nearest = found

@@ -10,34 +10,33 @@
 Meshes (BVHModel) and boxes are exact. Round shapes are inscribed polyhedra with `facets` facets around: they
 deviate by at most 0.0012 of the radius for 64 facets. Intersections are decided exactly for these polyhedra.
 
-As in FCL, a mesh is a surface and a shape is a solid: an object inside a shape collides with it. Depths are
-estimates, but signed distances of shapes are proven. Unsupported features raise Unsupported: Halfspace,
-Plane, OcTree, costs, motions other than CCDM_TRANS and CCDM_LINEAR.
+As in FCL, a mesh is a surface and a shape is a solid: an object inside a shape collides with it. Contacts have the
+normal and depth of their contact manifold; signed distances of shapes are proven. Unsupported features raise
+Unsupported: Halfspace, Plane, OcTree, costs, motions other than CCDM_TRANS and CCDM_LINEAR.
 """
 
 from __future__ import annotations
 
-import enum
 import math
 import sys
-from typing import TYPE_CHECKING, Any, overload
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
-from .collision import Shown, _short, contacts_of
+from .collision import Crowd, Shown, _short, contacts_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     import numpy.typing as npt
 
-    from ._core import Body, Distance, FirstContact, Result, Scene
+    from ._core import Body, Result
 
     _Floats = npt.NDArray[np.float64]
     _Surface = tuple[_Floats, Any]  # vertices and faces
-    _CollisionCallback = Callable[["CollisionObject", "CollisionObject", Any], bool]
-    _DistanceCallback = Callable[["CollisionObject", "CollisionObject", Any], tuple[bool, float]]
 
 facets: int = 64
 """int: the number of facets around the axis, for shapes made afterwards."""
@@ -47,138 +46,114 @@ class Unsupported(NotImplementedError):
     """Raised for features of FCL that this module does not support."""
 
 
-class GJKSolverType(enum.IntEnum):
+class GJKSolverType(IntEnum):
     """The solver of FCL; has no effect here."""
 
-    GST_LIBCCD = 0
-    GST_INDEP = 1
+    GST_LIBCCD, GST_INDEP = range(2)
 
 
-class CCDMotionType(enum.IntEnum):
+class CCDMotionType(IntEnum):
     """The motion of objects between two poses."""
 
-    CCDM_TRANS = 0
-    CCDM_LINEAR = 1
-    CCDM_SCREW = 2
-    CCDM_SPLINE = 3
+    CCDM_TRANS, CCDM_LINEAR, CCDM_SCREW, CCDM_SPLINE = range(4)
 
 
-class CCDSolverType(enum.IntEnum):
+class CCDSolverType(IntEnum):
     """The solver of FCL; has no effect here."""
 
-    CCDC_NAIVE = 0
-    CCDC_CONSERVATIVE_ADVANCEMENT = 1
-    CCDC_RAY_SHOOTING = 2
-    CCDC_POLYNOMIAL_SOLVER = 3
+    CCDC_NAIVE, CCDC_CONSERVATIVE_ADVANCEMENT, CCDC_RAY_SHOOTING, CCDC_POLYNOMIAL_SOLVER = range(4)
 
 
-def _vector(given: npt.ArrayLike, size: int, what: str) -> _Floats:
-    out = np.array(given, dtype=float).squeeze()
-    if out.shape != (size,):
-        raise ValueError(f"{what}: expected {size} numbers, got shape {np.shape(given)}")
-    return out
-
-
-def _matrix(given: npt.ArrayLike) -> _Floats:
+def _array(given: npt.ArrayLike, shape: tuple[int, ...], what: str) -> _Floats:
     out = np.array(given, dtype=float)
-    if out.shape != (3, 3):
-        raise ValueError(f"a rotation: expected shape (3, 3), got {out.shape}")
+    out = out.squeeze() if len(shape) == 1 else out
+    if out.shape != shape:
+        raise ValueError(f"{what}: expected shape {shape}, got {np.shape(given)}")
     return out
 
 
-def _matrix_of_quaternion(given: npt.ArrayLike) -> _Floats:
-    """Return the rotation of the quaternion w, x, y, z, of any length but 0."""
-    q = _vector(given, 4, "a quaternion")
-    length = np.linalg.norm(q)
-    if not length > 0:
-        raise ValueError("a quaternion: expected one other than zero")
-    w, x, y, z = q / length
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+class _Posed:
+    """A rotation and a translation."""
 
-
-def _quaternion_of_matrix(r: _Floats) -> _Floats:
-    """Return w, x, y, z with w >= 0. Computes the largest component first, to avoid cancellation."""
-    squares = np.array([r[0, 0] + r[1, 1] + r[2, 2], *(2 * np.diag(r) - np.trace(r))]) + 1
-    differences = {(0, 1): r[2, 1] - r[1, 2], (0, 2): r[0, 2] - r[2, 0], (0, 3): r[1, 0] - r[0, 1]}
-    sums = {(1, 2): r[0, 1] + r[1, 0], (1, 3): r[0, 2] + r[2, 0], (2, 3): r[1, 2] + r[2, 1]}
-    products = {**differences, **sums}  # four times q[i] q[j]
-    i = int(np.argmax(squares))
-    q = np.array([squares[i] if j == i else products[min(i, j), max(i, j)] for j in range(4)])
-    q /= np.linalg.norm(q)
-    return -q if q[0] < 0 else q
-
-
-class Transform:
-    """A rotation and a translation: Transform(), (q), (R), (T), (q, T), (R, T) or (Transform); q is w, x,
-    y, z.
-    """
-
-    def __init__(self, *args: npt.ArrayLike | Transform) -> None:
+    def __init__(self) -> None:
         self._r, self._t = np.eye(3), np.zeros(3)
-        given: tuple[Any, ...] = args
-        if len(given) > 2:
-            raise ValueError("Too many arguments to Transform().")
-        if len(given) == 1 and isinstance(given[0], Transform):
-            self._r, self._t = given[0].getRotation(), given[0].getTranslation()
-        elif len(given) == 1 and np.shape(given[0]) == (3,):
-            self.setTranslation(given[0])
-        elif given:
-            if np.shape(given[0]) == (3, 3):
-                self.setRotation(given[0])
-            elif np.shape(given[0]) == (4,):
-                self.setQuatRotation(given[0])
-            else:
-                raise ValueError("Invalid input to Transform().")
-            if len(given) == 2:
-                self.setTranslation(given[1])
-
-    def getRotation(self) -> _Floats:
-        """Return the rotation, (3, 3)."""
-        return self._r.copy()
 
     def getTranslation(self) -> _Floats:
         """Return the translation, (3,)."""
         return self._t.copy()
 
-    def getQuatRotation(self) -> _Floats:
-        """Return the rotation as w, x, y, z."""
-        return _quaternion_of_matrix(self._r)
+    def setTranslation(self, T: npt.ArrayLike) -> None:
+        """Set the translation, (3,)."""
+        self._t = _array(T, (3,), "a translation")
+
+    def getRotation(self) -> _Floats:
+        """Return the rotation, (3, 3)."""
+        return self._r.copy()
 
     def setRotation(self, R: npt.ArrayLike) -> None:
         """Set the rotation, (3, 3)."""
-        self._r = _matrix(R)
+        self._r = _array(R, (3, 3), "a rotation")
 
-    def setTranslation(self, T: npt.ArrayLike) -> None:
-        """Set the translation, (3,)."""
-        self._t = _vector(T, 3, "a translation")
+    def getQuatRotation(self) -> _Floats:
+        """Return the rotation as w, x, y, z with w >= 0."""
+        r = self._r
+        squares = np.array([np.trace(r), *(2 * np.diag(r) - np.trace(r))]) + 1
+        differences = {(0, 1): r[2, 1] - r[1, 2], (0, 2): r[0, 2] - r[2, 0], (0, 3): r[1, 0] - r[0, 1]}
+        sums = {(1, 2): r[0, 1] + r[1, 0], (1, 3): r[0, 2] + r[2, 0], (2, 3): r[1, 2] + r[2, 1]}
+        products = {**differences, **sums}  # four times q[i] q[j]
+        i = int(np.argmax(squares))  # the largest component, to avoid cancellation
+        q = np.array([squares[i] if j == i else products[min(i, j), max(i, j)] for j in range(4)])
+        q /= np.linalg.norm(q)
+        return -q if q[0] < 0 else q
 
     def setQuatRotation(self, q: npt.ArrayLike) -> None:
-        """Set the rotation from w, x, y, z."""
-        self._r = _matrix_of_quaternion(q)
+        """Set the rotation from w, x, y, z, of any length but 0."""
+        q = _array(q, (4,), "a quaternion")
+        length = np.linalg.norm(q)
+        if not length > 0:
+            raise ValueError("a quaternion: expected one other than zero")
+        w, v = q[0] / length, q[1:] / length
+        self._r = (w * w - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * np.cross(v, np.eye(3)).T
+
+    @property
+    def pose(self) -> _Floats:
+        """(4, 4) float: the pose."""
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = self._r, self._t
+        return pose
+
+
+class Transform(_Posed):
+    """A rotation and a translation: Transform(), (q), (R), (T), (q, T), (R, T) or (Transform); q is w, x,
+    y, z.
+    """
+
+    def __init__(self, *args: npt.ArrayLike | _Posed) -> None:
+        super().__init__()
+        given: list[Any] = list(args)
+        if len(given) > 2:
+            raise ValueError("Too many arguments to Transform().")
+        if len(given) == 1 and isinstance(given[0], _Posed):
+            given = [given[0].getRotation(), given[0].getTranslation()]
+        if len(given) == 2 or (given and np.shape(given[0]) == (3,)):
+            self.setTranslation(given.pop())
+        if given and np.shape(given[0]) == (3, 3):
+            self.setRotation(given[0])
+        elif given and np.shape(given[0]) == (4,):
+            self.setQuatRotation(given[0])
+        elif given:
+            raise ValueError("Invalid input to Transform().")
 
     def __repr__(self) -> str:
         rotation, translation = (np.array2string(x, separator=", ") for x in (self._r, self._t))
         return f"<lrbscope.fcl.Transform {' '.join(rotation.split())}, {' '.join(translation.split())}>"
-
-    def _pose(self) -> _Floats:
-        pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = self._r, self._t
-        return pose
 
 
 class CollisionGeometry:
     """A shape. Its body is made on first use."""
 
     _node_type = 0
-    _object_type = 0
-    _is_shape = True  # a solid; else a surface
-
+    _object_type = 2  # a shape: a solid; 1: a mesh, a surface
     _made: Body | None = None
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -224,7 +199,6 @@ class BVHModel(CollisionGeometry):
 
     _node_type = 5  # OBBRSS, as in python-fcl
     _object_type = 1
-    _is_shape = False
 
     def __init__(self) -> None:
         self._state = 0  # 1: after beginModel(), 2: after endModel()
@@ -247,16 +221,12 @@ class BVHModel(CollisionGeometry):
     def addVertex(self, x: float, y: float, z: float) -> bool:
         """Add a vertex."""
         self._check(1)
-        self._vertices.append(_vector([x, y, z], 3, "a vertex"))
+        self._vertices.append(_array([x, y, z], (3,), "a vertex"))
         return True
 
     def addTriangle(self, v1: npt.ArrayLike, v2: npt.ArrayLike, v3: npt.ArrayLike) -> bool:
         """Add a triangle of three points, (3,) each."""
-        self._check(1)
-        n = len(self._vertices)
-        self._vertices += [_vector(v, 3, "a vertex") for v in (v1, v2, v3)]
-        self._triangles.append((n, n + 1, n + 2))
-        return True
+        return self.addSubModel([_array(v, (3,), "a vertex") for v in (v1, v2, v3)], [[0, 1, 2]])
 
     def addSubModel(self, verts: npt.ArrayLike, triangles: npt.ArrayLike) -> bool:
         """Add a mesh: verts (n, 3) float, triangles (m, 3) int."""
@@ -295,15 +265,11 @@ class Convex(CollisionGeometry):
     """
 
     _node_type = 15
-    _object_type = 2
 
     def __init__(self, vertices: npt.ArrayLike, num_faces: int, faces: Iterable[int]) -> None:
         self.num_faces = num_faces
-        row, at = [int(i) for i in faces], 0
-        self._faces: list[list[int]] = []
-        while at < len(row):
-            self._faces.append(row[at + 1 : at + 1 + row[at]])
-            at += 1 + row[at]
+        rest = iter(map(int, faces))
+        self._faces = [[next(rest) for _ in range(n)] for n in rest]
         if len(self._faces) != num_faces:
             raise ValueError(f"faces: expected {num_faces}, got {len(self._faces)}")
         self._vertices = np.array(vertices, dtype=float)
@@ -316,10 +282,9 @@ class TriangleP(CollisionGeometry):
     """A triangle of three points, (3,) each."""
 
     _node_type = 18
-    _object_type = 2
 
     def __init__(self, a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> None:
-        self.a, self.b, self.c = (_vector(v, 3, "a corner") for v in (a, b, c))
+        self.a, self.b, self.c = (_array(v, (3,), "a corner") for v in (a, b, c))
 
     def _surface(self) -> _Surface:
         return np.array([self.a, self.b, self.c]), np.array([[0, 1, 2]])
@@ -329,7 +294,6 @@ class Box(CollisionGeometry):
     """A box with these side lengths, centred at the origin."""
 
     _node_type = 9
-    _object_type = 2
 
     def __init__(self, x: float, y: float, z: float) -> None:
         self.side = np.array([x, y, z], dtype=float)
@@ -340,106 +304,97 @@ class Box(CollisionGeometry):
         return corners * self.side, [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]
 
 
-def _turned(profile: Sequence[tuple[float, float]]) -> _Surface:
-    """Return the surface of revolution about z of a profile, points (radius, z) from the lower pole to the
-    upper.
-    """
-    angles = 2 * np.pi * np.arange(facets) / facets
-    around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    rings = [np.column_stack([around * r, np.full(facets, z)]) for r, z in profile[1:-1]]
-    poles = [np.array([[0, 0, z]]) for _, z in (profile[0], profile[-1])]
-    faces = []
-    for k in range(facets):
-        n = (k + 1) % facets
-        faces.append((0, 1 + n, 1 + k))
-        for ring in range(len(rings) - 1):
-            low, high = 1 + ring * facets, 1 + (ring + 1) * facets
-            faces += [(low + k, low + n, high + n), (low + k, high + n, high + k)]
-        last = 1 + (len(rings) - 1) * facets
-        faces.append((last + facets, last + k, last + n))
-    return np.concatenate([poles[0], *rings, poles[1]]), faces
+class _Round(CollisionGeometry):
+    """A surface of revolution about z."""
+
+    radius: float
+    lz: float
+
+    def __init__(self, radius: float, lz: float) -> None:
+        self.radius, self.lz = float(radius), float(lz)
+
+    def _profile(self) -> list[tuple[float, float]]:
+        """Return points (radius, z) from the lower pole to the upper."""
+        raise NotImplementedError
+
+    def _surface(self) -> _Surface:
+        profile = self._profile()
+        angles = 2 * np.pi * np.arange(facets) / facets
+        around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        rings = [np.column_stack([around * r, np.full(facets, z)]) for r, z in profile[1:-1]]
+        poles = [np.array([[0, 0, z]]) for _, z in (profile[0], profile[-1])]
+        faces, last = [], 1 + (len(rings) - 1) * facets
+        for k in range(facets):
+            n = (k + 1) % facets
+            faces.append((0, 1 + n, 1 + k))
+            for low in range(1, last, facets):
+                faces += [(low + k, low + n, low + facets + n), (low + k, low + facets + n, low + facets + k)]
+            faces.append((last + facets, last + k, last + n))
+        return np.concatenate([poles[0], *rings, poles[1]]), faces
 
 
-def _half_circle(radius: float, begin: float, end: float) -> list[tuple[float, float]]:
-    """Return points of a half circle between two angles of latitude."""
+def _arc(radius: float, begin: float, end: float, z: float = 0) -> list[tuple[float, float]]:
+    """Return points of an arc about the height z between two angles of latitude."""
     angles = np.linspace(begin, end, facets // 2 + 1 if end - begin > 2 else facets // 4 + 1)
-    return [(radius * math.cos(a), radius * math.sin(a)) for a in angles]
+    return [(radius * math.cos(a), z + radius * math.sin(a)) for a in angles]
+
+
+class Sphere(_Round):
+    """A sphere."""
+
+    _node_type = 10
+
+    def __init__(self, radius: float) -> None:
+        self.radius = float(radius)
+
+    def _profile(self) -> list[tuple[float, float]]:
+        return _arc(self.radius, -math.pi / 2, math.pi / 2)
 
 
 class Ellipsoid(CollisionGeometry):
     """An ellipsoid with these radii along x, y and z."""
 
     _node_type = 11
-    _object_type = 2
 
     def __init__(self, a: float, b: float, c: float) -> None:
         self.radii = np.array([a, b, c], dtype=float)
 
     def _surface(self) -> _Surface:
-        vertices, faces = _turned(_half_circle(1, -math.pi / 2, math.pi / 2))
+        vertices, faces = Sphere(1)._surface()
         return vertices * self.radii, faces
 
 
-class Sphere(CollisionGeometry):
-    """A sphere."""
-
-    _node_type = 10
-    _object_type = 2
-
-    def __init__(self, radius: float) -> None:
-        self.radius = float(radius)
-
-    def _surface(self) -> _Surface:
-        vertices, faces = _turned(_half_circle(1, -math.pi / 2, math.pi / 2))
-        return vertices * self.radius, faces
-
-
-class Capsule(CollisionGeometry):
+class Capsule(_Round):
     """A cylinder of height lz along z with a hemisphere on either end."""
 
     _node_type = 12
-    _object_type = 2
 
-    def __init__(self, radius: float, lz: float) -> None:
-        self.radius, self.lz = float(radius), float(lz)
-
-    def _surface(self) -> _Surface:
-        half = self.lz / 2
-        low = [(r, z - half) for r, z in _half_circle(self.radius, -math.pi / 2, 0)]
-        high = [(r, z + half) for r, z in _half_circle(self.radius, 0, math.pi / 2)]
-        return _turned(low + high)
+    def _profile(self) -> list[tuple[float, float]]:
+        r, half = self.radius, self.lz / 2
+        return _arc(r, -math.pi / 2, 0, -half) + _arc(r, 0, math.pi / 2, half)
 
 
-class Cone(CollisionGeometry):
+class Cone(_Round):
     """A cone of height lz along z, base down, with the midpoint of its axis at the origin."""
 
     _node_type = 13
-    _object_type = 2
 
-    def __init__(self, radius: float, lz: float) -> None:
-        self.radius, self.lz = float(radius), float(lz)
-
-    def _surface(self) -> _Surface:
-        half = self.lz / 2
-        return _turned([(0, -half), (self.radius, -half), (0, half)])
+    def _profile(self) -> list[tuple[float, float]]:
+        return [(0, -self.lz / 2), (self.radius, -self.lz / 2), (0, self.lz / 2)]
 
 
-class Cylinder(CollisionGeometry):
+class Cylinder(_Round):
     """A cylinder of height lz along z, centred at the origin."""
 
     _node_type = 14
-    _object_type = 2
 
-    def __init__(self, radius: float, lz: float) -> None:
-        self.radius, self.lz = float(radius), float(lz)
-
-    def _surface(self) -> _Surface:
-        half = self.lz / 2
-        return _turned([(0, -half), (self.radius, -half), (self.radius, half), (0, half)])
+    def _profile(self) -> list[tuple[float, float]]:
+        r, half = self.radius, self.lz / 2
+        return [(0, -half), (r, -half), (r, half), (0, half)]
 
 
 class _Missing(CollisionGeometry):
-    _instead = ""
+    _instead = "it has no end; take a Box that is large enough"
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         raise Unsupported(f"lrbscope.fcl has no {type(self).__name__}: {self._instead}")
@@ -448,13 +403,9 @@ class _Missing(CollisionGeometry):
 class Halfspace(_Missing):
     """Raises Unsupported: it is unbounded."""
 
-    _instead = "it has no end; take a Box that is large enough"
-
 
 class Plane(_Missing):
     """Raises Unsupported: it is unbounded."""
-
-    _instead = "it has no end; take a thin Box that is large enough"
 
 
 class OcTree(_Missing):
@@ -463,7 +414,7 @@ class OcTree(_Missing):
     _instead = "make a mesh of its occupied cells"
 
 
-class CollisionObject:
+class CollisionObject(_Posed):
     """A geometry at a pose."""
 
     def __init__(
@@ -472,10 +423,10 @@ class CollisionObject:
         if geom is None:
             raise ValueError("a CollisionObject needs a geometry")
         self._geom = geom
-        self._tf = Transform() if tf is None else Transform(tf)
+        self.setTransform(Transform() if tf is None else tf)
 
     def __repr__(self) -> str:
-        return f"<lrbscope.fcl.CollisionObject of {self._geom!r} at {self._tf!r}>"
+        return f"<lrbscope.fcl.CollisionObject of {self._geom!r} at {self.getTransform()!r}>"
 
     def getObjectType(self) -> int:
         """Return FCL's type number: 1 for a mesh, 2 for a shape."""
@@ -485,37 +436,13 @@ class CollisionObject:
         """Return FCL's number of the kind of shape."""
         return self._geom.getNodeType()
 
-    def getTranslation(self) -> _Floats:
-        """Return the translation, (3,)."""
-        return self._tf.getTranslation()
-
-    def setTranslation(self, vec: npt.ArrayLike) -> None:
-        """Set the translation, (3,)."""
-        self._tf.setTranslation(vec)
-
-    def getRotation(self) -> _Floats:
-        """Return the rotation, (3, 3)."""
-        return self._tf.getRotation()
-
-    def setRotation(self, mat: npt.ArrayLike) -> None:
-        """Set the rotation, (3, 3)."""
-        self._tf.setRotation(mat)
-
-    def getQuatRotation(self) -> _Floats:
-        """Return the rotation as w, x, y, z."""
-        return self._tf.getQuatRotation()
-
-    def setQuatRotation(self, q: npt.ArrayLike) -> None:
-        """Set the rotation from w, x, y, z."""
-        self._tf.setQuatRotation(q)
-
     def getTransform(self) -> Transform:
         """Return the pose."""
-        return Transform(self._tf)
+        return Transform(self)
 
     def setTransform(self, tf: Transform) -> None:
         """Set the pose."""
-        self._tf = Transform(tf)
+        self._r, self._t = tf.getRotation(), tf.getTranslation()
 
     def isOccupied(self) -> bool:
         """Return True: there are no octree cells."""
@@ -525,9 +452,7 @@ class CollisionObject:
         """Return False."""
         return False
 
-    def isUncertain(self) -> bool:
-        """Return False."""
-        return False
+    isUncertain = isFree
 
     @property
     def body(self) -> Body:
@@ -535,67 +460,59 @@ class CollisionObject:
         return self._geom._body()
 
     @property
-    def pose(self) -> _Floats:
-        """(4, 4) float: the pose."""
-        return self._tf._pose()
+    def _is_shape(self) -> bool:
+        return self._geom._object_type == 2
 
 
+@dataclass(repr=False, eq=False)
 class Contact(Shown):
     """A contact of two objects. b1, b2: triangles, -1 for shapes; normal: from o1 to o2; pos: world frame."""
 
-    def __init__(self) -> None:
-        self.o1: CollisionGeometry | None = None
-        self.o2: CollisionGeometry | None = None
-        self.b1 = self.b2 = -1
-        self.normal: _Floats = np.zeros(3)
-        self.pos: _Floats = np.zeros(3)
-        self.penetration_depth = 0.0
+    o1: CollisionGeometry | None = None
+    o2: CollisionGeometry | None = None
+    b1: int = -1
+    b2: int = -1
+    normal: _Floats = field(default_factory=lambda: np.zeros(3))
+    pos: _Floats = field(default_factory=lambda: np.zeros(3))
+    penetration_depth: float = 0.0
 
 
 class CostSource:
     """Never created: costs are not supported."""
 
 
+@dataclass(repr=False, eq=False)
 class CollisionRequest(Shown):
     """num_max_contacts: maximum number of contacts; enable_contact: with point, normal and depth."""
 
-    def __init__(
-        self,
-        num_max_contacts: int = 1,
-        enable_contact: bool = False,
-        num_max_cost_sources: int = 1,
-        enable_cost: bool = False,
-        use_approximate_cost: bool = True,
-        gjk_solver_type: GJKSolverType = GJKSolverType.GST_LIBCCD,
-    ) -> None:
-        if enable_cost:
+    num_max_contacts: int = 1
+    enable_contact: bool = False
+    num_max_cost_sources: int = 1
+    enable_cost: bool = False
+    use_approximate_cost: bool = True
+    gjk_solver_type: int = GJKSolverType.GST_LIBCCD
+
+    def __post_init__(self) -> None:
+        if self.enable_cost:
             raise Unsupported("lrbscope.fcl does not support costs; leave enable_cost out")
-        self.num_max_contacts, self.enable_contact = num_max_contacts, enable_contact
-        self.num_max_cost_sources, self.enable_cost = num_max_cost_sources, enable_cost
-        self.use_approximate_cost, self.gjk_solver_type = use_approximate_cost, gjk_solver_type
 
 
+@dataclass(repr=False, eq=False)
 class CollisionResult(Shown):
     """is_collision: bool; contacts: list of Contact."""
 
-    def __init__(self) -> None:
-        self.is_collision = False
-        self.contacts: list[Contact] = []
-        self.cost_sources: list[CostSource] = []
+    is_collision: bool = False
+    contacts: list[Contact] = field(default_factory=list)
+    cost_sources: list[CostSource] = field(default_factory=list)
 
 
+@dataclass(repr=False, eq=False)
 class DistanceRequest(Shown):
     """Closest points are always computed."""
 
-    def __init__(
-        self,
-        enable_nearest_points: bool = False,
-        enable_signed_distance: bool = False,
-        gjk_solver_type: GJKSolverType = GJKSolverType.GST_LIBCCD,
-    ) -> None:
-        self.enable_nearest_points = enable_nearest_points
-        self.enable_signed_distance = enable_signed_distance
-        self.gjk_solver_type = gjk_solver_type
+    enable_nearest_points: bool = False
+    enable_signed_distance: bool = False
+    gjk_solver_type: int = GJKSolverType.GST_LIBCCD
 
 
 class DistanceResult(Shown):
@@ -609,27 +526,23 @@ class DistanceResult(Shown):
         self.b1 = self.b2 = -1
 
 
+@dataclass(repr=False, eq=False)
 class ContinuousCollisionRequest(Shown):
     """toc_err: maximum error of the time of contact. The rest has no effect here."""
 
-    def __init__(
-        self,
-        num_max_iterations: int = 10,
-        toc_err: float = 0.0001,
-        ccd_motion_type: CCDMotionType = CCDMotionType.CCDM_TRANS,
-        gjk_solver_type: GJKSolverType = GJKSolverType.GST_LIBCCD,
-        ccd_solver_type: CCDSolverType = CCDSolverType.CCDC_NAIVE,
-    ) -> None:
-        self.num_max_iterations, self.toc_err = num_max_iterations, toc_err
-        self.ccd_motion_type = ccd_motion_type
-        self.gjk_solver_type, self.ccd_solver_type = gjk_solver_type, ccd_solver_type
+    num_max_iterations: int = 10
+    toc_err: float = 0.0001
+    ccd_motion_type: int = CCDMotionType.CCDM_TRANS
+    gjk_solver_type: int = GJKSolverType.GST_LIBCCD
+    ccd_solver_type: int = CCDSolverType.CCDC_NAIVE
 
 
+@dataclass(repr=False, eq=False)
 class ContinuousCollisionResult(Shown):
     """is_collide: bool; time_of_contact: from 0 to 1, 1 if there is no contact."""
 
-    def __init__(self, is_collide: bool = False, time_of_contact: float = 1.0) -> None:
-        self.is_collide, self.time_of_contact = is_collide, time_of_contact
+    is_collide: bool = False
+    time_of_contact: float = 1.0
 
 
 class CollisionData(Shown):
@@ -638,8 +551,7 @@ class CollisionData(Shown):
     def __init__(
         self, request: CollisionRequest | None = None, result: CollisionResult | None = None
     ) -> None:
-        self.request = CollisionRequest() if request is None else request
-        self.result = CollisionResult() if result is None else result
+        self.request, self.result = request or CollisionRequest(), result or CollisionResult()
         self.done = False
 
 
@@ -647,22 +559,19 @@ class DistanceData(Shown):
     """Data that managers pass to distance callbacks."""
 
     def __init__(self, request: DistanceRequest | None = None, result: DistanceResult | None = None) -> None:
-        self.request = DistanceRequest() if request is None else request
-        self.result = DistanceResult() if result is None else result
+        self.request, self.result = request or DistanceRequest(), result or DistanceResult()
         self.done = False
 
 
 def _holds(o1: CollisionObject, o2: CollisionObject, relation: str) -> bool:
     """Return True if a shape contains the other object. A mesh is a surface and contains nothing."""
     holder = {"a_inside_b": o2, "b_inside_a": o1}.get(relation)
-    return holder is not None and holder._geom._is_shape
+    return holder is not None and holder._is_shape
 
 
-def _contact(o1: CollisionObject, o2: CollisionObject, b1: int = -1, b2: int = -1) -> Contact:
-    c = Contact()
-    c.o1, c.o2 = o1._geom, o2._geom
-    c.b1, c.b2 = (-1 if o._geom._is_shape else int(b) for o, b in ((o1, b1), (o2, b2)))
-    return c
+def _ids(o1: CollisionObject, o2: CollisionObject, b1: int = -1, b2: int = -1) -> tuple[Any, ...]:
+    """Return o1, o2, b1, b2 of a result."""
+    return (o1._geom, o2._geom, *(-1 if o._is_shape else int(b) for o, b in ((o1, b1), (o2, b2))))
 
 
 def _contacts(o1: CollisionObject, o2: CollisionObject, result: Result, full: bool) -> Iterator[Contact]:
@@ -670,22 +579,21 @@ def _contacts(o1: CollisionObject, o2: CollisionObject, result: Result, full: bo
 
     If one object is a shape: for each triangle of the other. For two shapes: for each contact region.
     """
-    found: Iterable[tuple[int, Any, Any, float]] = ((i, None, None, 0.0) for i in range(len(result.pairs)))
+    regions = result.regions if o1._is_shape and o2._is_shape else []
+    of_region = {int(i): n for n, region in enumerate(regions) for i in region.pairs}
+    found: Iterable[Any] = ((i,) for i in range(len(result.pairs)))
     if full:
-        found = contacts_of(result, o1.body, o1.pose)
-    of_region = {}
-    if full and o1._geom._is_shape and o2._geom._is_shape:
-        of_region = {int(i): n for n, region in enumerate(result.regions) for i in region.pairs}
+        found = contacts_of(result, (o1.body, o1.pose), (o2.body, o2.pose))
     seen = set()
-    for i, point, normal, depth in found:
-        c = _contact(o1, o2, *result.pairs[i])
+    for i, *geometry in found:
+        c = Contact(*_ids(o1, o2, *result.pairs[i]))
         key = (c.b1, c.b2, of_region.get(i))
         if key in seen:
             continue
         seen.add(key)
         if full:
-            c.pos = result.regions[of_region[i]].centroid if of_region else point
-            c.normal, c.penetration_depth = normal, depth
+            c.pos, c.normal, c.penetration_depth = geometry
+            c.pos = regions[of_region[i]].centroid if regions else c.pos
         yield c
 
 
@@ -696,26 +604,19 @@ def collide(
     result: CollisionResult | None = None,
 ) -> int:
     """Find the contacts of two objects. Returns their number; adds them to `result`."""
-    request = CollisionRequest() if request is None else request
-    result = CollisionResult() if result is None else result
-    many = request.num_max_contacts > 1 or request.enable_contact
-    found: Result = _core.collide(
-        o1.body,
-        o2.body,
-        o2.pose,
-        o1.pose,
-        mode="all" if many else "any",
-        contacts=bool(request.enable_contact),
-    )
+    request, result = request or CollisionRequest(), result or CollisionResult()
+    full = bool(request.enable_contact)
+    mode: Any = "all" if request.num_max_contacts > 1 or full else "any"
+    found = _core.collide(o1.body, o2.body, o2.pose, o1.pose, mode=mode, contacts=full)
     contacts: list[Contact] = []
     if len(found.pairs):
-        for c in _contacts(o1, o2, found, request.enable_contact):
+        for c in _contacts(o1, o2, found, full):
             if len(contacts) >= request.num_max_contacts:
                 break
             contacts.append(c)
     elif _holds(o1, o2, found.relation):
-        contacts.append(_contact(o1, o2))
         inner = o1 if found.relation == "a_inside_b" else o2
+        contacts.append(Contact(*_ids(o1, o2)))
         contacts[0].pos = inner.pose[:3, : inner.body.dim] @ inner.body.vertices[0] + inner.pose[:3, 3]
     result.is_collision = result.is_collision or bool(len(found.pairs)) or bool(contacts)
     result.contacts += contacts
@@ -732,36 +633,32 @@ def distance(
 
     0 for intersecting meshes, -1 if a shape and another object overlap. Updates `result` if it is smaller.
     """
-    request = DistanceRequest() if request is None else request
-    result = DistanceResult() if result is None else result
-    found: Distance = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
-    shapes = [o for o in (o1, o2) if o._geom._is_shape]
+    request, result = request or DistanceRequest(), result or DistanceResult()
+    found = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
+    shapes = [o for o in (o1, o2) if o._is_shape]
     value, points = found.upper, [found.points[0], found.points[1]]
     if (found.meet and shapes) or _holds(o1, o2, found.relation):
         value = -1.0
         if request.enable_signed_distance and len(shapes) == 2:
             overlap = _core.clash(o1.body, o2.body, o2.pose, o1.pose, volume=False)
-            value = -overlap.depth[1]
+            value = -overlap.depth[1] if overlap.depth else value
             # The points at which the shapes touch once they are separated, with the second one moved back.
-            apart = o2.pose.copy()
-            apart[:3, 3] += overlap.translation
-            points = _core.distance(o1.body, o2.body, apart, o1.pose).points
-            points = [points[0], points[1] - overlap.translation]
+            separate = o2.pose
+            separate[:3, 3] += overlap.translation
+            points = list(_core.distance(o1.body, o2.body, separate, o1.pose).points)
+            points[1] = points[1] - overlap.translation
     if value < result.min_distance:
-        result.min_distance = value
-        result.nearest_points = points
-        ids = _contact(o1, o2, *found.triangles)
-        result.o1, result.o2, result.b1, result.b2 = ids.o1, ids.o2, ids.b1, ids.b2
+        result.min_distance, result.nearest_points = value, points
+        result.o1, result.o2, result.b1, result.b2 = _ids(o1, o2, *found.triangles)
     return value
 
 
 def defaultCollisionCallback(o1: CollisionObject, o2: CollisionObject, cdata: CollisionData) -> bool:
     """Collide two objects; returns True once there are more contacts than requested."""
-    if cdata.done:
-        return True
-    collide(o1, o2, cdata.request, cdata.result)
-    if cdata.result.is_collision and len(cdata.result.contacts) > cdata.request.num_max_contacts:
-        cdata.done = True
+    if not cdata.done:
+        collide(o1, o2, cdata.request, cdata.result)
+        found = cdata.result
+        cdata.done = found.is_collision and len(found.contacts) > cdata.request.num_max_contacts
     return cdata.done
 
 
@@ -769,9 +666,8 @@ def defaultDistanceCallback(
     o1: CollisionObject, o2: CollisionObject, cdata: DistanceData
 ) -> tuple[bool, float]:
     """Measure two objects; returns whether to stop, and the minimum distance so far."""
-    if cdata.done:
-        return True, cdata.result.min_distance
-    distance(o1, o2, cdata.request, cdata.result)
+    if not cdata.done:
+        distance(o1, o2, cdata.request, cdata.result)
     nearest = cdata.result.min_distance
     return cdata.done or nearest <= 0, nearest
 
@@ -787,10 +683,10 @@ class DynamicAABBTreeCollisionManager:
     octree_as_geometry_collide, octree_as_geometry_distance = True, False
 
     def __init__(self) -> None:
-        self.clear()
+        self._crowd = Crowd()
 
     def __repr__(self) -> str:
-        return f"<lrbscope.fcl.DynamicAABBTreeCollisionManager of {len(self._objects)} objects>"
+        return f"<lrbscope.fcl.DynamicAABBTreeCollisionManager of {self.size()} objects>"
 
     def registerObjects(self, other_objs: Iterable[CollisionObject]) -> None:
         """Add objects."""
@@ -801,13 +697,12 @@ class DynamicAABBTreeCollisionManager:
         """Add an object."""
         if not isinstance(obj, CollisionObject):
             raise TypeError(f"expected a CollisionObject, got {type(obj).__name__}")
-        self._objects[self._scene.add(obj.body, obj.pose)] = obj
+        self._crowd.add(obj, obj.body, obj.pose)
 
     def unregisterObject(self, obj: CollisionObject) -> None:
         """Remove an object if it is present."""
-        for key in [key for key, o in self._objects.items() if o is obj]:
-            self._scene.remove(key)
-            del self._objects[key]
+        for key in [key for key, o in self._crowd.labels.items() if o is obj]:
+            self._crowd.remove(key)
 
     def setup(self) -> None:
         """Do nothing."""
@@ -817,84 +712,61 @@ class DynamicAABBTreeCollisionManager:
 
     def getObjects(self) -> list[CollisionObject]:
         """Return a list of the objects."""
-        return list(self._objects.values())
+        return list(self._crowd.labels.values())
 
     def clear(self) -> None:
         """Remove all objects."""
-        self._scene = _core.Scene()
-        self._objects: dict[int, CollisionObject] = {}  # by key
+        self._crowd = Crowd()
 
     def empty(self) -> bool:
         """Return whether there are no objects."""
-        return not self._objects
+        return not self._crowd.labels
 
     def size(self) -> int:
         """Return the number of objects."""
-        return len(self._objects)
+        return len(self._crowd.labels)
 
-    def _moved(self) -> Scene:
-        """Return the scene with all objects at their current poses and with their current bodies."""
-        objects = list(self._objects.items())
-        if any(o.body is not self._scene.body(key) for key, o in objects):
+    def _moved(self) -> Crowd:
+        """Return the objects at their current poses and with their current bodies."""
+        crowd, objects = self._crowd, self.getObjects()
+        if any(o.body is not crowd.scene.body(key) for key, o in crowd.labels.items()):
             self.clear()
-            self.registerObjects(o for _, o in objects)
+            self.registerObjects(objects)
         elif objects:
-            self._scene.move(list(self._objects), np.array([o.pose for _, o in objects]))
-        return self._scene
+            crowd.scene.move(list(crowd.labels), np.array([o.pose for o in objects]))
+        return self._crowd
 
     def _arguments(self, args: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Return the arguments that select the others in the scene's functions, a function from pairs of
+        """Return the scene, the arguments that select the others in its functions, a function from pairs of
         keys to objects, and data and callback.
         """
         if len(args) not in (2, 3) or not callable(args[-1]):
             raise ValueError("expected data and callback, optionally after an object or a manager")
-        if len(args) == 2 or args[0] is self:
-            return (), lambda a, b: (self._objects[a], self._objects[b]), *args[-2:]
-        other = args[0]
+        crowd, other = self._moved(), args[0] if len(args) == 3 else self
         if isinstance(other, DynamicAABBTreeCollisionManager):
-            scene = other._moved()
-            return (scene,), lambda a, b: (self._objects[a], other._objects[b]), *args[1:]
-        return (other.body, other.pose), lambda a, b: (self._objects[b], other), *args[1:]
+            others, objects_of = crowd.against(None if other is self else other._moved())
+        else:
+            others, of_pair = crowd.against((other.body, other.pose), other)
+            objects_of = lambda a, b: of_pair(a, b)[::-1]
+        return (crowd.scene, others, objects_of, *args[-2:])
 
-    @overload
-    def collide(self, data: Any, callback: _CollisionCallback, /) -> None: ...
-    @overload
-    def collide(
-        self,
-        other: CollisionObject | DynamicAABBTreeCollisionManager,
-        data: Any,
-        callback: _CollisionCallback,
-        /,
-    ) -> None: ...
     def collide(self, *args: Any) -> None:
         """collide(data, callback), (object, data, callback) or (manager, data, callback).
 
         Calls callback(o1, o2, data) for objects with overlapping boxes, until it returns True.
         """
-        others, objects_of, data, callback = self._arguments(args)
-        keys, _ = self._moved().near(0, *others)
-        for a, b in keys.tolist():
+        scene, others, objects_of, data, callback = self._arguments(args)
+        for a, b in scene.near(0, *others)[0].tolist():
             if callback(*objects_of(a, b), data):
                 return
 
-    @overload
-    def distance(self, data: Any, callback: _DistanceCallback, /) -> None: ...
-    @overload
-    def distance(
-        self,
-        other: CollisionObject | DynamicAABBTreeCollisionManager,
-        data: Any,
-        callback: _DistanceCallback,
-        /,
-    ) -> None: ...
     def distance(self, *args: Any) -> None:
         """distance(data, callback), (object, data, callback) or (manager, data, callback).
 
         Calls callback(o1, o2, data), which returns whether to stop and the minimum distance so far, for
         objects whose boxes are closer than that, closest first.
         """
-        others, objects_of, data, callback = self._arguments(args)
-        scene = self._moved()
+        scene, others, objects_of, data, callback = self._arguments(args)
         likely = scene.nearest_boxes(*others)
         if likely is None:
             return
@@ -912,14 +784,14 @@ class DynamicAABBTreeCollisionManager:
                 return
 
 
-def _motion(o: CollisionObject, tf_end: Transform, kind: CCDMotionType) -> _Floats:
+def _motion(o: CollisionObject, tf_end: Transform, kind: int) -> _Floats:
     """Return the start and end pose of an object's motion, (2, 4, 4)."""
     end = Transform(tf_end)
     if kind == CCDMotionType.CCDM_TRANS:
         end.setRotation(o.getRotation())
     elif kind != CCDMotionType.CCDM_LINEAR:
         raise Unsupported("lrbscope.fcl does not support CCDM_SCREW and CCDM_SPLINE; use CCDM_TRANS or CCDM_LINEAR")
-    return np.array([o.pose, end._pose()])
+    return np.array([o.pose, end.pose])
 
 
 def continuousCollide(
@@ -936,13 +808,12 @@ def continuousCollide(
     (CCDM_LINEAR). Returns a time from 0 to 1, 1 if they do not collide: there is no contact before it, and
     contact at most toc_err later. Objects within rounding errors of contact count as colliding.
     """
-    request = ContinuousCollisionRequest() if request is None else request
-    result = ContinuousCollisionResult() if result is None else result
+    request, result = request or ContinuousCollisionRequest(), result or ContinuousCollisionResult()
     motions = [_motion(o, end, request.ccd_motion_type) for o, end in ((o1, tf1_end), (o2, tf2_end))]
     tolerance = min(request.toc_err, 1.0)
-    found: FirstContact = _core.first_contact(o1.body, o2.body, motions[1], motions[0], tolerance=tolerance)
-    collides = found.outcome != "never" or _holds(o1, o2, found.at_begin)
-    time = 0.0 if _holds(o1, o2, found.at_begin) else found.t0
-    result.is_collide = result.is_collide or collides
+    found = _core.first_contact(o1.body, o2.body, motions[1], motions[0], tolerance=tolerance)
+    inside = _holds(o1, o2, found.at_begin)
+    time: float = 0.0 if inside else found.t0
+    result.is_collide = result.is_collide or inside or found.outcome != "never"
     result.time_of_contact = min(time, result.time_of_contact)
     return time
