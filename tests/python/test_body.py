@@ -30,11 +30,8 @@ def test_arrays_come_back_without_a_copy():
     assert np.shares_memory(body.vertices, body.all_vertices)
     with pytest.raises(ValueError):
         body.vertices[0, 0] = 1
-
-
-def test_views_keep_the_body_alive():
-    vertices = Body(*cube_arrays()).vertices
-    assert np.array_equal(vertices, cube_arrays()[0])
+    kept = Body(vertices, faces).vertices  # keeps its body
+    assert np.array_equal(kept, vertices)
 
 
 @pytest.mark.parametrize("dtype", [np.int8, np.uint8, np.int16, np.int32, np.uint32, np.int64, np.uint64])
@@ -43,16 +40,10 @@ def test_faces_of_any_integers(dtype):
     assert Body(vertices, faces.astype(dtype)).hash == Body(vertices, faces).hash
 
 
-@pytest.mark.parametrize("dtype", [np.float32, np.int32, np.float64])
-def test_vertices_of_any_numbers(dtype):
-    vertices, faces = cube_arrays()
-    assert Body(vertices.astype(dtype), faces).hash == Body(vertices, faces).hash
-
-
 def test_lists_and_strided_arrays():
     vertices, faces = cube_arrays()
     wanted = Body(vertices, faces).hash
-    assert Body(vertices.tolist(), faces.tolist()).hash == wanted
+    assert Body(vertices.tolist(), faces.tolist()).hash == Body(vertices.astype(np.float32), faces).hash == wanted
     wide = np.zeros((8, 6))
     wide[:, ::2] = vertices
     assert Body(wide[:, ::2], np.asfortranarray(faces)).hash == wanted
@@ -215,20 +206,6 @@ def test_options_are_checked():
         Body(*arrays, threads=-1)
     with pytest.raises(TypeError, match="seed: expected an integer, got float"):
         Body(*arrays, seed=0.5)
-
-
-def test_self_intersections(cube, ball):
-    assert len(lrbscope.self_intersections(cube)) == 0
-    v, f = ball_arrays(2)
-    both = Body(np.vstack([v, v + [0.9, 0.2, 0.1]]), np.vstack([f, f + len(v)]))
-    found = lrbscope.self_intersections(both)
-    expected = lrbscope.collide(Body(v, f), Body(v + [0.9, 0.2, 0.1], f)).pairs
-    assert np.array_equal(found.faces, expected + [0, len(f)]) and len(found) > 10
-    assert (found.kind == 1).all() and not found.shared.any() and found.curves == 1 and not found.curve.any()
-    assert found.segments.shape == (found.segment_counts.sum(), 2, 3)
-    assert np.array_equal(found.first_segment, np.cumsum(found.segment_counts) - found.segment_counts)
-    with pytest.raises(InputError, match="more than 3 pairs"):
-        lrbscope.self_intersections(both, max_pairs=3)
 
 
 def test_builds_report_their_progress(tmp_path):

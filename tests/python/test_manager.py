@@ -1,12 +1,13 @@
-"""CollisionManager: method names, arguments and return values as trimesh has them."""
+"""CollisionManager: method names, arguments and return values as trimesh has them; and live, beside trimesh's."""
 
 import inspect
 import math
+import types
 
 import numpy as np
 import pytest
 
-import lrbscope
+import lrbscope.collision
 from lrbscope import CollisionManager, InputError
 from shapes import Mesh, ball_arrays, cube_arrays, open_cube_arrays, random_poses, shifted, square_arrays
 
@@ -43,7 +44,7 @@ def test_signatures_are_those_of_trimesh():
         assert ", ".join(found) == parameters
 
 
-def test_single(three, box):
+def test_collisions(three, box):
     assert three.in_collision_single(box, shifted(9.5, 0.1, 0.1)) is True
     assert three.in_collision_single(box, shifted(50, 0, 0)) is False
     nothing = three.in_collision_single(box, shifted(50, 0, 0), return_names=True, return_data=True)
@@ -52,27 +53,21 @@ def test_single(three, box):
     assert hit and names == {"a", "b"}
     hit, data = three.in_collision_single(box, shifted(9.5, 0.1, 0.1), return_data=True)
     assert hit and data and {frozenset(c.names) for c in data} == {frozenset(("far", "__external"))}
-    body = three.add_object("far", box, shifted(9, 0, 0))
-    wanted = lrbscope.collide(body, body, shifted(9, 0, 0), shifted(9.5, 0.1, 0.1))
+    wanted = lrbscope.collide(box, box, shifted(9, 0, 0), shifted(9.5, 0.1, 0.1))
     assert sorted([c.index("__external"), c.index("far")] for c in data) == wanted.pairs.tolist()
     for c in data:
         assert c.point.shape == (3,) and (c.point >= (9.5, 0, 0)).all() and (c.point <= (10, 1.1, 1.1)).all()
-        assert np.isclose(np.linalg.norm(c.normal), 1) and c.depth >= 0
-
-
-def test_internal(three):
-    assert three.in_collision_internal() is True
+        assert np.isclose(np.linalg.norm(c.normal), 1)
+    assert np.isclose(min(c.depth for c in data), 0.5) and any(np.allclose(c.normal, (-1, 0, 0)) for c in data)
     hit, names, data = three.in_collision_internal(return_names=True, return_data=True)
     assert hit and names == {("a", "b")} and all(c.names == {"a", "b"} for c in data)
     three.set_transform("a", shifted(3, 0, 0))
+    assert three.in_collision_internal() is False
     assert three.in_collision_internal(return_names=True) == (False, set())
     three.set_transform("a", shifted(8.5, 0.1, 0.1))
     assert three.in_collision_internal(return_names=True) == (True, {("a", "far")})
-
-
-def test_other(three, box):
     other = CollisionManager()
-    other.add_object("x", box, shifted(9.5, 0.1, 0.1))
+    other.add_object("x", box, shifted(9.6, 0.6, 0.1))
     assert three.in_collision_other(other, return_names=True) == (True, {("far", "x")})
     assert other.in_collision_other(three, return_names=True) == (True, {("x", "far")})
     other.set_transform("x", shifted(20, 0, 0))
@@ -85,8 +80,7 @@ def test_distances(three, box):
     distance, name, data = three.min_distance_single(box, at, return_name=True, return_data=True)
     assert name == "far" and data.names == {"far", "__external"} and data.distance == distance
     assert data.point("far")[0] == 10 and data.point("__external")[0] == 12
-    body = three.add_object("far", box, shifted(9, 0, 0))
-    assert body.vertices[body.faces[data.index("far")]][:, 0].max() == 1
+    assert box.vertices[box.faces[data.index("far")]][:, 0].max() == 1
     assert three.min_distance_internal() == 0
     three.remove_object("b")
     distance, names, data = three.min_distance_internal(return_names=True, return_data=True)
@@ -113,19 +107,15 @@ def test_one_in_another_collides():
 def test_objects_in_the_plane():
     m = CollisionManager()
     square = m.add_object("square", Mesh(*square_arrays()))
-    assert square.dim == 2
-    for pose, n in ((shifted(0.75, 0.5, 0), 2), (np.eye(4), 12)):
-        hit, data = m.in_collision_single(square, pose, return_data=True)
-        assert hit and len(data) == n
-        assert all(np.isclose(np.linalg.norm(c.normal), 1) and c.normal[2] == 0 for c in data)
-    edges = {tuple(c.normal + 0.0) for c in data}
-    assert edges == {(0, -1, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0)}, "of segments: outward"
+    hit, data = m.in_collision_single(square, shifted(0.75, 0.5, 0), return_data=True)
+    assert square.dim == 2 and hit and len(data) == 2
+    assert all(np.allclose(c.normal, (-1, 0, 0)) and np.isclose(c.depth, 0.25) for c in data)
     hit, data = m.in_collision_single(square, shifted(1, 0.25, 0), return_data=True)
-    assert hit and {c.point[0] for c in data} == {1.0}
+    assert hit and {c.point[0] for c in data} == {1.0} and {c.depth for c in data} == {0.0}
     assert np.isclose(m.min_distance_single(square, shifted(3, 0, 0)), 2)
 
 
-def test_objects_come_and_go(box):
+def test_objects_come_and_go(box, three):
     m = CollisionManager()
     assert m.in_collision_internal(return_names=True, return_data=True) == (False, set(), [])
     assert m.min_distance_internal(return_names=True) == (math.inf, (None, None))
@@ -142,15 +132,14 @@ def test_objects_come_and_go(box):
         m.add_object("z", box, np.eye(3))
     with pytest.raises(ValueError, match="z not in collision manager!"):
         m.remove_object("z")
-    changed = Mesh(box.vertices * 2, box.faces)
-    assert m.add_object("x", changed) is not body
-
-
-def test_names_of_any_kind(box):
-    m = CollisionManager()
-    m.add_object(1, box)
-    m.add_object("one", box, shifted(0.5, 0.25, 0.125))
-    assert m.in_collision_internal(return_names=True)[1] == {(1, "one")}
+    assert m.add_object("x", Mesh(box.vertices * 2, box.faces)) is not body
+    m.add_object(1, box, shifted(0.5, 0.25, 0.125))
+    assert (1, "x") in m.in_collision_internal(return_names=True)[1]
+    three.remove_object("b")
+    three.add_object("b", box)  # with another key
+    names, data = three.in_collision_other(three, return_names=True, return_data=True)[1:]
+    assert names == {(n, n) for n in ("a", "b", "far")} | {("a", "b"), ("b", "a")} and data
+    assert three.min_distance_other(three) == 0
 
 
 def test_many_against_all_pairs(rng):
@@ -170,7 +159,36 @@ def test_many_against_all_pairs(rng):
     assert m.min_distance_internal(return_names=True) == (min(left.values()), min(left, key=left.get))
 
 
-def test_a_manager_against_itself(three):
-    names = three.in_collision_other(three, return_names=True)[1]
-    assert names == {(n, n) for n in ("a", "b", "far")} | {("a", "b"), ("b", "a")}
-    assert three.min_distance_other(three) == 0
+class Graph(dict):
+    """The part of trimesh.Scene.graph that managers are made of."""
+
+    @property
+    def nodes_geometry(self):
+        return list(self)
+
+
+def test_scenes_of_trimesh(box):
+    graph = Graph(here=(np.eye(4), "cube"), there=(shifted(0.5, 0.1, 0), "cube"), far=(shifted(9, 0, 0), "cube"))
+    scene = types.SimpleNamespace(graph=graph, geometry={"cube": box})
+    manager, objects = lrbscope.collision.scene_to_collision(scene)
+    assert manager.in_collision_internal(return_names=True) == (True, {("here", "there")})
+    assert list(objects) == ["here", "there", "far"] and isinstance(objects["far"], lrbscope.Body)
+
+
+def test_beside_trimesh(rng):
+    """Names of pairs that collide, and distances, of balls in general position."""
+    trimesh = pytest.importorskip("trimesh")
+    pytest.importorskip("fcl")
+    mesh = trimesh.Trimesh(*ball_arrays(2, 0.5))
+    theirs, ours = trimesh.collision.CollisionManager(), CollisionManager()
+    for i, pose in enumerate(random_poses(rng, 80, 4)):
+        theirs.add_object(str(i), mesh, pose)
+        ours.add_object(str(i), mesh, pose)
+    assert ours.in_collision_internal(return_names=True) == theirs.in_collision_internal(return_names=True)
+    for pose in random_poses(rng, 20, 4):
+        found, wanted = (m.in_collision_single(mesh, pose, return_names=True) for m in (ours, theirs))
+        assert found == wanted
+        if not wanted[0]:
+            assert np.isclose(
+                ours.min_distance_single(mesh, pose), theirs.min_distance_single(mesh, pose), rtol=1e-4
+            )

@@ -49,7 +49,7 @@ CLASSES = {
     (module, n.name): n
     for module, tree in TREES.items()
     for n in tree.body
-    if isinstance(n, ast.ClassDef) and not n.name.startswith("_")
+    if isinstance(n, ast.ClassDef)
 }
 
 
@@ -102,9 +102,10 @@ def members(module, name):
             yield n.name, n.returns
         elif isinstance(n, ast.FunctionDef) and (n.name in CALLED or n.name.startswith("get")):
             yield n.name, n.returns
-        elif isinstance(n, ast.AnnAssign) and ast.unparse(n.target).startswith("self."):
-            if not n.target.attr.startswith("_"):
-                yield n.target.attr, n.annotation
+        elif isinstance(n, ast.AnnAssign):
+            name = ast.unparse(n.target).removeprefix("self.")
+            if not name.startswith("_") and hasattr(n.target, "id" if n in node.body else "attr"):
+                yield name, n.annotation
 
 
 @pytest.fixture(scope="module")
@@ -218,7 +219,7 @@ USE = """
     reveal_type(lrbscope.Scene().collide()[0])
     reveal_type(lrbscope.render(body))
     manager = lrbscope.CollisionManager()
-    reveal_type(manager.in_collision_internal(return_names=True))
+    reveal_type(manager.add_object("first", body))
     reveal_type(lrbscope.fcl.collide(lrbscope.fcl.CollisionObject(), lrbscope.fcl.CollisionObject()))
     manager.add_object("body", body)
     reveal_type([r.relation for r in lrbscope.collide(body, body, [np.eye(4)])][0])
@@ -245,7 +246,7 @@ def test_what_mypy_makes_of_it(tmp_path):
     shown = [line.split('"')[1].replace("lrbscope._core.", "") for line in said if "Revealed" in line]
     assert shown[:2] == ["Result", "Results"] and shown[2] == "builtins.list[ContactRegion]", done.stdout
     assert shown[3] == "Result" and shown[4].startswith("lrbscope._picture.Picture")
-    assert shown[5] == "Tuple[builtins.bool, builtins.set[Tuple[Any, Any]]]" and shown[6] == "builtins.int"
+    assert shown[5] == "Body" and shown[6] == "builtins.int"
     assert "separate" in [line for line in said if "Revealed" in line][7]
     errors = [line.split(":")[1] for line in said if ": error:" in line]
     assert errors == ["16", "17", "18", "19"], done.stdout

@@ -1,0 +1,340 @@
+"""What Python adds to queries: arrays and their types, batches, threads, errors. tests/matrix checks the answers."""
+
+import inspect
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import Body, InputError, clash, collide, distance, fcl, first_contact
+from shapes import Mesh, ball_arrays, brute_pairs, cube_arrays, open_cube_arrays, placed, random_poses, shifted
+
+CROSSING = shifted(0.5, 0.25, 0.125)
+
+
+def motions_to(poses):
+    """Return straight motions that end at poses, (k, 2, 4, 4)."""
+    starts = poses.copy()
+    starts[:, 0, 3] += 4
+    return np.stack([starts, poses], axis=1)
+
+
+def of_region(regions):
+    return [(r.pairs.tolist(), r.centroid.tolist(), r.normal.tolist(), r.depth_estimate) for r in regions]
+
+
+# Queries of many poses, and their answers as plain values.
+BATCHES = {
+    "collide": (collide, lambda r: (r.relation, r.fingerprint, r.pairs.tolist(), r.counters)),
+    "contacts": (lrbscope.contacts, of_region),
+    "distance": (distance, lambda d: (d.lower, d.upper, d.relation, d.points.tolist(), d.faces, d.features)),
+    "clash": (clash, lambda c: (c.kind, c.depth, c.volume, c.translation.tolist())),
+    "first_contact": (first_contact, lambda f: (f.outcome, f.t0, f.t1, f.pair, f.normal.tolist())),
+}
+
+
+@pytest.mark.parametrize("name", BATCHES)
+def test_batches_have_the_answers_of_single_queries(name, rng):
+    query, values = BATCHES[name]
+    count = 6 if query is clash else 24
+    ball, poses = Body(*ball_arrays(1)), random_poses(rng, count, 1.5)
+    given = motions_to(poses) if query is first_contact else poses
+    single = [values(query(ball, ball, pose)) for pose in given]
+    for threads in (1, 2, 5):
+        many = query(ball, ball, given, threads=threads)
+        assert len(many) == count and [values(r) for r in many] == single
+    assert len({str(v) for v in single}) > count / 3
+    if query is not first_contact:
+        assert len(query(ball, ball, [])) == len(query(ball, ball, np.empty((0, 4, 4)))) == 0
+        bad = np.tile(np.eye(4), (100, 1, 1))
+        bad[40, 0, 3] = np.nan
+        with pytest.raises(InputError, match="finite numbers"):
+            query(ball, ball, bad)
+
+
+def test_arrays_of_batches(ball, rng):
+    poses = random_poses(rng, 24, 1.5)
+    many = collide(ball, ball, poses)
+    assert many.counts.tolist() == [len(r.pairs) for r in many]
+    assert many.relations.tolist() == [r.relation for r in many]
+    assert many.fingerprints.tolist() == [r.fingerprint for r in many]
+    assert many.hits.tolist() == [bool(r) for r in many] and 5 < many.hits.sum()
+    rows = many.all_pairs
+    assert np.array_equal(rows[rows[:, 0] == 7][:, 1:], many[7].pairs)
+    assert [r.fingerprint for r in many[::2]] == many.fingerprints[::2].tolist()
+    assert many[-1].fingerprint == many[23].fingerprint
+    for answers in (many, distance(ball, ball, poses)):
+        with pytest.raises(IndexError):
+            answers[24]
+    near = distance(ball, ball, poses)
+    assert near.upper.tolist() == [d.upper for d in near] and near.lower.tolist() == [d.lower for d in near]
+    small = Body(*ball_arrays(1))
+    moved = first_contact(small, small, motions_to(poses))
+    assert moved.t0.tolist() == [f.t0 for f in moved] and moved.t1.tolist() == [f.t1 for f in moved]
+
+
+def test_pairs_are_those_of_brute_force(rng):
+    (va, fa), (vb, fb) = ball_arrays(2), ball_arrays(1, 0.8)
+    a, b, pose_a = Body(va, fa), Body(vb, fb), random_poses(rng, 1, 1)[0]
+    poses = random_poses(rng, 30, 1.6)
+    found = collide(a, b, poses, pose_a)
+    for pose, result in zip(poses, found):
+        assert np.array_equal(result.pairs, brute_pairs(placed(va, pose_a), fa, placed(vb, pose), fb))
+        assert result.crosses.all()
+    assert 5 < found.hits.sum() < 30
+
+
+def test_one_query_on_several_threads():
+    big = Body(*ball_arrays(5))
+    alone, *others = (collide(big, big, threads=n) for n in (1, 2, 0))
+    assert len(alone.pairs) > 10_000
+    for other in others:
+        assert np.array_equal(other.pairs, alone.pairs) and other.counters == alone.counters
+
+
+def test_views_outlive_their_result(ball):
+    pairs = collide(ball, ball, [shifted(1.1, 0.3, 0.2)] * 2)[1].pairs
+    assert np.array_equal(pairs, collide(ball, ball, shifted(1.1, 0.3, 0.2)).pairs)
+    assert not pairs.flags.writeable and not pairs.flags.owndata
+
+
+@pytest.mark.parametrize("rows", [4, 3])
+def test_shapes_and_types_of_poses(cube, rows):
+    pose = CROSSING[:rows]
+    wanted = collide(cube, cube, CROSSING).fingerprint
+    wide = np.zeros((rows, 8))
+    wide[:, ::2] = pose
+    for given in (pose, pose.astype(np.float32), pose.tolist(), np.asfortranarray(pose), wide[:, ::2]):
+        assert collide(cube, cube, given).fingerprint == wanted
+        assert collide(cube, cube, [given])[0].fingerprint == wanted
+    assert collide(cube, cube, shifted(0, 0, 0), pose).relation == "crossing"
+
+
+def test_meshes_of_other_libraries_are_bodies(cube):
+    """Objects with vertices and faces, as trimesh has them, or triangles, as Open3D."""
+    mesh = Mesh(*cube_arrays())
+    triangles = type("TriangleMesh", (), {"vertices": mesh.vertices.tolist(), "triangles": mesh.faces.tolist()})()
+    wanted = collide(cube, cube, CROSSING).fingerprint
+    for given in (mesh, triangles):
+        assert collide(given, cube, CROSSING).fingerprint == collide(cube, given, CROSSING).fingerprint == wanted
+        assert np.isclose(distance(given, given, shifted(3, 0, 0)).upper, 2)
+        assert lrbscope.CoherentQuery(given, given).collide(CROSSING).fingerprint == wanted
+        assert len(lrbscope.signed_distance(given, np.eye(3))) == 3
+        scene = lrbscope.Scene()
+        assert scene.body(scene.add(given)).real_face_count == 12 and scene.any_meet(given, CROSSING)
+    assert [r.pairs.size for r in collide(mesh, triangles, [CROSSING] * 200)] == [24] * 200
+
+
+POSES_REFUSED = [
+    (np.eye(3), r"poses_b: expected numbers of shape \(4, 4\) or \(k, 4, 4\), got shape \(3, 3\)"),
+    (np.zeros((2, 2, 4, 4)), "poses_b: "),
+    (np.zeros(16), r"poses_b: .*got shape \(16,\)"),
+    ("text", "poses_b: expected numbers"),
+    (np.full((4, 4), "x"), "poses_b: expected numbers"),
+    (np.eye(4) * 2, "poses_b: the last row of a pose must be 0 0 0 1"),
+    (np.eye(4) * np.nan, "poses_b: the last row"),
+    (shifted(np.nan, 0, 0), "finite numbers"),
+    (np.diag([1e308, 1, 1, 1]) * 1.0 + shifted(1.7e308, 0, 0) - np.eye(4), "exceeds 1.8e308"),
+]
+BOTH = "cube, cube, "
+REFUSED = [
+    ("collide('cube', cube)", TypeError, "a: expected a Body, got str"),
+    ("collide(cube, None)", TypeError, "b: expected a Body, got None"),
+    ("collide(cube)", TypeError, r"^collide\(\): missing a required argument: 'b'$"),
+    ("Body()", TypeError, r"^Body\(\): missing a required argument: 'vertices'$"),
+    (f"collide({BOTH}mode='some')", InputError, 'mode: "some" is not one of all, first or any'),
+    (f"collide({BOTH}pose_a=np.zeros((2, 4, 4)))", InputError, r"pose_a: expected shape \(4, 4\)"),
+    (f"collide({BOTH}max_tests=-1)", InputError, "max_tests: expected an integer of at least 0"),
+    (f"collide({BOTH}threads=-1)", InputError, "threads"),
+    (f"collide({BOTH}contacts=1)", TypeError, "contacts: expected True or False"),
+    (f"collide({BOTH}tolerance='1')", TypeError, "tolerance: expected a number"),
+    (f"collide({BOTH}tolerance=-1)", InputError, "tolerance: expected a finite number of at least 0, got -1"),
+    (f"collide({BOTH}max_pairs=2)", InputError, "pairs"),
+    ("lrbscope.collide_pairs([cube], [np.eye(4)], [cube], [np.eye(4)] * 2)", InputError, "poses_b: expected as many"),
+    (f"distance({BOTH}within=-1)", InputError, "within"),
+    (f"distance({BOTH}tolerance=np.nan)", InputError, "tolerance"),
+    (f"clash({BOTH}clearance=-1)", InputError, "clearance: expected a finite number of at least 0"),
+    (f"clash({BOTH}along=(0, 0, 0))", InputError, ""),
+    (f"clash({BOTH}along=(0, 0))", InputError, "along: expected three numbers"),
+    (f"first_contact({BOTH}[np.eye(4)] * 2, tolerance=0)", InputError, "tolerance"),
+    (f"first_contact({BOTH}'there')", InputError, "motion_b: expected numbers"),
+    (f"first_contact({BOTH}[])", InputError, "motion_b: expected at least one pose, got none"),
+    (f"first_contact({BOTH}[shifted(3, 0, 0), np.diag([2.0, 1, 1, 1])])", InputError, ""),
+    (f"lrbscope.near_pairs({BOTH}within=-1)", InputError, "within"),
+    (f"lrbscope.near_pairs({BOTH}within=None)", InputError, "within"),
+    (f"lrbscope.near_pairs({BOTH}within=2, max_pairs=3)", InputError, "pairs"),
+    (f"lrbscope.near_pairs({BOTH[:-2]})", TypeError, "within"),
+    (f"lrbscope.contact_manifolds({BOTH}margin=np.inf)", InputError, "margin"),
+    (f"lrbscope.contact_manifolds({BOTH}max_pairs=1)", InputError, "pairs"),
+    (f"lrbscope.contact_manifolds({BOTH}previous=3)", InputError, "previous"),
+    ("lrbscope.signed_distance(cube, [[0, 0]])", InputError, "3 coordinates"),
+    ("lrbscope.signed_distance(cube, [[0, 0, np.nan]])", InputError, "point 0"),
+    ("lrbscope.signed_distance(cube, [0, 0, 0])", InputError, "shape"),
+    ("lrbscope.Wrapper(cube, 'neither')", InputError, "mode"),
+    ("lrbscope.Wrapper.at(cube, -1)", InputError, "tolerance"),
+    ("lrbscope.Wrapper(cube).refine(10**6)", InputError, "region: expected a number below"),
+    ("lrbscope.Wrapper(cube).refine_face(10**6)", InputError, "face: expected a number below"),
+    ("lrbscope.Wrapper(lrbscope.Wrapper(cube))", TypeError, "body: expected a Body, got Wrapper"),
+]
+
+
+def test_what_is_refused(cube):
+    """Errors are one line that names the argument."""
+    for pose, said in POSES_REFUSED:
+        with pytest.raises(InputError, match=said) as error:
+            collide(cube, cube, pose)
+        assert "\n" not in str(error.value)
+    for call, kind, said in REFUSED:
+        with pytest.raises(kind, match=said) as error:
+            eval(call, {**globals(), "cube": cube})
+        assert "\n" not in str(error.value), call
+    for name, thing in inspect.getmembers(lrbscope._core, lambda x: inspect.isbuiltin(x) or inspect.isclass(x)):
+        if not name.startswith("_") and not (inspect.isclass(thing) and issubclass(thing, Exception)):
+            with pytest.raises(TypeError, match="^[^\n]*$"):
+                thing(nonsense=1)
+
+
+def test_members_of_results(cube, ball):
+    r = collide(cube, cube, CROSSING, contacts=True)
+    points, pair = r.points
+    assert len(points) == len(pair) and set(pair) == set(range(len(r.pairs)))
+    assert (np.isclose(points, 0) | np.isclose(points, 1)).any(axis=1).all()
+    (region,) = r.regions
+    ((curve, closed),) = region.curves
+    lengths = np.linalg.norm(np.diff(np.vstack([curve, curve[:1]]), axis=0), axis=1)
+    assert closed and np.isclose(lengths.sum(), region.length) and region.pairs.tolist() == list(range(12))
+    assert collide(cube, cube, shifted(0.5, 0, 0), interiors_overlap=True).interiors_overlap is True
+    assert collide(cube, cube, shifted(1, 0, 0), interiors_overlap=True).interiors_overlap is False
+    assert not collide(cube, cube, shifted(1, 0, 0)).crosses.any()
+    far = collide(ball, ball, shifted(2.5, 0, 0), separation=True)
+    assert far.separation["faces_a"] >= 4 and not far
+    opened = collide(ball, ball, shifted(1.5, 0.4, 0.3))
+    assert opened.counters["regions_opened"] == sum(len(side) for side in opened.opened) > 0
+    found = lrbscope.collide_pairs([cube, ball] * 2, [np.eye(4)] * 4, [ball] * 4, [CROSSING] * 4)
+    assert [f.fingerprint for f in found] == [collide(x, ball, CROSSING).fingerprint for x in (cube, ball) * 2]
+
+
+def test_members_of_distances(cube):
+    d = distance(cube, cube, shifted(3, 0, 0))
+    assert d.lower <= 2 <= d.upper == float(d) and d.points[:, 0].tolist() == [1, 3] and d.solids == (d.lower, d.upper)
+    corner = distance(cube, cube, shifted(2, 2, 2))
+    assert corner.features == ("corner", "corner") and [c.tolist() for c in corner.corners] == [[7], [0]]
+    assert corner.faces == corner.triangles and corner.counters["box_tests"] > 0
+    inside = distance(Body(*cube_arrays(0.5, 0.25)), cube)
+    assert not inside.meet and inside.solids == (0, 0) and inside.relation == "a_inside_b"
+    assert [distance(cube, cube, shifted(3, 0, 0), within=w).within for w in (2.5, 1.5, None)] == [True, False, None]
+    signed = lrbscope.signed_distance(cube, [[0.5, 0.5, 0.75], [2, 0.5, 0.5], [1, 0.5, 0.25]])
+    assert signed.side.tolist() == [-1, 1, 0] and np.allclose(signed.lower, [-0.25, 1, 0])
+    assert signed.points[1].tolist() == [1, 0.5, 0.5] and signed.faces.shape == (3,)
+    sheet = lrbscope.signed_distance(Body(*open_cube_arrays()), [[0.5, 0.5, 0.75]])
+    assert sheet.side.tolist() == [2] and sheet.lower[0] > 0 and len(lrbscope.signed_distance(cube, [])) == 0
+
+
+def test_members_of_clashes_and_first_contacts(cube):
+    c = clash(cube, cube, shifted(0.75, 0.25, 0.125), along=(0, 2, 0))
+    assert c.kind == "protrudes" and c.interiors_overlap is True and c.shares_faces is False and c.reason is None
+    assert c.depth[0] <= 0.25 <= c.depth[1] and np.isclose(np.linalg.norm(c.translation), c.depth[1])
+    assert c.along[0] <= 0.75 <= c.along[1] and np.isclose(c.volume[1], 0.25 * 0.75 * 0.875)
+    assert clash(cube, cube, CROSSING, depth=False, volume=False).volume is None
+    assert clash(cube, Body(*open_cube_arrays()), CROSSING).reason == "B bounds no solid"
+    f = first_contact(cube, cube, [shifted(3, 0.1, 0.2), shifted(0, 0.1, 0.2)])
+    assert f and f.outcome == "contact" and f.t0 <= 2 / 3 <= f.t1 and f.at_begin == "separate"
+    assert np.allclose(f.normal, (1, 0, 0)) and np.isclose(f.speed, 3) and len(f.pair) == 2
+    never = first_contact(cube, cube, [shifted(3, 0, 0), shifted(2, 5, 0)])
+    assert not never and never.t0 == never.t1 == 1 and never.pair is None
+    assert first_contact(cube, cube, CROSSING).at_start
+
+
+def test_columns_of_near_pairs_and_manifolds(cube, ball):
+    pairs = lrbscope.near_pairs(cube, cube, shifted(3, 0, 0), within=2)
+    assert len(pairs) == pairs.found == 62 and not pairs.meet.any() and (pairs.upper == 2).all()
+    assert (pairs.points[:, :, 0] == [1, 3]).all() and pairs.faces.tolist() == pairs.triangles.tolist()
+    assert len(lrbscope.near_pairs(cube, cube, shifted(3, 0, 0), within=2, nearest=5)) == 5
+    sunk = lrbscope.contact_manifolds(cube, cube, shifted(0.125, 0.25, 0.875))
+    assert sunk.normals.tolist() == [[0, 0, 1]] and sunk.depths.tolist() == [0.125] * 4
+    assert sunk.ids.tolist() == [0, 1, 2, 3] and sunk.features.shape == (4, 2, 3)
+    assert np.abs(sunk.points[:, 0] - sunk.points[:, 1] - [0, 0, 0.125]).max() < 1e-15
+    moved = lrbscope.contact_manifolds(cube, cube, shifted(0.126, 0.25, 1.001), margin=0.01, previous=sunk)
+    assert sorted(moved.ids.tolist()) == [0, 1, 2, 3] and moved.intersects.tolist() == [False]
+    apart = lrbscope.contact_manifolds(cube, cube, shifted(3, 0, 0))
+    assert len(apart) == 0 and apart.points.shape == (0, 2, 3) and apart.pairs == []
+    at = shifted(1.9, 0.1, 0.2)
+    for query in (lrbscope.near_pairs, lrbscope.contact_manifolds):
+        limit = "within" if query is lrbscope.near_pairs else "margin"
+        alone, all_cores = (query(ball, ball, at, **{limit: 0.3}, threads=n) for n in (1, 2))
+        assert (alone.points == all_cores.points).all() and len(alone) > 0
+
+
+def box(low, high):
+    return cube_arrays(np.subtract(high, low), low)
+
+
+UNIT, PLATE = box((0, 0, 0), (1, 1, 1)), box((-5, -5, -1), (5, 5, 0))
+SUNK, WALL, OTHER_WALL = (
+    box((-0.1, -0.1, -0.05), (0.1, 0.1, 0.15)),
+    box((0, 0, 0), (4, 0.3, 3)),
+    box((3.9, 0, 0), (4.2, 3, 3)),
+)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "moved", "depth", "normal"),
+    [
+        (UNIT, UNIT, (0.75, 0, 0), 0.25, (1, 0, 0)),
+        (UNIT, UNIT, (0.75, 0.001, 0), 0.25, (1, 0, 0)),
+        (UNIT, UNIT, (0.75, 0.001, 0.002), 0.25, (1, 0, 0)),
+        (UNIT, UNIT, (0.75, 0.25, 0.25), 0.25, (1, 0, 0)),
+        (PLATE, SUNK, (0, 0, 0), 0.05, (0, 0, 1)),
+        (PLATE, SUNK, (5, 0, 0), 0.05, (0, 0, 1)),
+        (WALL, OTHER_WALL, (0, 0, 0), 0.1, (1, 0, 0)),
+    ],
+)
+def test_contacts_have_depth_and_normal_of_the_overlap(a, b, moved, depth, normal):
+    """Boxes, for which the separating axis test gives both; FCL #106, #503, IfcOpenShell #2430, Coal #357."""
+    one, other, pose = Body(*a), Body(*b), shifted(*moved)
+    (region,) = lrbscope.contacts(one, other, pose)
+    assert np.allclose(region.normal, normal) and np.isclose(region.depth_estimate, depth)
+    (again,) = collide(one, other, pose, contacts=True).regions
+    assert (again.depth_estimate, again.normal.tolist()) == (region.depth_estimate, region.normal.tolist())
+    manager = lrbscope.CollisionManager()
+    manager.add_object("b", other, pose)
+    found = [(c.depth, c.normal) for c in manager.in_collision_single(one, return_data=True)[1]]
+    models = []
+    for vertices, faces in (a, b):
+        models.append(fcl.BVHModel())
+        models[-1].beginModel()
+        models[-1].addSubModel(vertices, faces)
+        models[-1].endModel()
+    result = fcl.CollisionResult()
+    objects = fcl.CollisionObject(models[0]), fcl.CollisionObject(models[1], fcl.Transform(np.array(moved)))
+    fcl.collide(*objects, fcl.CollisionRequest(num_max_contacts=1000, enable_contact=True), result)
+    of_fcl = [(c.penetration_depth, c.normal) for c in result.contacts]
+    assert len(found) == len(of_fcl) > 0 and str(found) == str(of_fcl)
+    deepest = 0.1 if moved == (5, 0, 0) else depth  # over the edge of the plate there is another side
+    assert {True} == {np.isclose(d, depth) or np.isclose(d, deepest) for d, _ in found}
+    assert any(np.allclose(n, normal) for _, n in found)
+
+
+def test_wrappers(ball):
+    w = lrbscope.Wrapper(ball)
+    outermost, order = w.faces, []
+    assert len(w) == len(outermost) < 40
+    while not w.is_real.all():
+        region = w.region_behind(w.faces[~w.is_real][0])
+        assert w.includes(region) and w.refine(region) and not w.refine(region) and not w.includes(region)
+        order.append(region)
+    assert w.excluded.tolist() == order and w.region_behind(0) is None
+    assert np.array_equal(np.sort(w.faces), np.arange(ball.real_face_count))
+    assert all(w.coarsen(region) for region in reversed(order)) and np.array_equal(w.faces, outermost)
+    corners = ball.all_vertices[w.triangles]
+    volume = np.einsum("ij,ij", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+    assert np.isclose(volume, ball.figures()["volume_outer"])
+    w.refine_all()
+    assert np.array_equal(w.triangles, ball.triangles) and len(w.excluded) == ball.region_count
+    w.reset()
+    assert len(w.excluded) == 0 and lrbscope.Wrapper(ball, "unregularised").refine_face(outermost[0])
+    sizes = [len(lrbscope.Wrapper.at(ball, t)) for t in (0, 0.01, 0.1, 1, 10)]
+    assert sizes == sorted(sizes, reverse=True) and sizes[0] == ball.real_face_count > sizes[3]
+    kept = lrbscope.Wrapper(Body(*ball_arrays(2)))  # keeps its body
+    kept.refine_all()
+    assert len(kept) == kept.body.real_face_count
