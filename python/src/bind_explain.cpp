@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
 #include "python/src/properties.hpp"
