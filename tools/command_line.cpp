@@ -202,7 +202,6 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 /// Returns a message of CLI11 in the words of this program's own ones. `app`: the command.
 std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::ParseError& error) {
   const std::string text = error.what();
-  const auto starts = [&](std::string_view words) { return text.starts_with(words); };
   // "NAME: Value X not in range 0 to 1"; CLI11 2.6: "[0 - 1]".
   constexpr std::string_view kValue = ": Value ", kRange = " not in range ", kUnread = "Could not convert: ";
   const std::size_t value = text.find(kValue), range = text.rfind(kRange);
@@ -220,12 +219,10 @@ std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::
                                                      : "at least " + number(low)) +
            ", found " + text.substr(from, range - from);
   }
-  if (const std::size_t equals = text.find(" = "); starts(kUnread) && equals != std::string::npos)
+  if (const std::size_t equals = text.find(" = "); text.starts_with(kUnread) && equals != std::string::npos)
     return text.substr(kUnread.size(), equals - kUnread.size()) + ": cannot read " +
            in_quotes(text.substr(equals + 3));
-  if (!starts("The following argument was not expected: ") &&
-      !starts("The following arguments were not expected: "))
-    return text;
+  if (!text.starts_with("The following argument")) return text;
   const std::vector<std::string> words = root.remaining(true);
   const auto option =
       std::find_if(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("--"); });

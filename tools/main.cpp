@@ -8,7 +8,6 @@
 #include <iostream>
 #include <new>
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
 
 #include <nlohmann/json.hpp>
