@@ -95,6 +95,7 @@ Option* App::add_flag_callback(const std::string& names, const std::function<voi
 // The types of targets.
 #define LRB_OPTION(T) template Option* App::add_option(const std::string&, T&, const std::string&);
 LRB_OPTION(int)
+LRB_OPTION(std::uint16_t)
 LRB_OPTION(std::uint32_t)
 LRB_OPTION(std::uint64_t)
 LRB_OPTION(double)
