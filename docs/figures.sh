@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # docs/figures.sh [LRBSCOPE]: makes the pictures of bodies in README and docs: figure2.png, construction.png,
 # collision.png, figure.png, inset.png, distance.png, near.png, points.png, manifold.png,
-# first_contact.png and clash.png. (xray.png is a measurement: docs/profiling.md.)
+# first_contact.png and clash.png.
 # docs/figures.sh chart [LRBSCOPE [OPTION...]]: measures and makes only chart.png, with these options of lrbscope chart.
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -1,15 +1,19 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <span>
 
 #include "bench/speed/build_times.hpp"
 #include "bench/speed/peer_table.hpp"
 #include "bench/speed/survey.hpp"
 #include "scenarios/io/files.hpp"
+#include "tools/bench_options.hpp"
 #include "tools/commands.hpp"
-#include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/trace/capture.hpp>
 
 namespace lrb::cli {
 namespace {
@@ -20,7 +24,8 @@ using workers::WorkerMethod;
 struct BenchOptions : MeasureOptions {
   BenchOptions() { folder = folder_help = "out/bench"; }
   std::vector<std::uint32_t> faces = {20000, 100000};
-  bool build = false;
+  std::vector<std::string> percentiles;
+  bool build = false, json = false;
   unsigned rounds = 5;
 };
 
@@ -56,7 +61,43 @@ int run_build_survey(const BenchOptions& o, std::vector<bench::BodyPair> bodies,
   return kOk;
 }
 
+/// The option --percentiles of a capture.
+engines::Samples captured_samples(const BenchOptions& o) {
+  const std::string& file = o.percentiles[0];
+  if (!o.methods.empty())
+    throw InputError("--percentiles: expected two bodies with --method, found only " + in_quotes(file));
+  const std::string bytes = read_file(file);
+  if (!capture::is_capture(std::as_bytes(std::span(bytes))))
+    throw InputError(printable_name(file) + ": expected a capture or two bodies; give A B or run.lrbcap");
+  return engines::samples_of(capture::parse_capture(std::as_bytes(std::span(bytes)), file), file);
+}
+
+/// The option --percentiles.
+int run_percentiles(const BenchOptions& o, const Globals& globals) {
+  std::vector<engines::Samples> all;
+  std::string title = std::filesystem::path(o.percentiles[0]).filename().string();
+  if (o.percentiles.size() == 1) {
+    all.push_back(captured_samples(o));
+    title += ": " + render::counted(all[0].poses.size(), "pose", "poses") + ", the least of " +
+             render::counted(static_cast<std::size_t>(all[0].rounds), "query", "queries");
+  } else {
+    const Contest contest = make_contest(o.percentiles[0], o.percentiles[1], o.methods, o.timeout);
+    Random random(o.set.seed);
+    std::vector<Pose> poses;
+    for (int i = 0; i < o.set.poses; ++i)
+      poses.push_back(contest.space.pose(engines::random_placement(random)));
+    for (const auto& engine : contest.engines)
+      all.push_back(engines::measure(*engine, poses, progress_report(globals.quiet)));
+    title += " and " + std::filesystem::path(o.percentiles[1]).filename().string() + ", " +
+             std::to_string(poses.size()) + " random poses, seed " + std::to_string(o.set.seed);
+  }
+  note(globals, engines::notes_of(all));
+  print_rows(title, engines::rows_of(all), o.json);
+  return kOk;
+}
+
 int run_bench(const BenchOptions& o, const Globals& globals) {
+  if (!o.percentiles.empty()) return run_percentiles(o, globals);
   std::vector<workers::WorkerMethod> methods = workers::find_all_methods();
   std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
   methods = chosen_methods(methods, o.methods);
@@ -122,10 +163,27 @@ Command add_bench(App& root, const Globals& globals) {
   add_tex_option(*app, o->tex, "the tables");
   app->add_flag("--build", o->build,
                 "Compare the time to build, the first answer and memory instead of queries");
+  auto* percentiles =
+      app->add_option(
+             "--percentiles", o->percentiles, "A B | CAPTURE",
+             "Only print the distribution of times and tests of the methods, ours by default, for two 3D "
+             "bodies at random poses: rotations are uniform, and the direction and distance of B's centre, "
+             "up to the mean of both diagonals; or in a capture. A method may also be "
+             "command:PROGRAM, started as PROGRAM A B POSES, which records its queries with "
+             "lrbscope_capture.h")
+          ->expected(1, 2);
+  app->add_flag("--json", o->json, "With --percentiles: print JSON, a line for each row of the table")
+      ->needs(percentiles);
+  Option* poses = app->get_option("--poses");
+  poses->description("Number of poses per class [" + std::to_string(o->set.poses) +
+                     "; with --percentiles in all, 10000]");
   app->add_option("--rounds", o->rounds, "N",
                   "With --build: number of times that each structure is built [5]")
       ->in_range(1, 1000);
-  return {app, [o, &globals] { return run_bench(*o, globals); }};
+  return {app, [o, poses, &globals] {
+            if (!o->percentiles.empty() && !poses->given()) o->set.poses = 10000;
+            return run_bench(*o, globals);
+          }};
 }
 
 }  // namespace lrb::cli

@@ -9,8 +9,8 @@
 #include "bench/speed/peer_table.hpp"
 #include "bench/speed/survey.hpp"
 #include "scenarios/figure/figure_layout.hpp"
+#include "tools/bench_options.hpp"
 #include "tools/commands.hpp"
-#include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>

@@ -234,6 +234,14 @@ std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::
   return in_quotes(*option) + " is not an option of " + call_of(app) + did_you_mean(*option, known);
 }
 
+/// Commands of earlier versions, with their replacements.
+constexpr std::pair<std::string_view, std::string_view> kRemovedCommands[] = {
+    {"levels", "use `lrbscope inspect FILE --levels`"},
+    {"tails", "use `lrbscope bench --percentiles A B`"},
+    {"worst", "use `lrbscope stability --search A B`"},
+    {"xray", "record the engine and use `lrbscope import`; see docs/profiling.md"},
+};
+
 /// Returns the error message for a command line that CLI11 rejected. `word`: the first word that is not an
 /// option.
 std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std::string word) {
@@ -251,6 +259,8 @@ std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std:
   for (const CLI::App* c : app->get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
     known.push_back(c->get_name());
   if (known.empty() || word.empty()) return plain_message(root, *app, error) + help;
+  for (const auto& [name, instead] : kRemovedCommands)
+    if (app == &root && word == name) return in_quotes(word) + " was removed in 2.0; " + std::string(instead);
   return in_quotes(word) + " is not a command of " + call_of(*app) + did_you_mean(word, known) + help;
 }
 

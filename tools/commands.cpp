@@ -21,8 +21,6 @@ Command add_sweep(App& root, const Globals& globals);
 Command add_build(App& root, const Globals& globals);
 Command add_inspect(App& root, const Globals& globals);
 Command add_close(App& root, const Globals& globals);
-Command add_levels(App& root, const Globals& globals);
-Command add_xray(App& root, const Globals& globals);
 Command add_import(App& root, const Globals& globals);
 Command add_tree(App& root, const Globals& globals);
 Command add_check(App& root, const Globals& globals);
@@ -38,19 +36,23 @@ Command add_doctor(App& root, const Globals& globals);
 Command add_list(App& root, const Globals& globals);
 Command add_bench(App& root, const Globals& globals);
 Command add_chart(App& root, const Globals& globals);
-Command add_tails(App& root, const Globals& globals);
-Command add_worst(App& root, const Globals& globals);
 Command add_completion(App& root, const Globals& globals);
 
 namespace {
 
 /// The commands in the order of --help.
 constexpr auto kCommands = std::to_array<Command (*)(App&, const Globals&)>({
-    add_run,    add_collide, add_crowd,    add_query, add_distance, add_near,       add_points,
-    add_why,    add_clash,   add_manifold, add_sweep, add_build,    add_inspect,    add_close,
-    add_levels, add_xray,    add_import,   add_tree,  add_check,    add_live,       add_compare,
-    add_render, add_export,  add_figure,   add_paper, add_golden,   add_stability,  add_doctor,
-    add_list,   add_bench,   add_chart,    add_tails, add_worst,    add_completion,
+    add_run,        add_collide,  add_crowd,   add_query,  add_distance, add_near,   add_points, add_why,
+    add_clash,      add_manifold, add_sweep,   add_build,  add_inspect,  add_close,  add_import, add_tree,
+    add_check,      add_live,     add_compare, add_render, add_export,   add_figure, add_paper,  add_golden,
+#ifdef LRB_BUILD_BENCH
+    add_stability,
+#endif
+    add_doctor,     add_list,
+#ifdef LRB_BUILD_BENCH
+    add_bench,      add_chart,
+#endif
+    add_completion,
 });
 
 }  // namespace

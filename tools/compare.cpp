@@ -66,7 +66,7 @@ Command add_compare(App& root, const Globals& globals) {
       "compare",
       "Show two recorded runs side by side, with their first difference; exit code 1 if they differ");
   const auto o = std::make_shared<CompareOptions>();
-  app->add_option("RUN1", o->first, "Folder or trace of a run, as written by run, collide, import or xray")
+  app->add_option("RUN1", o->first, "Folder or trace of a run, as written by run, collide or import")
       ->required();
   app->add_option("RUN2", o->second, "Folder or trace of the run to compare with")->required();
   app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/compare]");

@@ -4,7 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#ifdef LRB_BUILD_BENCH
 #include "bench/workers/workers.hpp"
+#endif
 #include "render/gl.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
@@ -74,6 +76,7 @@ render::Finding optional(const std::string& what, bool is_found, const std::stri
                   : render::Finding{Level::warning, what, "not found; " + use};
 }
 
+#ifdef LRB_BUILD_BENCH
 /// Returns a finding for each worker program and each method of other engines.
 std::vector<render::Finding> check_engines() {
   std::vector<render::Finding> out;
@@ -82,11 +85,8 @@ std::vector<render::Finding> check_engines() {
         name, !workers::program_beside(name).empty(),
         "needed by " + use + "; build it: cmake --build --preset release --target lrbscope-workers"));
   };
-  add_program("lrbscope-methods", "bench, chart, stability, and other engines in tails and worst");
+  add_program("lrbscope-methods", "bench, chart and stability");
   add_program("lrbscope-quantities", "chart --quantity and stability --quantity");
-  add_program("lrbscope-xray-fcl", "xray --method fcl");
-  add_program("lrbscope-xray-cgal", "xray --method cgal");
-  add_program("lrbscope-simplify", "the curve of free simplification of levels -o");
   try {
     for (const workers::WorkerMethod& m : workers::find_all_methods()) {
       const bool is_own = m.info.name.starts_with("ours");
@@ -99,6 +99,7 @@ std::vector<render::Finding> check_engines() {
   }
   return out;
 }
+#endif
 
 int run_doctor(bool json) {
   std::vector<render::Finding> findings = {{Level::ok, "lrbscope", trace::lrbscope_version()}};
@@ -114,7 +115,9 @@ int run_doctor(bool json) {
                               "needed by charts in print (--chart, chart, paper); install gnuplot-nox"));
   findings.push_back(
       optional("ffmpeg", run::has_ffmpeg(), "needed by --animate; install ffmpeg or set LRB_FFMPEG"));
+#ifdef LRB_BUILD_BENCH
   for (render::Finding& f : check_engines()) findings.push_back(std::move(f));
+#endif
   bool well = true;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::string text;

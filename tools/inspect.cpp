@@ -24,6 +24,7 @@
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
@@ -33,6 +34,7 @@
 #include <lrbscope/self_intersections.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/validate.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::cli {
 
@@ -119,7 +121,8 @@ struct InspectOptions {
   std::string file, picture, drawing;
   PictureOptions pictures;
   bool validate = false, render = false, json = false;
-  bool regions = false, tried = false, self_intersections = false;
+  bool regions = false, tried = false, self_intersections = false, levels = false;
+  std::vector<double> shares{std::begin(bodies::kLevelShares), std::end(bodies::kLevelShares)};
   bodies::RegionOrder sort = bodies::RegionOrder::waste;
   unsigned threads = 0;
 };
@@ -188,6 +191,33 @@ int list_self_intersections(const InspectOptions& o, const Globals& globals) {
                  render::counted(found.curves, "curve", "curves")});
   if (!o.drawing.empty()) run::write_picture(run::picture_of(found, *body, look), o.drawing, look.dpi);
   return found.pairs.empty() ? kOk : kMismatch;
+}
+
+/// Prints the levels of detail: how many faces the body needs at each tolerance.
+int list_levels(const InspectOptions& o, const Globals& globals) {
+  constexpr int kDigits = 4;
+  const bodies::LoadedBody body = bodies::load_body(o.file, with_progress({}, globals.quiet), o.corners);
+  const LrbRep& rep = body.rep;
+  note(globals, body.notes);
+  const std::string why_none = why_no_levels(rep);
+  if (!why_none.empty()) note(globals, {note_no_levels(rep)});
+  std::vector<bodies::LevelFigures> levels;
+  if (why_none.empty()) levels = bodies::level_figures(rep, o.shares, o.threads);
+  if (o.json) {
+    Json j = {
+        {"name", rep.name()}, {"real_faces", rep.real_face_count()}, {"levels", bodies::level_json(levels)}};
+    if (!why_none.empty()) j["no_levels"] = why_none;
+    print(one_line(j));
+    return kOk;
+  }
+  const std::string head = rep.name() + ": " + std::to_string(rep.real_face_count()) + " faces\n";
+  std::vector<std::vector<std::string>> rows = {{"share", "tolerance", "faces", "deviation"}};
+  for (const bodies::LevelFigures& l : levels)
+    rows.push_back({io::number_text(l.share, kDigits), io::number_text(l.tolerance, kDigits),
+                    std::to_string(l.faces), io::number_text(l.bound, kDigits)});
+  print(head +
+        (why_none.empty() ? report::in_columns(rows, 0) : "no levels of detail, because " + why_none + "\n"));
+  return kOk;
 }
 
 Json box_json(const std::vector<Eigen::Vector3d>& vertices) {
@@ -358,6 +388,7 @@ std::string as_text(const Json& j) {
 
 int run_inspect(const InspectOptions& o, const Globals& globals) {
   if (o.self_intersections) return list_self_intersections(o, globals);
+  if (o.levels) return list_levels(o, globals);
   render::Look look = sheet_look(o, run::kBodySheetWidth, run::kBodySheetHeight);
   Json j;
   std::unique_ptr<LrbRep> rep;
@@ -446,6 +477,18 @@ Command add_inspect(App& root, const Globals& globals) {
   for (Option* other : {json, regions, app->get_option("--validate"), app->get_option("--render"),
                         app->get_option("--output")})
     pairs->excludes(other);
+  auto* levels =
+      app->add_flag("--levels", o->levels,
+                    "Only list the levels of detail: how many faces the body (a mesh is built first) needs "
+                    "at each of several tolerances, with proven deviations");
+  for (Option* other : {pairs, regions, app->get_option("--validate"), app->get_option("--render"),
+                        app->get_option("--draw"), app->get_option("--output")})
+    levels->excludes(other);
+  app->add_option("--at", o->shares, "SHARE...",
+                  "With --levels: tolerances, as fractions of the longest side of the body's box")
+      ->in_hidden_range(0.0, 1.0)
+      ->needs(levels)
+      ->capture_default_str();
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
 }

@@ -75,6 +75,10 @@ void add_clock_option(App& app, std::optional<trace::Clock>& clock) {
       "microseconds of each step on the page");
 }
 
+void add_tex_option(App& app, bool& tex, const char* what) {
+  app.add_flag("--tex", tex, std::string("Also write ") + what + " for LaTeX with the package booktabs");
+}
+
 void add_request_options(App& app, CollideRequest& request) {
   add_choice<Mode>(app, option_of(&CollideRequest::mode), request.mode,
                    "all: every pair; first: one pair, a crossing one if there is any; any: stop at the first "

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "bench/speed/make_sets.hpp"
-#include "bench/workers/workers.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -41,59 +39,6 @@ std::vector<T> chosen(const std::vector<T>& all, const std::vector<std::string>&
   return out;
 }
 
-/// Returns the named methods, as chosen(). Throws EnvironmentError if one of those named is absent from this
-/// build.
-inline std::vector<workers::WorkerMethod> chosen_methods(const std::vector<workers::WorkerMethod>& all,
-                                                         const std::vector<std::string>& names) {
-  std::vector<workers::WorkerMethod> out =
-      chosen(all, names, "method", [](const workers::WorkerMethod& m) { return m.info.name; });
-  if (!names.empty())
-    for (const workers::WorkerMethod& m : out)
-      if (!m.info.present) throw EnvironmentError("method '" + m.info.name + "': " + m.info.remark);
-  return out;
-}
-
-// The options shared by benchmark commands.
-
-struct MeasureOptions {
-  std::string folder, folder_help, models;
-  std::vector<std::string> methods;
-  bench::SetOptions set;
-  double timeout = 20;
-  bool tex = false;
-};
-
-/// Adds --tex.
-inline void add_tex_option(App& app, bool& tex, const char* what) {
-  app.add_flag("--tex", tex, std::string("Also write ") + what + " for LaTeX with the package booktabs");
-}
-
-/// Adds the options; the help shows the values in `o` as defaults.
-inline void add_measure_options(App& app, MeasureOptions& o) {
-  app.add_option("-o,--output", o.folder, "DIR",
-                 "Output folder; a survey found in it is continued [" + o.folder_help + "]");
-  app.add_option("--models", o.models, "DIR", "Folder of additional meshes; each is collided with the next");
-  app.add_option("--method", o.methods, "NAME", "Only these methods");
-  app.add_option("--poses", o.set.poses, "N",
-                 "Number of poses per class [" + std::to_string(o.set.poses) + "]")
-      ->in_range(1, 10000);
-  app.add_option("--seed", o.set.seed, "S", "Random seed for the poses [1]")->not_negative();
-  app.add_option("--timeout", o.timeout, "S", "Time limit per pose and method, in seconds [20]")
-      ->in_range(0.1, 3600.0);
-}
-
-/// Adds --quantity: the quantity that methods are compared on.
-inline void add_quantity_option(App& app, methods::Quantity& quantity) {
-  app.add_option_function<std::string>(
-      "--quantity",
-      [&quantity](const std::string& word) {
-        const auto known = from_name<methods::Quantity>(word);
-        if (!known) reject_value("--quantity", "'" + word + "': expected " + all_names<methods::Quantity>());
-        quantity = *known;
-      },
-      "Q", "Quantity to compute: " + all_names<methods::Quantity>() + " [pairs]");
-}
-
 /// Adds an option whose value is the name of an enumerator.
 template <class Enum, class Target>
 void add_choice(App& app, const std::string& name, Target& target, const std::string& what) {
@@ -106,6 +51,8 @@ void add_choice(App& app, const std::string& name, Target& target, const std::st
       ->one_of(words);
 }
 
+/// Adds --tex.
+void add_tex_option(App& app, bool& tex, const char* what);
 /// Adds --mode, --recursion, --predicates and --max-pairs.
 void add_request_options(App& app, CollideRequest& request);
 /// Adds --tolerance, --max-tests and --max-time.

@@ -133,7 +133,8 @@ int run_render(const RenderOptions& given, const Globals& globals) {
                      std::string(name_of(needed)));
   if (render::needed_level(spec) == EventLevel::nodes && recording.trees.empty())
     throw InputError("--colour-by or --node-boxes: " + printable_name(o.trace) + " is of " +
-                     trace.header.engine + " and does not contain its trees; draw them with `lrbscope xray`");
+                     trace.header.engine +
+                     " and does not contain its trees; record them with `lrbscope import`");
   run::check_frames(p, spec);  // throws before anything is written
   const report::Folder locked(folder);
   const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));

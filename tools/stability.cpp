@@ -1,20 +1,21 @@
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <memory>
 #include <sstream>
 
 #include "bench/stability/case_meshes.hpp"
+#include "bench/stability/case_picture.hpp"
 #include "bench/stability/minimise.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/saved_case.hpp"
 #include "bench/stability/stability_experiment.hpp"
 #include "bench/stability/stability_report.hpp"
-#include "bench/stability/worst_case.hpp"
 #include "scenarios/io/files.hpp"
+#include "tools/bench_options.hpp"
 #include "tools/commands.hpp"
-#include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
@@ -26,13 +27,16 @@ using namespace lrb::stability;
 
 struct StabilityOptions {
   std::string folder, save, saved;
+  std::vector<std::string> search;
+  engines::Goal goal = engines::Goal::tests_per_answer;
+  std::size_t budget = 3000;
   std::vector<std::string> families, methods;
   std::optional<int> difficulty;
   std::optional<std::uint64_t> only;
   std::uint64_t cases = 100, seed = 1;
   unsigned jobs = 2;
   double timeout = 5;
-  bool pairs = false, minimise = false, tex = false;
+  bool pairs = false, minimise = false, tex = false, json = false;
   Quantity quantity = Quantity::pairs;
 };
 
@@ -230,8 +234,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
         const auto method = std::find_if(methods.begin(), methods.end(), [&](const workers::WorkerMethod& m) {
           return m.column.name == r.method;
         });
-        Replay again = replay(*method, r.family, r.difficulty, r.case_index, r.seed, o.timeout, o.quantity);
-        return AnsweredPairs{std::move(again.expected), std::move(again.answered)};
+        return replay(*method, r.family, r.difficulty, r.case_index, r.seed, o.timeout, o.quantity);
       },
       [&](std::size_t done, std::size_t total) {
         bar.set_total(total);
@@ -292,7 +295,36 @@ void check_one_case(const StabilityOptions& o, const std::vector<workers::Worker
     throw InputError("--minimise: expected exactly one --method, found " + std::to_string(methods.size()));
 }
 
+/// The option --search.
+int run_search(const StabilityOptions& o, const Globals& globals) {
+  if (o.methods.size() > 1)
+    throw InputError("--search: expected one --method, found " + std::to_string(o.methods.size()));
+  const Contest contest = make_contest(o.search[0], o.search[1], o.methods, o.timeout);
+  engines::Engine& engine = *contest.engines.front();
+  engines::SearchOptions options;
+  options.budget = o.budget;
+  options.seed = o.seed;
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  const auto& [a, b] = *contest.bodies;
+  const engines::Found found =
+      o.goal == engines::Goal::wrong
+          ? engines::find_wrong(engine, a.rep, b.rep, contest.space, options, progress)
+          : engines::find_costly(engine, contest.space, o.goal, options, progress);
+  note(globals, found.failures);
+  const auto name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  const std::string title = name(o.search[0]) + " and " + name(o.search[1]) + ", " + engine.name() + ": " +
+                            std::string(name_of(o.goal)) + ", " + std::to_string(o.budget) +
+                            " queries, seed " + std::to_string(o.seed);
+  print_rows(title, found.rows, o.json);
+  if (!o.folder.empty() && !found.poses.empty())
+    write_scenario(contest, {o.search[0], o.search[1]},
+                   "The worst poses, found by lrbscope stability --search: " + title + ".", found.poses,
+                   o.folder);
+  return kOk;
+}
+
 int run_stability(StabilityOptions o, const Globals& globals) {
+  if (!o.search.empty()) return run_search(o, globals);
   if (o.folder.empty())
     o.folder =
         o.quantity == Quantity::pairs ? "out/stability" : "out/stability-" + std::string(name_of(o.quantity));
@@ -322,7 +354,7 @@ Command add_stability(App& root, const Globals& globals) {
                   "Output folder [out/stability, or out/stability-QUANTITY]");
   add_quantity_option(*app, o->quantity);
   app->add_option("--family", o->families, "NAME", "Only these families");
-  app->add_option("--method", o->methods, "NAME", "Only these methods");
+  app->add_option("--method", o->methods, "NAME", "Only these methods")->delimiter(',');
   app->add_option("--difficulty", o->difficulty, "K",
                   "Only this difficulty, from 0 (benign) to 10 (degenerate)")
       ->in_range(0, kDifficulties - 1);
@@ -342,6 +374,22 @@ Command add_stability(App& root, const Globals& globals) {
                 "With --save and one --method: shrink a case that it fails on to the fewest triangles and "
                 "bits, and write that with a picture and a report for the engine's tracker");
   add_tex_option(*app, o->tex, "the table of failures, grid.tex,");
+  auto* search =
+      app->add_option(
+             "--search", o->search, "A B",
+             "Only search for the poses of B beside A, two 3D bodies, at which one --method, ours by "
+             "default or command:PROGRAM, does worst; with -o, also write a scenario of them for "
+             "regression tests")
+          ->expected(2);
+  add_choice<engines::Goal>(
+      *app, "--goal", o->goal,
+      "With --search: quantity to maximise: tests for each pair found, tests, wasted visits "
+      "(command:PROGRAM), time; or wrong: compare the pairs with the exact ones at poses that are hard in "
+      "floating point [tests-per-answer]");
+  app->add_option("--budget", o->budget, "N", "With --search: number of queries [3000]")
+      ->in_range(8, 10000000);
+  app->add_flag("--json", o->json, "With --search: print JSON, a line for each pose");
+  for (const char* name : {"--goal", "--budget", "--json"}) app->get_option(name)->needs(search);
   app->add_flag("--pairs", o->pairs, "With --only or --saved: print the expected and the found pairs");
   return {app, [o, &globals] { return run_stability(*o, globals); }};
 }

@@ -1,55 +1,28 @@
-/// The worker: a program beside lrbscope that runs cases with methods that are not linked into lrbscope and
-/// may crash or hang.
-///
-/// It writes its output as JSON lines to stdout:
-///   --list                its methods
-///   --family F --seed S --cases N --begin K --end L
-///                         the correct answers (RightAnswer) to cases K .. L - 1; case k is number k % N at
-///                         difficulty k / N
-///   ... --method M [--expected FILE] [--pairs]
-///                         a record for each; the correct answers are read from the file (one line per
-///                         case, from case 0 on) or computed; with --pairs also the lists of pairs
-///   --questions FILE --method M [--setting X] [--errors] --begin K --end L
-///                         a bench::Record for each of a data set's queries K .. L - 1; with --errors also
-///                         the errors of its answers
-///   --build FILE.lrb --method M
-///                         a bench::BuildTime for each of the rounds K .. L - 1; M may also be one of
-///                         bench::own_structures()
-///   --saved --method M    a record, with the list of pairs, for each case whose file is named by a line of
-///   file
-///                         descriptor 3, until its end (bench/stability/case_meshes.hpp)
-///   --bodies A B --method M [--no-join]
-///                         a reply for each request in file descriptor 3, until its end
-///                         (bench/tails/engine.hpp)
-/// Exit codes: 0, or 2 with the line {"error": "..."}.
+/// The worker: a program beside lrbscope that answers questions (serve.hpp) with methods that are not linked
+/// into lrbscope and may crash or hang.
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <iostream>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
 
 #include "bench/methods/method.hpp"
-#include "bench/programs/case_queue.hpp"
+#include "bench/programs/serve.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/build_times.hpp"
 #include "bench/stability/case_meshes.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/stability_experiment.hpp"
-#include "bench/tails/engine.hpp"
-#include "bench/workers/worker_json.hpp"
+#include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/io/poses.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::worker_programs {
 namespace {
-
-using nlohmann::ordered_json;
 
 // Methods that misbehave, to test the handling of failures. They are listed only if the environment has
 // LRBSCOPE_FAKE_METHODS.
@@ -105,86 +78,88 @@ std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::Method
           fake<Vice::miss>("fake-miss", *ours),     methods::absent("fake-absent", "fake-absent", "nothing")};
 }
 
-struct WorkerOptions {
-  CaseQueue queue;
-  bool pairs = false, errors = false;
-  std::string questions, build;
-  std::optional<double> setting;
-  std::vector<std::string> bodies;
-  bool no_join = false, saved = false;
+/// The answers of one method, which keeps bodies between questions.
+class Answers {
+ public:
+  Answers(std::string method, const std::vector<methods::MethodEntry>& entries)
+      : method_(std::move(method)), entries_(entries) {}
+
+  ordered_json operator()(const json& question) {
+    if (method_.empty()) return right_answer(question);
+    if (question.contains("build")) return build(question.at("build"));
+    if (question.contains("saved")) return stability::answer_saved(entry(), question.at("saved"));
+    if (question.contains("bodies")) return about_bodies(question);
+    return question.contains("set") ? about_set(question) : about_case(question);
+  }
+
+ private:
+  const methods::MethodEntry& entry() const { return methods::find_method(entries_, method_); }
+
+  static ordered_json right_answer(const json& question) {
+    return stability::to_json(stability::expected_answer(case_of(family_of(question), question)));
+  }
+
+  ordered_json build(const std::string& file) const {
+    const auto known = std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const methods::MethodEntry& e) { return e.info.name == method_; });
+    return to_json(bench::time_build(known == entries_.end() ? nullptr : &*known, method_, file));
+  }
+
+  ordered_json about_case(const json& question) {
+    if (!cases_) cases_.emplace(entry());
+    const cases::Family& family = family_of(question);
+    const cases::Case c = case_of(family, question);
+    const std::optional<stability::RightAnswer> read = known_.find(question);
+    stability::Record record = record_of(question, method_);
+    cases_->ask(family, c, read ? *read : stability::expected_answer(c), record);
+    ordered_json out = stability::to_json(record);
+    add_pairs(out, question, cases_->pairs() ? &*cases_->pairs() : nullptr);
+    return out;
+  }
+
+  ordered_json about_set(const json& question) {
+    if (!set_) {
+      set_ = bench::read_data_set(question.at("set"));
+      const std::optional<double> setting =
+          question.contains("setting") ? std::optional<double>(question.at("setting")) : std::nullopt;
+      queries_.emplace(entry(), setting, *set_, question.value("errors", false));
+    }
+    return to_json(queries_->ask(question.at("question")));
+  }
+
+  ordered_json about_bodies(const json& question) {
+    if (!method_of_bodies_) {
+      const auto loaded = bodies::load_faces_of_two(question.at("bodies").at(0), question.at("bodies").at(1));
+      method_of_bodies_ = entry().make();
+      for (std::size_t i = 0; i < 2; ++i) bodies_[i] = method_of_bodies_->build(loaded[i].rep);
+    }
+    if (!question.contains("b")) return ordered_json::object();
+    const Pose pose = io::pose_of(question.at("b").get<std::array<double, 12>>());
+    try {
+      const MethodAnswer found =
+          method_of_bodies_->query(*bodies_[0], Pose{}, *bodies_[1], pose, Mode::all_pairs);
+      ordered_json out = {{"us", found.microseconds}, {"pairs", found.pairs.size()}};
+      if (question.value("tests", false))
+        if (const auto tests = method_of_bodies_->count_tests(*bodies_[0], Pose{}, *bodies_[1], pose)) {
+          out["boxes"] = tests->boxes;
+          out["faces"] = tests->faces;
+        }
+      if (question.value("list", false)) out["list"] = workers::PairsJson::write(found.pairs);
+      return out;
+    } catch (const std::exception& e) {
+      return {{"failure", e.what()}};
+    }
+  }
+
+  std::string method_;
+  const std::vector<methods::MethodEntry>& entries_;
+  KnownAnswers known_;
+  std::optional<stability::StabilityRunner> cases_;
+  std::optional<bench::DataSet> set_;
+  std::optional<bench::BenchRunner> queries_;
+  std::unique_ptr<Method> method_of_bodies_;
+  std::array<std::unique_ptr<MethodBody>, 2> bodies_;
 };
-
-void list_methods(const std::vector<methods::MethodEntry>& entries, Lines& out) {
-  for (const methods::MethodEntry& e : entries) out.say(dump(workers::to_json(e.info)));
-}
-
-void say_expected(const CaseQueue& queue, Lines& out) {
-  const cases::Family& family = family_of(queue);
-  for (std::uint64_t k = queue.begin; k < queue.end; ++k)
-    out.say(stability::to_line(stability::expected_answer(make(family, queue, k))));
-}
-
-void say_records(const WorkerOptions& o, const methods::MethodEntry& entry, Lines& out) {
-  const cases::Family& family = family_of(o.queue);
-  stability::StabilityRunner runner(entry);
-  KnownAnswers known(o.queue);
-  for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k) {
-    const cases::Case c = make(family, o.queue, k);
-    const std::optional<stability::RightAnswer> read = known.next();
-    stability::Record record = record_of(o.queue, k);
-    runner.ask(family, c, read ? *read : stability::expected_answer(c), record);
-    ordered_json value = stability::to_json(record);
-    if (o.pairs && runner.pairs()) value["answered_pairs"] = workers::PairsJson::write(*runner.pairs());
-    out.say(dump(value));
-  }
-}
-
-void work(const WorkerOptions& o, const std::vector<methods::MethodEntry>& entries, Lines& out) {
-  if (o.queue.list) return list_methods(entries, out);
-  if (o.queue.method.empty()) return say_expected(o.queue, out);
-  if (!o.build.empty()) {
-    const auto known = std::find_if(entries.begin(), entries.end(), [&](const methods::MethodEntry& e) {
-      return e.info.name == o.queue.method;
-    });
-    const methods::MethodEntry* entry = known == entries.end() ? nullptr : &*known;
-    for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k)
-      out.say(dump(to_json(bench::time_build(entry, o.queue.method, o.build))));
-    return;
-  }
-  const methods::MethodEntry& entry = methods::find_method(entries, o.queue.method);
-  if (o.saved) {
-    std::ifstream requests("/proc/self/fd/3");
-    return stability::serve_cases(entry, requests, [&](const std::string& line) { out.say(line); });
-  }
-  if (!o.bodies.empty()) {
-    std::ifstream requests("/proc/self/fd/3");
-    return tails::serve(
-        entry, {o.bodies[0], o.bodies[1], o.no_join ? bodies::Corners::apart : bodies::Corners::joined},
-        requests, [&](const std::string& line) { out.say(line); });
-  }
-  if (o.questions.empty()) return say_records(o, entry, out);
-  const bench::DataSet set = bench::read_data_set(o.questions);
-  bench::BenchRunner runner(entry, o.setting, set, o.errors);
-  for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k) out.say(dump(to_json(runner.ask(k))));
-}
-
-int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries) {
-  if (std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)
-    for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
-  WorkerOptions o;
-  CLI::App app("Runs cases on collision engines, for lrbscope stability; see bench/programs/methods.cpp.");
-  add_options(app, o.queue);
-  app.add_flag("--pairs", o.pairs);
-  app.add_flag("--errors", o.errors);
-  app.add_option("--questions", o.questions);
-  app.add_option("--build", o.build);
-  app.add_option("--setting", o.setting);
-  app.add_option("--bodies", o.bodies)->expected(2);
-  app.add_flag("--no-join", o.no_join);
-  app.add_flag("--saved", o.saved);
-  CLI11_PARSE(app, argc, argv);
-  return run_worker([&](Lines& out) { work(o, entries, out); });
-}
 
 }  // namespace
 }  // namespace lrb::worker_programs
@@ -192,5 +167,20 @@ int worker_main(int argc, char** argv, std::vector<methods::MethodEntry> entries
 // The main() of every worker program; programs differ in the linked methods (bench/methods/methods.cmake).
 
 int main(int argc, char** argv) {
-  return lrb::worker_programs::worker_main(argc, argv, lrb::methods::registered_methods());
+  using namespace lrb;
+  using namespace lrb::worker_programs;
+  std::vector<methods::MethodEntry> entries = methods::registered_methods();
+  if (std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)
+    for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
+  return serve(
+      argc, argv,
+      [&](const Call&) {
+        std::vector<methods::MethodInfo> out;
+        for (const methods::MethodEntry& e : entries) out.push_back(e.info);
+        return out;
+      },
+      [&](const Call& call) {
+        const auto answers = std::make_shared<Answers>(call.method, entries);
+        return [answers](const json& question) { return (*answers)(question); };
+      });
 }

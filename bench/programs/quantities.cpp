@@ -1,12 +1,12 @@
-/// lrbscope-quantities: a worker like methods.cpp, for methods that return a number or another list than that
-/// of intersecting pairs. --quantity Q or the data set of --questions selects the quantity. Without --method
-/// it prints the correct answers.
+/// lrbscope-quantities: a worker (serve.hpp) for methods that return a number or another list than that of
+/// intersecting pairs. Without a method, the answer to a query of a data set is lrbscope's at its finest
+/// setting.
 
 #include <algorithm>
 #include <optional>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/programs/case_queue.hpp"
+#include "bench/programs/serve.hpp"
 #include "bench/quantities/number_method.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/data_set.hpp"
@@ -90,83 +90,64 @@ nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& s
   }
 }
 
-using namespace lrb::stability;
+using stability::Quantity;
 
-struct Options {
-  CaseQueue queue;
-  std::string quantity = "distance", questions;
-  std::optional<double> setting;
-  bool pairs = false, errors = false;
-};
-
-Quantity quantity_of(const Options& o) {
-  const auto q = from_name<Quantity>(o.quantity);
-  if (!q || *q == Quantity::pairs) throw InputError("unknown quantity '" + o.quantity + "'");
+Quantity quantity_of(const Call& call) {
+  const auto q = from_name<Quantity>(call.quantity);
+  if (!q || *q == Quantity::pairs) throw InputError("unknown quantity '" + call.quantity + "'");
   return *q;
 }
 
 NumberMethod method_of(Quantity quantity, const std::string& name) {
-  for (NumberMethod& m : number_methods())
+  for (NumberMethod& m : stability::number_methods())
     if (m.quantity == quantity && m.info.name == name) return m;
   throw InputError("unknown method '" + name + "' for this quantity");
 }
 
-void say_records(const Options& o, Lines& out) {
-  const cases::Family& family = family_of(o.queue);
-  const NumberMethod method = method_of(quantity_of(o), o.queue.method);
-  KnownAnswers known(o.queue);
-  for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k) {
-    const cases::Case c = make(family, o.queue, k);
-    const std::optional<stability::RightAnswer> read = known.next();
-    Record record = record_of(o.queue, k);
-    const auto answer = ask_number(method, c, read ? *read : true_number(method.quantity, c), record);
-    nlohmann::ordered_json value = to_json(record);
-    if (o.pairs && answer && methods::is_list(method.quantity))
-      value["answered_pairs"] = workers::PairsJson::write(answer->pairs);
-    out.say(dump(value));
-  }
+ordered_json about_case(const Call& call, const json& question, KnownAnswers& known) {
+  const cases::Case c = case_of(family_of(question), question);
+  const Quantity quantity = quantity_of(call);
+  if (call.method.empty()) return stability::to_json(stability::true_number(quantity, c));
+  const NumberMethod method = method_of(quantity, call.method);
+  const std::optional<stability::RightAnswer> read = known.find(question);
+  stability::Record record = record_of(question, call.method);
+  const auto answer = ask_number(method, c, read ? *read : stability::true_number(quantity, c), record);
+  ordered_json out = stability::to_json(record);
+  add_pairs(out, question, answer && methods::is_list(quantity) ? &answer->pairs : nullptr);
+  return out;
 }
 
-/// Answers a data set's queries; without a method, with lrbscope at its finest setting.
-void answer_questions(const Options& o, Lines& out) {
-  const bench::DataSet set = bench::read_data_set(o.questions);
-  const bool finds = o.queue.method.empty();
-  const NumberMethod method = method_of(set.quantity, finds ? "ours" : o.queue.method);
-  for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k)
-    out.say(dump(finds ? known_number(method, set, k)
-                       : to_json(bench_record(method, o.setting, set, k, o.errors))));
-}
-
-void work(const Options& o, Lines& out) {
-  if (!o.questions.empty()) return answer_questions(o, out);
-  if (o.queue.list) {
-    for (const NumberMethod& m : number_methods())
-      if (m.quantity == quantity_of(o)) out.say(dump(workers::to_json(m.info)));
-  } else if (!o.queue.method.empty()) {
-    say_records(o, out);
-  } else {
-    const cases::Family& family = family_of(o.queue);
-    for (std::uint64_t k = o.queue.begin; k < o.queue.end; ++k)
-      out.say(to_line(true_number(quantity_of(o), make(family, o.queue, k))));
-  }
-}
-
-int run(int argc, char** argv) {
-  Options o;
-  CLI::App app("Runs cases on methods that return a number, for lrbscope stability.");
-  add_options(app, o.queue);
-  app.add_option("--quantity", o.quantity);
-  app.add_option("--questions", o.questions);
-  app.add_option("--setting", o.setting);
-  app.add_flag("--pairs", o.pairs);
-  app.add_flag("--errors", o.errors);  // of lists; numbers are judged by the survey
-  CLI11_PARSE(app, argc, argv);
-  return run_worker([&](Lines& out) { work(o, out); });
+ordered_json about_set(const Call& call, const json& question, const DataSet& set) {
+  const bool finds = call.method.empty();
+  const NumberMethod method = method_of(set.quantity, finds ? "ours" : call.method);
+  if (finds) return known_number(method, set, question.at("question"));
+  const std::optional<double> setting =
+      question.contains("setting") ? std::optional<double>(question.at("setting")) : std::nullopt;
+  return to_json(
+      bench_record(method, setting, set, question.at("question"), question.value("errors", false)));
 }
 
 }  // namespace
 }  // namespace lrb::worker_programs
 
 int main(int argc, char** argv) {
-  return lrb::worker_programs::run(argc, argv);
+  using namespace lrb;
+  using namespace lrb::worker_programs;
+  KnownAnswers known;
+  std::optional<DataSet> set;
+  return serve(
+      argc, argv,
+      [](const Call& call) {
+        std::vector<methods::MethodInfo> out;
+        for (const NumberMethod& m : stability::number_methods())
+          if (m.quantity == quantity_of(call)) out.push_back(m.info);
+        return out;
+      },
+      [&](const Call& call) {
+        return [&known, &set, call](const json& question) {
+          if (!question.contains("set")) return about_case(call, question, known);
+          if (!set) set = bench::read_data_set(question.at("set"));
+          return about_set(call, question, *set);
+        };
+      });
 }

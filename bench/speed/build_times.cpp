@@ -211,10 +211,11 @@ BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport&
           out.times.push_back(std::move(t));
         };
         workers::Job::Task task;
-        task.command = {m.program, "--build", survey.folder + "/" + body.name + ".lrb", "--method",
-                        m.info.name};
-        task.begin = round;
-        task.end = round + 1;
+        task.command = {m.program, "--method", m.info.name};
+        task.end = 1;
+        task.question = [&](std::uint64_t) {
+          return nlohmann::json{{"build", survey.folder + "/" + body.name + ".lrb"}}.dump();
+        };
         task.limit = std::chrono::duration_cast<workers::Job::Clock::duration>(
             std::chrono::duration<double>(survey.timeout));
         task.on_line = [&](std::uint64_t, const std::string& line) {

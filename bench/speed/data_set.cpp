@@ -220,7 +220,9 @@ DataSet read_data_set(const std::string& path) {
 void find_numbers(DataSet& set) {
   constexpr std::chrono::seconds kLimit(120);  // per query; some depths take seconds
   workers::Job::Task task;
-  task.command = {workers::number_worker(), "--questions", write_data_set(set, set.folder)};
+  task.command = {workers::number_worker()};
+  const std::string file = write_data_set(set, set.folder);
+  task.question = [&](std::uint64_t k) { return json{{"set", file}, {"question", k}}.dump(); };
   task.end = set.questions.size();
   task.limit = kLimit;
   task.on_line = [&](std::uint64_t k, const std::string& line) {

@@ -87,10 +87,13 @@ class Survey {
   void run(const DataSet& set, const Contestant& c, unsigned round, std::uint64_t begin, std::uint64_t end) {
     const std::string what = set.name + ", " + name_of(c.method.column.name, c.setting);
     workers::Job::Task task;
-    task.command = {c.method.program, "--questions", o_.folder + "/" + set.name + ".set.json", "--method",
-                    c.method.column.name};
-    if (c.setting) task.command.insert(task.command.end(), {"--setting", exactly(*c.setting)});
-    if (o_.judges && round == 0) task.command.push_back("--errors");
+    task.command = {c.method.program, "--method", c.method.column.name};
+    task.question = [&](std::uint64_t k) {
+      nlohmann::ordered_json question = {{"set", o_.folder + "/" + set.name + ".set.json"}, {"question", k}};
+      if (c.setting) question["setting"] = *c.setting;
+      if (o_.judges && round == 0) question["errors"] = true;
+      return question.dump();
+    };
     task.begin = begin;
     task.end = end;
     task.limit =
@@ -133,12 +136,6 @@ class Survey {
                 it != known_.end())
               out.push_back(it->second);
     return out;
-  }
-
-  static std::string exactly(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", x);
-    return text;
   }
 
   void notify(const std::string& what) {

@@ -1,13 +1,8 @@
 #include "bench/stability/case_meshes.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <istream>
-#include <optional>
 
 #include <nlohmann/json.hpp>
-#include <poll.h>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/workers/worker_json.hpp"
@@ -62,7 +57,7 @@ std::string to_text(const CaseMeshes& c, const RightAnswer& right) {
                     {"b", mesh_json(c.b)},
                     {"pose_a", finite_pose(c.pose_a)},
                     {"pose_b", finite_pose(c.pose_b)},
-                    {"right", nlohmann::json::parse(to_line(right))}};
+                    {"right", to_json(right)}};
   return out.dump();
 }
 
@@ -81,90 +76,43 @@ cases::Case case_of(const CaseMeshes& meshes) {
   return c;
 }
 
-/// A worker process and the pipe of its requests.
-class CaseWorker::Running {
- public:
-  explicit Running(const workers::WorkerMethod& method)
-      : program_(method.program),
-        child_({method.program, "--method", method.info.name, "--saved"}, pipe_.reading_end()) {}
-
-  /// Returns the worker's line about a case, or a failure, after which the worker has to be replaced.
-  std::optional<std::string> line_for(const std::string& text, double timeout,
-                                      workers::WorkerFailure& failure) {
-    using Clock = std::chrono::steady_clock;
-    const workers::MemoryFile file("lrbscope-case");
-    file.write(text);
-    pipe_.write(file.path() + "\n");
-    const auto limit = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout));
-    const Clock::time_point deadline = Clock::now() + limit;
-    std::vector<std::string> lines;
-    while (lines.empty()) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
-      if (left.count() <= 0) {
-        failure = {true, workers::text_of_timeout(timeout)};
-        return std::nullopt;
-      }
-      pollfd waiting{child_.output(), POLLIN, 0};
-      if (poll(&waiting, 1, static_cast<int>(left.count())) <= 0) continue;
-      if (child_.read(lines) || !lines.empty()) continue;
-      const int status = child_.wait();
-      if (status == workers::kNoSuchProgram)
-        throw EnvironmentError(program_ + ": cannot be started; rebuild it");
-      failure = {false, workers::text_of_end(status)};
-      return std::nullopt;
-    }
-    return lines.front();
-  }
-
- private:
-  std::string program_;
-  workers::Pipe pipe_;
-  workers::Child child_;
-};
-
-CaseWorker::CaseWorker(const workers::WorkerMethod& method, double timeout)
-    : method_(method), timeout_(timeout) {}
-CaseWorker::~CaseWorker() = default;
-
 Replay CaseWorker::ask(const CaseMeshes& meshes) {
   const RightAnswer right = expected_answer(case_of(meshes));
   const std::string text = to_text(meshes, right);
   Replay out;
   out.expected = right.pairs;
-  if (!running_) running_ = std::make_unique<Running>(method_);
+  if (!worker_) worker_.emplace(std::vector<std::string>{method_.program, "--method", method_.info.name});
+  const workers::MemoryFile file("case");
+  file.write(text);
+  worker_->ask(nlohmann::json{{"saved", file.path()}}.dump());
   workers::WorkerFailure failure;
-  if (const auto line = running_->line_for(text, timeout_, failure)) {
-    const auto value = nlohmann::json::parse(*line, nullptr, false);
-    if (value.is_object() && value.contains("error"))
-      throw EnvironmentError(method_.program + ": " + value.at("error").get<std::string>());
-    out.record = record_from(value);
-    if (value.contains("answered_pairs")) out.answered = workers::PairsJson::read(value.at("answered_pairs"));
+  const auto limit = std::chrono::duration_cast<workers::Worker::Clock::duration>(timeout_);
+  if (const auto line = worker_->answer(limit, failure)) {
+    if (const std::string error = workers::error_in(*line); !error.empty())
+      throw EnvironmentError(method_.program + ": " + error);
+    out.take(*line);
     return out;
   }
-  running_.reset();
+  worker_.reset();
   out.record.method = method_.info.name;
   out.record.expected = right.pairs.size();
-  out.record.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
-  out.record.message = failure.message;
+  out.record = record_of_failure(std::move(out.record), failure);
   return out;
 }
 
-void serve_cases(const methods::MethodEntry& entry, std::istream& requests,
-                 const std::function<void(const std::string& line)>& say) {
+nlohmann::ordered_json answer_saved(const methods::MethodEntry& entry, const std::string& path) {
   static const cases::Family kNoFamily = {"", "", nullptr};
-  for (std::string path; std::getline(requests, path);) {
-    const auto value = nlohmann::json::parse(read_file(path));
-    const cases::Case c = case_of({mesh_from(value.at("a")), mesh_from(value.at("b")),
-                                   pose_from(value.at("pose_a")), pose_from(value.at("pose_b"))});
-    // A new runner for each case, so that an answer does not depend on the cases before it.
-    StabilityRunner runner(entry);
-    Record record;
-    record.method = entry.info.name;
-    runner.ask(kNoFamily, c, expected_from(value.at("right").dump()), record);
-    Json reply = to_json(record);
-    if (runner.pairs()) reply["answered_pairs"] = workers::PairsJson::write(*runner.pairs());
-    say(reply.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
-  }
+  const auto value = nlohmann::json::parse(read_file(path));
+  const cases::Case c = case_of({mesh_from(value.at("a")), mesh_from(value.at("b")),
+                                 pose_from(value.at("pose_a")), pose_from(value.at("pose_b"))});
+  // A new runner for each case, so that an answer does not depend on the cases before it.
+  StabilityRunner runner(entry);
+  Record record;
+  record.method = entry.info.name;
+  runner.ask(kNoFamily, c, expected_from(value.at("right").dump()), record);
+  Json reply = to_json(record);
+  if (runner.pairs()) reply["answered_pairs"] = workers::PairsJson::write(*runner.pairs());
+  return reply;
 }
 
 }  // namespace lrb::stability

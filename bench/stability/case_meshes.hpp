@@ -1,8 +1,12 @@
 #pragma once
 /// A case as two meshes at two poses, and a method that is queried about such cases one after the other.
 
-#include <memory>
+#include <chrono>
+#include <optional>
 #include <string>
+#include <utility>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include "bench/cases/families.hpp"
 #include "bench/methods/method.hpp"
@@ -31,10 +35,7 @@ inline bool is_identity(const Pose& pose) {
 class CaseWorker {
  public:
   /// `timeout`: seconds per case. The method must be present.
-  CaseWorker(const workers::WorkerMethod& method, double timeout);
-  ~CaseWorker();
-  CaseWorker(const CaseWorker&) = delete;
-  CaseWorker& operator=(const CaseWorker&) = delete;
+  CaseWorker(workers::WorkerMethod method, double timeout) : method_(std::move(method)), timeout_(timeout) {}
 
   /// Returns the judged answer to a case. The right answer is computed in this process, by exact brute force.
   /// The record names no family. Throws InputError if a number of the case is not finite, EnvironmentError if
@@ -42,15 +43,12 @@ class CaseWorker {
   Replay ask(const CaseMeshes& meshes);
 
  private:
-  class Running;
   workers::WorkerMethod method_;
-  double timeout_;
-  std::unique_ptr<Running> running_;
+  std::chrono::duration<double> timeout_;
+  std::optional<workers::Worker> worker_;
 };
 
-/// The worker's side: answers requests, a line each, until there are no more. A request is the path of a file
-/// with a case and its right answer.
-void serve_cases(const methods::MethodEntry& entry, std::istream& requests,
-                 const std::function<void(const std::string& line)>& say);
+/// The worker's side: the answer to the case, with its right answer, of a file.
+nlohmann::ordered_json answer_saved(const methods::MethodEntry& entry, const std::string& path);
 
 }  // namespace lrb::stability

@@ -1,21 +1,24 @@
 #pragma once
-/// The content of a worst case's picture: two posed bodies, and a mark on each of their simplices.
+/// Draws the expected and the actual answer of a method to a case: two posed bodies, and a mark on each of
+/// their simplices.
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "bench/cases/families.hpp"
+#include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/stability_experiment.hpp"
 #include <lrbscope/collide.hpp>
-#include <lrbscope/render/draw_list.hpp>
+#include <lrbscope/render/overlay.hpp>
+#include <lrbscope/render/rasterize.hpp>
 
 namespace lrb::stability {
-
-// Scales and translates cases of any size and position for drawing, from bodies of size 1e-120 to bodies at
-// 1e16.
 
 /// A convex piece of a face in a picture's frame. `edges[i]`: the side from corner i to the next one belongs
 /// to the face's outline. With two corners it is a segment of a 2D body.
@@ -44,26 +47,6 @@ class PosedBody {
 
 /// Returns the length of a box's diagonal. Its square may overflow a double.
 double diagonal(const Eigen::AlignedBox3d& box);
-
-/// Maps a box of the world to the cube [-1, 1]^3: its centre to the origin, its longest side to 2.
-class PictureFrame {
- public:
-  explicit PictureFrame(const Eigen::AlignedBox3d& box);
-
-  /// Maps a point. Differences are taken first, which is exact near the centre, even far from the world's
-  /// origin.
-  Eigen::Vector3d operator()(const Eigen::Vector3d& world) const {
-    return (world * before_ - centre_) / radius_;
-  }
-  /// Returns the part of a piece in [-reach, reach]^3, or no corners if it is empty. A piece may be 1e60
-  /// times larger than the cube, so it is clipped with 100 digits.
-  Piece cut(const Piece& world, double reach) const;
-
- private:
-  Eigen::Vector3d centre_;
-  double before_ = 1;  ///< scale that keeps differences of the largest doubles finite
-  double radius_ = 1;
-};
 
 using Pairs = std::vector<SimplexPair>;
 
@@ -106,12 +89,30 @@ struct CasePicture {
   void add_place(const SimplexPair& pair);
 };
 
-/// Returns a draw list: bodies translucent, marks in their colours. Geometry outside [-reach, reach]^3 of the
-/// frame is clipped.
-render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame, double reach);
+/// The text above the picture. Counts of pairs are added to the counters.
+struct WorstCaseText {
+  std::string title;   ///< family and method
+  std::string answer;  ///< the outcome: "refused: ...", "separate, should be touching"
+  std::vector<render::OverlayCounter> counters;
+};
 
-/// Adds a dot for each mark smaller than `least`, in units of the frame.
-void add_dots(render::DrawList& list, const CasePicture& s, const PictureFrame& frame, double reach,
-              double least);
+/// Draws both bodies translucent, and the simplices of all expected and answered pairs coloured by their mark
+/// (of several marks: missed before extra before found). A close-up of the wrong pairs is added if they are
+/// small compared to the bodies.
+/// `answered`: nullopt if the method returned no list; all expected pairs are then drawn as found. Pairs are
+/// of real simplices, in any order; 3D or 2D. Throws InputError if world coordinates are not finite or a pair
+/// refers to no real simplex.
+render::Image worst_case_picture(const cases::Case& c, std::span<const SimplexPair> expected,
+                                 const std::optional<std::vector<SimplexPair>>& answered,
+                                 const WorstCaseText& text, render::Rasterizer& rasterizer);
+
+/// Draws the worst case of every cell that has one into folder/worst/FAMILY-METHOD.png, and removes the
+/// pictures of earlier runs. `ask` runs a case again; `progress` is called before each case. Cases that
+/// cannot be drawn (coordinates that are not finite, families that are not in all_families()) get no picture.
+/// Returns (|cells|) paths relative to the folder, for ReportOptions::pictures; empty for cells without a
+/// picture. Throws EnvironmentError if drawing or writing fails.
+std::vector<std::string> draw_worst_cases(
+    const Grid& grid, const std::string& folder, const std::function<Replay(const Record&)>& ask,
+    const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 }  // namespace lrb::stability

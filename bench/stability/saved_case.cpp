@@ -11,9 +11,9 @@
 #include <sys/utsname.h>
 
 #include "bench/methods/triangles.hpp"
+#include "bench/stability/case_picture.hpp"
 #include "bench/stability/minimise.hpp"
 #include "bench/stability/rational_oracles.hpp"
-#include "bench/stability/worst_case.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"

@@ -1,8 +1,6 @@
 #include "bench/stability/stability_experiment.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <deque>
 #include <iterator>
 #include <list>
@@ -12,8 +10,6 @@
 
 #include <nlohmann/json.hpp>
 #include <poll.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/stability/outcome_grid.hpp"
@@ -54,6 +50,12 @@ std::string why_not(const cases::Case& c) {
 
 }  // namespace
 
+Record record_of_failure(Record r, const workers::WorkerFailure& failure) {
+  r.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
+  r.message = failure.message;
+  return r;
+}
+
 RightAnswer expected_answer(const cases::Case& c) {
   RightAnswer e;
   e.rejection = why_not(c);
@@ -64,8 +66,8 @@ RightAnswer expected_answer(const cases::Case& c) {
   return e;
 }
 
-std::string to_line(const RightAnswer& e) {
-  return io::record_to_json(e).dump() + "\n";
+nlohmann::ordered_json to_json(const RightAnswer& e) {
+  return io::record_to_json(e);
 }
 
 RightAnswer expected_from(const std::string& line) {
@@ -168,66 +170,39 @@ void judge_swapped(Record& record, const MethodInfo& info, const MethodAnswer& a
 namespace {
 
 constexpr double kBruteForceTimeout = 120;  // seconds; brute force is slow, but never hangs
-constexpr const char* kGivenFile = "/proc/self/fd/3";
 
 workers::Job::Clock::duration seconds(double s) {
   return std::chrono::duration_cast<workers::Job::Clock::duration>(std::chrono::duration<double>(s));
 }
 
-/// An unnamed file. It is deleted when its last descriptor is closed, even after a crash.
-class NamelessFile {
- public:
-  NamelessFile() : file_(memfd_create("lrbscope-expected", MFD_CLOEXEC)) {
-    if (file_ < 0)
-      throw EnvironmentError(std::string("cannot create a memory file (memfd_create): ") +
-                             std::strerror(errno));
-  }
-  ~NamelessFile() { close(file_); }
-  NamelessFile(const NamelessFile&) = delete;
-  NamelessFile& operator=(const NamelessFile&) = delete;
-  int descriptor() const { return file_; }
-  void append(const std::string& text) {
-    for (std::size_t at = 0; at < text.size();) {
-      const ssize_t n = write(file_, text.data() + at, text.size() - at);
-      if (n <= 0) throw EnvironmentError("cannot write a memory file; free some memory");
-      at += static_cast<std::size_t>(n);
-    }
-  }
-
- private:
-  int file_;
-};
-
-Record blank_record(const std::string& family, const std::string& method, std::uint64_t k,
-                    std::uint64_t cases, std::uint64_t seed) {
+Record blank_record(const std::string& family, const std::string& method, int difficulty,
+                    std::uint64_t case_index, std::uint64_t seed) {
   Record r;
   r.family = family;
   r.method = method;
-  r.difficulty = static_cast<int>(k / cases);
-  r.case_index = k % cases;
+  r.difficulty = difficulty;
+  r.case_index = case_index;
   r.seed = seed;
   return r;
 }
 
-Record record_of_failure(Record r, const workers::WorkerFailure& failure) {
-  r.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
-  r.message = failure.message;
-  return r;
+/// `method`: empty for right answers.
+std::vector<std::string> command_of(const std::string& program, Quantity quantity,
+                                    const std::string& method) {
+  std::vector<std::string> command = {program, "--quantity", std::string(name_of(quantity))};
+  if (!method.empty()) command.insert(command.end(), {"--method", method});
+  return command;
 }
 
-std::vector<std::string> command_of(const std::string& program, Quantity quantity, const std::string& family,
-                                    std::uint64_t cases, std::uint64_t seed) {
-  std::vector<std::string> command = {program,  "--family",          family, "--cases", std::to_string(cases),
-                                      "--seed", std::to_string(seed)};
-  if (quantity != Quantity::pairs)
-    command.insert(command.end(), {"--quantity", std::string(name_of(quantity))});
-  return command;
+nlohmann::ordered_json question_of(const std::string& family, int difficulty, std::uint64_t case_index,
+                                   std::uint64_t seed) {
+  return {{"family", family}, {"difficulty", difficulty}, {"case", case_index}, {"seed", seed}};
 }
 
 /// The state of one family while its jobs run.
 struct FamilyWork {
   std::string name;
-  NamelessFile expected;                      ///< one line per case
+  workers::MemoryFile expected{"expected"};   ///< one line per case, from begin_ on
   std::vector<std::uint64_t> expected_pairs;  ///< number of pairs, by case
   bool expected_done = false;
   std::vector<std::vector<Record>> records;  ///< method by method
@@ -319,14 +294,14 @@ class Experiment {
   }
 
   void start_expected(FamilyWork& family) {
-    for (std::uint64_t k = 0; k < begin_; ++k) family.expected.append("\n");  // line k is case k's
     workers::Job::Task task;
-    task.command = command_of(o_.methods.front().program, o_.quantity, family.name, o_.cases, o_.seed);
+    task.command = command_of(o_.methods.front().program, o_.quantity, "");
+    task.question = [this, &family](std::uint64_t k) { return question(family, k).dump(); };
     task.begin = begin_;
     task.end = end_;
     task.limit = seconds(kBruteForceTimeout);
     task.on_line = [this, &family](std::uint64_t, const std::string& line) {
-      family.expected.append(line + "\n");
+      family.expected.write(line + "\n");
       family.expected_pairs.push_back(expected_from(line).pairs.size());
       notify(family.name + ", exact brute force");
     };
@@ -342,8 +317,13 @@ class Experiment {
   void start_method(FamilyWork& family, std::size_t m) {
     const workers::WorkerMethod& method = o_.methods[m];
     workers::Job::Task task;
-    task.command = command_of(method.program, o_.quantity, family.name, o_.cases, o_.seed);
-    task.command.insert(task.command.end(), {"--method", method.column.name, "--expected", kGivenFile});
+    task.command = command_of(method.program, o_.quantity, method.column.name);
+    task.question = [this, &family](std::uint64_t k) {
+      nlohmann::ordered_json out = question(family, k);
+      out["right"] = family.expected.path();
+      out["line"] = k - begin_;
+      return out.dump();
+    };
     task.begin = begin_;
     task.end = end_;
     while (const Record* known = earlier(family, m, task.begin)) {
@@ -356,17 +336,21 @@ class Experiment {
       hand_over_finished();
     };
     if (task.begin == end_) return on_done();
-    task.given = family.expected.descriptor();
     task.limit = seconds(o_.timeout);
     task.on_line = [this, &family, m](std::uint64_t, const std::string& line) {
       keep(family, m, record_from(nlohmann::json::parse(line)));
     };
     task.on_failure = [this, &family, m](std::uint64_t k, const workers::WorkerFailure& failure) {
-      Record r = blank_record(family.name, o_.methods[m].column.name, k, o_.cases, o_.seed);
+      Record r = blank_record(family.name, o_.methods[m].column.name, static_cast<int>(k / o_.cases),
+                              k % o_.cases, o_.seed);
       r.expected = family.expected_pairs[k - begin_];
       keep(family, m, record_of_failure(r, failure));
     };
     running_.push_back({std::make_unique<workers::Job>(std::move(task)), on_done});
+  }
+
+  nlohmann::ordered_json question(const FamilyWork& family, std::uint64_t k) const {
+    return question_of(family.name, static_cast<int>(k / o_.cases), k % o_.cases, o_.seed);
   }
 
   /// Returns the record of case k of an earlier run, or null.
@@ -433,44 +417,39 @@ std::vector<Record> run_experiment(const ExperimentOptions& options, const Progr
 
 Replay replay(const workers::WorkerMethod& method, const std::string& family, int difficulty,
               std::uint64_t case_index, std::uint64_t seed, double timeout, Quantity quantity) {
-  const std::uint64_t cases = case_index + 1, k = static_cast<std::uint64_t>(difficulty) * cases + case_index;
+  nlohmann::ordered_json question = question_of(family, difficulty, case_index, seed);
   Replay result;
-  const auto run = [&](workers::Job::Task task) {
-    task.begin = k;
-    task.end = k + 1;
-    workers::run_to_end(workers::Job(std::move(task)));
+  const auto answer = [&](const std::string& name, double limit, workers::WorkerFailure& failure) {
+    workers::Worker worker(command_of(method.program, quantity, name));
+    worker.ask(question.dump());
+    std::optional<std::string> line = worker.answer(seconds(limit), failure);
+    if (const std::string error = line ? workers::error_in(*line) : ""; !error.empty())
+      throw EnvironmentError(method.program + ": " + error);
+    return line;
   };
-  workers::Job::Task expected;
-  expected.command = command_of(method.program, quantity, family, cases, seed);
-  expected.limit = seconds(kBruteForceTimeout);
-  NamelessFile right;
-  expected.on_line = [&](std::uint64_t, const std::string& line) {
-    result.expected = expected_from(line).pairs;
-    right.append(std::string(k, '\n') + line + "\n");
-  };
-  expected.on_failure = [&](std::uint64_t, const workers::WorkerFailure& m) {
-    throw EnvironmentError("exact brute force: " + m.message + "; please report it");
-  };
-  run(std::move(expected));
-  workers::Job::Task task;
-  task.command = command_of(method.program, quantity, family, cases, seed);
-  task.command.insert(task.command.end(),
-                      {"--method", method.column.name, "--expected", kGivenFile, "--pairs"});
-  task.given = right.descriptor();
-  task.limit = seconds(timeout);
-  task.on_line = [&](std::uint64_t, const std::string& line) {
-    const auto value = nlohmann::json::parse(line);
-    result.record = record_from(value);
-    if (value.contains("answered_pairs"))
-      result.answered = workers::PairsJson::read(value.at("answered_pairs"));
-  };
-  task.on_failure = [&](std::uint64_t, const workers::WorkerFailure& m) {
-    Record r = blank_record(family, method.column.name, k, cases, seed);
+  workers::WorkerFailure failure;
+  const auto right = answer("", kBruteForceTimeout, failure);
+  if (!right) throw EnvironmentError("exact brute force: " + failure.message + "; please report it");
+  result.expected = expected_from(*right).pairs;
+  const workers::MemoryFile file("expected");
+  file.write(*right + "\n");
+  question["right"] = file.path();
+  question["line"] = 0;
+  question["pairs"] = true;
+  if (const auto line = answer(method.column.name, timeout, failure)) {
+    result.take(*line);
+  } else {
+    Record r = blank_record(family, method.column.name, difficulty, case_index, seed);
     r.expected = result.expected.size();
-    result.record = record_of_failure(r, m);
-  };
-  run(std::move(task));
+    result.record = record_of_failure(std::move(r), failure);
+  }
   return result;
+}
+
+void Replay::take(const std::string& line) {
+  const auto value = nlohmann::json::parse(line);
+  record = record_from(value);
+  if (value.contains("answered_pairs")) answered = workers::PairsJson::read(value.at("answered_pairs"));
 }
 
 StabilityRunner::Posed StabilityRunner::place(const LrbRep& rep, const Pose& pose, int side) {

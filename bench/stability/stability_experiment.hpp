@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "bench/cases/families.hpp"
 #include "bench/methods/method.hpp"
 #include "bench/stability/outcome_grid.hpp"
@@ -29,9 +31,8 @@ struct RightAnswer {
 
 RightAnswer expected_answer(const cases::Case& c);
 
-/// Returns the answer on one line, for the workers that compare with it.
-std::string to_line(const RightAnswer& e);
-/// Reads such a line. Throws InputError, or nlohmann's exceptions if it is not JSON.
+nlohmann::ordered_json to_json(const RightAnswer& e);
+/// Reads it from a line. Throws InputError, or nlohmann's exceptions if it is not JSON.
 RightAnswer expected_from(const std::string& line);
 
 /// Returns the relation with this name. Throws InputError for an unknown name.
@@ -77,7 +78,13 @@ struct Replay {
   Record record;
   std::vector<SimplexPair> expected;
   std::optional<std::vector<SimplexPair>> answered;  ///< nullopt: no answer, or one without a list of pairs
+
+  /// Takes record and pairs from a worker's answer.
+  void take(const std::string& line);
 };
+
+/// Returns the record with the outcome of a worker that did not answer.
+Record record_of_failure(Record record, const workers::WorkerFailure& failure);
 
 Replay replay(const workers::WorkerMethod& method, const std::string& family, int difficulty,
               std::uint64_t case_index, std::uint64_t seed, double timeout,

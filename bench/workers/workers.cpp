@@ -79,7 +79,8 @@ Child::~Child() {
 Child::Child(Child&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       output_(std::exchange(other.output_, -1)),
-      unfinished_(std::move(other.unfinished_)) {}
+      unfinished_(std::move(other.unfinished_)),
+      unread_(std::move(other.unread_)) {}
 
 bool Child::read(std::vector<std::string>& lines) {
   static constexpr std::size_t kPiece = 1 << 16;
@@ -93,6 +94,23 @@ bool Child::read(std::vector<std::string>& lines) {
     lines.push_back(unfinished_.substr(begin, end - begin));
   unfinished_.erase(0, begin);
   return true;
+}
+
+Child::Next Child::next_line(std::chrono::steady_clock::time_point deadline, std::string& line) {
+  while (unread_.empty()) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+    if (left <= 0) return Next::late;
+    pollfd waiting{output_, POLLIN, 0};
+    constexpr std::int64_t kMax = 60'000;  // fits an int
+    if (poll(&waiting, 1, static_cast<int>(std::min(left, kMax))) <= 0) continue;
+    std::vector<std::string> lines;
+    if (!read(lines)) return Next::end;
+    unread_.insert(unread_.end(), lines.begin(), lines.end());
+  }
+  line = std::move(unread_.front());
+  unread_.pop_front();
+  return Next::line;
 }
 
 void Child::kill() {
@@ -111,15 +129,11 @@ std::vector<std::string> lines_of(const std::vector<std::string>& command, std::
                                   int given) {
   Child child(command, given);
   std::vector<std::string> lines;
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (true) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
-    pollfd waiting{child.output(), POLLIN, 0};
-    if (left.count() <= 0 || poll(&waiting, 1, static_cast<int>(left.count())) == 0) return {};
-    if (!child.read(lines)) break;
-  }
-  if (child.wait() != 0) lines.clear();
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  std::string line;
+  auto next = Child::Next::line;
+  while ((next = child.next_line(deadline, line)) == Child::Next::line) lines.push_back(line);
+  if (next == Child::Next::late || child.wait() != 0) lines.clear();
   return lines;
 }
 
@@ -180,17 +194,31 @@ std::vector<std::byte> MemoryFile::bytes() const {
 
 namespace {
 
-constexpr int kMaxTimeouts = 3;  // number of consecutive time-outs after which a method is abandoned
-constexpr int kBadInput = 2;     // an exit code that does not count as a crash
+constexpr int kMaxTimeouts = 3;      // number of consecutive time-outs after which a method is abandoned
+constexpr int kBadInput = 2;         // an exit code that does not count as a crash
+constexpr std::uint64_t kAhead = 8;  // questions sent ahead of their answers; they fit the buffer of a pipe
 
-/// Returns a worker's error message about its input, or an empty string.
-std::string complaint(const std::string& line) {
-  if (line.compare(0, std::strlen("{\"error\""), "{\"error\"") != 0) return "";
-  const auto value = nlohmann::json::parse(line, nullptr, false);
+}  // namespace
+
+std::string error_in(const std::string& answer) {
+  if (!answer.starts_with("{\"error\"")) return "";
+  const auto value = nlohmann::json::parse(answer, nullptr, false);
   return value.is_object() ? value.value("error", "") : "";
 }
 
-}  // namespace
+std::optional<std::string> Worker::answer(Clock::duration limit, WorkerFailure& failure) {
+  std::string line;
+  const auto next = child_.next_line(Clock::now() + limit, line);
+  if (next == Child::Next::line) return line;
+  if (next == Child::Next::late) {
+    failure = {true, text_of_timeout(std::chrono::duration<double>(limit).count())};
+    return std::nullopt;
+  }
+  const int status = child_.wait();
+  if (status == kNoSuchProgram) throw EnvironmentError(command_.front() + ": cannot be started; rebuild it");
+  failure = {false, text_of_end(status)};
+  return std::nullopt;
+}
 
 std::string text_of_end(int status) {
   if (status >= 0) return "exited with code " + std::to_string(status);
@@ -206,33 +234,39 @@ std::string text_of_timeout(double seconds) {
 }
 
 void Job::start() {
-  std::vector<std::string> command = task_.command;
-  command.insert(command.end(), {"--begin", std::to_string(next_), "--end", std::to_string(task_.end)});
   child_.reset();
   if (next_ == task_.end) return;
-  child_.emplace(command, task_.given);
+  pipe_.emplace();
+  child_.emplace(task_.command, pipe_->reading_end());
+  sent_ = next_;
+  ask_ahead();
   deadline_ = Clock::now() + task_.limit;
+}
+
+void Job::ask_ahead() {
+  for (; sent_ < std::min(task_.end, next_ + kAhead); ++sent_) pipe_->write(task_.question(sent_) + "\n");
 }
 
 void Job::receive() {
   std::vector<std::string> lines;
   const bool more = child_->read(lines);
   for (const std::string& line : lines) {
-    const std::string error = complaint(line);
+    const std::string error = error_in(line);
     if (!error.empty()) throw EnvironmentError(task_.command.front() + ": " + error);
     if (next_ == task_.end) break;
     task_.on_line(next_++, line);
     hung_ = 0;
   }
-  if (!lines.empty()) deadline_ = Clock::now() + task_.limit;
+  if (next_ == task_.end) return child_.reset();
+  if (!lines.empty()) {
+    ask_ahead();
+    deadline_ = Clock::now() + task_.limit;
+  }
   if (more) return;
   const int status = child_->wait();
   if (status == kBadInput || status == kNoSuchProgram)
     throw EnvironmentError(task_.command.front() + ": " + text_of_end(status) + "; rebuild it");
-  if (next_ == task_.end)
-    child_.reset();  // its exit after the last line is ignored
-  else
-    go_on({false, text_of_end(status)});
+  go_on({false, text_of_end(status)});
 }
 
 void Job::expire() {

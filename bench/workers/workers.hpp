@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
@@ -35,6 +36,9 @@ class Child {
   int output() const { return output_; }
   /// Reads the available output, and appends complete lines. Returns false at the end.
   bool read(std::vector<std::string>& lines);
+  enum class Next { line, late, end };
+  /// Waits for the next line until a point in time, and stores it.
+  Next next_line(std::chrono::steady_clock::time_point deadline, std::string& line);
   void kill();
   /// Waits for the end. Returns an exit code, or -signal.
   int wait();
@@ -43,6 +47,7 @@ class Child {
   pid_t pid_ = -1;
   int output_ = -1;
   std::string unfinished_;
+  std::deque<std::string> unread_;  ///< lines for next_line()
 };
 
 /// Returns all lines of a child that is expected to end soon, or an empty list if it did not end with code 0
@@ -86,9 +91,8 @@ class MemoryFile {
   int file_;
 };
 
-// Runs the cases of one family with one method, or with exact brute force, in a sequence of worker processes.
-// If one crashes or hangs, the next continues after its current case. If several consecutive cases hang, the
-// remaining ones are skipped and count as time-outs, so that the running time is bounded.
+// Questions to a worker: lines of JSON on its file descriptor 3, each of which it answers with a line, in
+// order (bench/programs/serve.hpp).
 
 /// The reason why a worker ended before its work was complete.
 struct WorkerFailure {
@@ -100,16 +104,42 @@ struct WorkerFailure {
 std::string text_of_end(int status);
 std::string text_of_timeout(double seconds);
 
-class Job {
+/// Returns the message of an answer {"error": "..."}, or an empty text.
+std::string error_in(const std::string& answer);
+
+/// A worker process.
+class Worker {
  public:
   using Clock = std::chrono::steady_clock;
 
+  explicit Worker(std::vector<std::string> command)
+      : command_(std::move(command)), child_(command_, pipe_.reading_end()) {}
+
+  /// Waits if questions of more than a pipe's buffer (64 KiB) are unanswered.
+  void ask(const std::string& question) const { pipe_.write(question + "\n"); }
+  /// Returns the next answer, or nullopt and the reason why there is none; the process is then of no more
+  /// use. Throws EnvironmentError if the program cannot be started.
+  std::optional<std::string> answer(Clock::duration limit, WorkerFailure& failure);
+
+ private:
+  std::vector<std::string> command_;
+  Pipe pipe_;
+  Child child_;
+};
+
+/// Asks questions in a sequence of worker processes. If one crashes or hangs, the next continues after its
+/// current question. If several consecutive questions hang, the remaining ones are skipped and count as
+/// time-outs, so that the running time is bounded.
+class Job {
+ public:
+  using Clock = Worker::Clock;
+
   struct Task {
-    std::vector<std::string> command;  ///< without --begin and --end
-    std::uint64_t begin = 0, end = 0;  ///< cases
-    int given = -1;                    ///< file descriptor passed to the worker, see Child
-    Clock::duration limit{};           ///< per case
-    /// Called in order for each case, with its line or the failure in its place.
+    std::vector<std::string> command;
+    std::uint64_t begin = 0, end = 0;  ///< numbers of the questions
+    std::function<std::string(std::uint64_t k)> question;
+    Clock::duration limit{};  ///< per question
+    /// Called in order for each question, with its answer or the failure in its place.
     std::function<void(std::uint64_t k, const std::string& line)> on_line;
     std::function<void(std::uint64_t k, const WorkerFailure& failure)> on_failure;
   };
@@ -121,16 +151,19 @@ class Job {
   Clock::time_point deadline() const { return deadline_; }
   /// Reads lines. Call it when there is output to read.
   void receive();
-  /// Ends the current case. Call it when the deadline has passed.
+  /// Ends the current question. Call it when the deadline has passed.
   void expire();
 
  private:
   void start();
+  void ask_ahead();
   void go_on(const WorkerFailure& failure);
 
   Task task_;
-  std::uint64_t next_;  ///< case of the next line
-  int hung_ = 0;        ///< consecutive cases that hung
+  std::uint64_t next_;      ///< question of the next answer
+  std::uint64_t sent_ = 0;  ///< questions before this one have been sent
+  int hung_ = 0;            ///< consecutive questions that hung
+  std::optional<Pipe> pipe_;
   std::optional<Child> child_;
   Clock::time_point deadline_;
 };

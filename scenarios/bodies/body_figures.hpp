@@ -50,7 +50,7 @@ Wrapper wrapper_at(const LrbRep& rep, double tolerance, unsigned threads);
 /// body itself.
 std::vector<LevelFigures> level_figures(const LrbRep& rep, std::span<const double> shares, unsigned threads);
 
-/// Levels in the form of `lrbscope build --json` and `lrbscope levels --json`.
+/// Levels in the form of `lrbscope build --json` and `lrbscope inspect --levels --json`.
 nlohmann::ordered_json level_json(std::span<const LevelFigures> levels);
 
 struct RegionFigures {

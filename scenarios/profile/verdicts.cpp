@@ -39,13 +39,6 @@ Triangle moved(const Triangle& t, const Pose& pose) {
   return {pose.apply(t[0]), pose.apply(t[1]), pose.apply(t[2])};
 }
 
-/// Returns the gap of two disjoint triangles, rounded down.
-double gap_of(const Triangle& a, const Triangle& b) {
-  const double* const pa[] = {a[0].data(), a[1].data(), a[2].data()};
-  const double* const pb[] = {b[0].data(), b[1].data(), b[2].data()};
-  return exact::distance_of_simplices(pa, pb, 3).lower;
-}
-
 bool share_a_vertex(const capture::Mesh& mesh, const TrianglePair& pair) {
   const auto &s = mesh.triangles[pair.a], &t = mesh.triangles[pair.b];
   return std::any_of(s.begin(), s.end(),
@@ -106,6 +99,12 @@ double error_bound(const Triangle& a, const Pose& pose_a, const Triangle& b, con
   for (const Eigen::Vector3d& x : a) of_a = std::max(of_a, largest_term(pose_a, x));
   for (const Eigen::Vector3d& x : b) of_b = std::max(of_b, largest_term(pose_b, x));
   return kTestUlps * ulp_of(precision) * (of_a + of_b);
+}
+
+double gap_of(const Triangle& a, const Triangle& b) {
+  const double* const pa[] = {a[0].data(), a[1].data(), a[2].data()};
+  const double* const pb[] = {b[0].data(), b[1].data(), b[2].data()};
+  return exact::distance_of_simplices(pa, pb, 3).lower;
 }
 
 double overlap_depth(const Triangle& a, const Triangle& b) {

@@ -49,6 +49,8 @@ double error_bound(const Triangle& a, const Pose& pose_a, const Triangle& b, con
 /// Returns the length of the shortest translation that separates two intersecting triangles, up to rounding:
 /// the least overlap along the normals of their Minkowski sum (for triangles in one plane: 0).
 double overlap_depth(const Triangle& a, const Triangle& b);
+/// Returns the gap of two disjoint triangles, rounded down.
+double gap_of(const Triangle& a, const Triangle& b);
 
 /// Why an intersecting pair of triangles is missing.
 enum class Culprit : std::uint8_t {

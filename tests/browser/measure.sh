@@ -17,21 +17,13 @@ make_pages() {
   "$lrbscope" --quiet golden approve --goldens "$work/goldens" --size 320x240 "$work/meet.json" "$work/build.json" >/dev/null
   sed -i 's/0\.02,/0.021,/' "$work/meet.json"
   "$lrbscope" --quiet golden report --goldens "$work/goldens" -o "$out/golden" >/dev/null || true # the page shows a failure
-  "$lrbscope" --quiet levels "$out/dent/a.lrb" --at 0.02 0.1 -o "$out/levels" >/dev/null
   "$lrbscope" --quiet tree "$out/meet/a.lrb" -o "$out/tree" >/dev/null
   pages=()
-  for name in meet build dent plane open near compare golden levels tree; do pages+=("$out/$name/index.html"); done
+  for name in meet build dent plane open near compare golden tree; do pages+=("$out/$name/index.html"); done
   if "$lrbscope" --quiet run "$work/meet.json" --live --frames none -o "$out/live" >/dev/null 2>&1; then
     pages+=("$out/live/live.html")
   else
     echo "measure.sh: no live page: the program was built without LRB_WASM"
-  fi
-  if [ -x "$(dirname "$lrbscope")/lrbscope-xray-fcl" ]; then
-    printf '1 0 0 %s 0 1 0 0.3 0 0 1 0.2\n' 1.5 9 >"$work/poses.txt"
-    "$lrbscope" --quiet xray "$out/meet/a.lrb" "$out/meet/b.lrb" --poses "$work/poses.txt" -o "$out/xray" >/dev/null
-    pages+=("$out/xray/index.html" "$out/xray/fcl/index.html")
-  else
-    echo "measure.sh: no page of xray: lrbscope-xray-fcl was not built"
   fi
   if [ -n "${2:-}" ]; then
     "$2" "$out/stability" >/dev/null

@@ -374,7 +374,7 @@ TEST_CASE("a method that is named but absent ends commands with exit code 3, bef
   folder.write("a.obj", test::kCube);
   const std::vector<std::string> before = folder.tree();
   for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-           {"stability"}, {"bench"}, {"chart"}, {"tails", "a.obj", "a.obj"}}) {
+           {"stability"}, {"bench"}, {"chart"}, {"bench", "--percentiles", "a.obj", "a.obj"}}) {
     std::vector<std::string> all = command;
     all.insert(all.end(), {"--method", "fake-absent"});
     const test::Outcome o = run(folder, all);

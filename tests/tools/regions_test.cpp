@@ -174,7 +174,7 @@ TEST_CASE("build warns about the waste of a noisy scan, and names the cause") {
         std::string::npos);
   CHECK(poor.err.find("approximate queries are not supported, because its surface intersects itself") !=
         std::string::npos);
-  CHECK(run(folder, {"levels", "scan.lrb"}).err.find("approximate queries are not supported") !=
+  CHECK(run(folder, {"inspect", "scan.lrb", "--levels"}).err.find("approximate queries are not supported") !=
         std::string::npos);
   folder.write("p.txt", "1 0 0 0.1  0 1 0 0  0 0 1 0\n");
   CHECK(run(folder, {"query", "scan.lrb", "scan.lrb", "--poses", "p.txt", "--tolerance", "0.1"})

@@ -1,6 +1,6 @@
-/// planted_engine A B POSES: a program of another engine for the tests of `worst --command` and `tails
-/// --command`. Its trees are a root and a leaf for each triangle. If the centres of B and A are less than 0.5
-/// apart it tests all pairs of leaves, otherwise only the roots. $PLANTED makes it fail.
+/// planted_engine A B POSES: a program of another engine for the tests of `command:PROGRAM`. Its trees are a
+/// root and a leaf for each triangle. If the centres of B and A are less than 0.5 apart it tests all pairs of
+/// leaves, otherwise only the roots. $PLANTED makes it fail.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <iosfwd>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,12 +15,11 @@
 #include "bench/methods/method.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include <lrbscope/collide.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/trace/capture.hpp>
 
-namespace lrb::tails {
+namespace lrb::engines {
 
 /// Results requested in addition to the time and the number of pairs.
 struct Wanted {
@@ -42,6 +40,8 @@ struct EngineAnswer {
   /// Visits of nodes that perfect volumes or another order of descent would save (profile::Prices::wasted()),
   /// and tests of triangles that do not intersect; nullopt: not known.
   std::optional<std::uint64_t> wasted;
+
+  bool answered() const { return failure.empty(); }
 };
 
 /// An engine with two bodies; A is at the identity.
@@ -63,18 +63,12 @@ class Engine {
 /// Returns lrbscope's exact query in this process. The bodies must outlive it.
 std::unique_ptr<Engine> our_engine(const LrbRep& a, const LrbRep& b);
 
-/// The files of both bodies.
-struct BodyFiles {
-  std::string a, b;
-  bodies::Corners corners = bodies::Corners::joined;
-};
-
-/// Returns a method in a worker program, which reads the bodies again. A crash, and an answer that takes
-/// longer than `limit`, is the failure of that pose, after which the worker is started again; after three
-/// poses in a row that take too long the rest is skipped. ask() throws EnvironmentError if the worker does
-/// not start, and InputError if it cannot build the bodies.
-std::unique_ptr<Engine> worker_engine(const workers::WorkerMethod& method, const BodyFiles& files,
-                                      std::chrono::duration<double> limit);
+/// Returns a method in a worker program, which reads the bodies' files again. A crash, and an answer that
+/// takes longer than `limit`, is the failure of that pose, after which the worker is started again; after
+/// three poses in a row that take too long the rest is skipped. ask() throws EnvironmentError if the worker
+/// does not start, and InputError if it cannot build the bodies.
+std::unique_ptr<Engine> worker_engine(const workers::WorkerMethod& method, const std::string& a,
+                                      const std::string& b, std::chrono::duration<double> limit);
 
 /// Returns a program that uses lrbscope_capture.h. It is started, by a shell, as
 ///   COMMAND A B POSES
@@ -83,33 +77,13 @@ std::unique_ptr<Engine> worker_engine(const workers::WorkerMethod& method, const
 /// poses; if only times are wanted with LRBCAP_EVENTS=0, so that events do not take time. ask() throws
 /// InputError that names the program if it fails, takes longer than `limit`, or writes no capture, a broken
 /// one or one of other queries.
-std::unique_ptr<Engine> command_engine(const std::string& command, const BodyFiles& files,
+std::unique_ptr<Engine> command_engine(const std::string& command, const std::string& a, const std::string& b,
                                        std::chrono::duration<double> limit);
 inline constexpr std::size_t kPosesAtOnce = 256;
-
-/// Returns a method whose traversal xray records ("fcl", "cgal"). The bodies must outlive it.
-std::unique_ptr<Engine> recorded_engine(const std::string& method, const LrbRep& a, const LrbRep& b);
-
-/// Runs such a program for one pose and returns its capture. Throws as command_engine() does.
-std::string record_capture(const std::string& command, const BodyFiles& files,
-                           std::chrono::duration<double> limit, const Pose& pose);
 
 /// Returns the answers of the queries of a capture.
 std::vector<EngineAnswer> answers_of(const capture::Capture& capture, Wanted wanted);
 /// Returns the answer of a captured query, without waste. `names`: of phases.
 EngineAnswer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list);
 
-// The lines between worker_engine() and its worker. When both bodies are built the worker says that it is
-// ready. Request: Wanted as a number (1: tests, 2: list) and the 12 numbers of a pose. Reply: a JSON object.
-
-std::string request_line(const Pose& pose, Wanted wanted);
-std::string reply_line(const EngineAnswer& answer);
-/// Reads a reply. Throws InputError if the line is not a reply.
-EngineAnswer reply_from(const std::string& line);
-
-/// The worker's side: answers requests, a line each, until there are no more. Throws InputError for a line
-/// that is not a request, and for bodies that the method rejects.
-void serve(const methods::MethodEntry& entry, const BodyFiles& files, std::istream& requests,
-           const std::function<void(const std::string& line)>& say);
-
-}  // namespace lrb::tails
+}  // namespace lrb::engines

@@ -1,20 +1,22 @@
 #pragma once
-/// Random poses of a body beside another, and the search for those of the highest cost.
+/// Poses of a body beside another: random ones, the search for those of the highest cost, and poses that are
+/// hard in floating point.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include <lrbscope/core/random.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 
-namespace lrb::tails {
+namespace lrb::engines {
 
 /// A pose of B relative to A.
 struct Placement {
@@ -68,15 +70,13 @@ struct SearchOptions {
   std::size_t starts = 8;     ///< number that are improved
 };
 
-/// The trials of a search, in order. `random` of them are random.
+/// The trials of a search, in order. `random` of them, the first, are random.
 struct Search {
   std::vector<Trial> trials;
   std::size_t random = 0;
 
   /// Returns at most `most` trials, the worst first, without those that are alike a worse one.
   std::vector<Trial> worst(std::size_t most = 8) const;
-  /// Returns the highest cost of the first n trials.
-  double highest(std::size_t n) const;
 };
 
 /// Searches for placements of high cost. A share of the budget is random. The best of those are improved in
@@ -84,7 +84,33 @@ struct Search {
 /// otherwise (adaptation of the step length by success: Rechenberg's rule for the (1+1) evolution strategy,
 /// 1973). Steps of all starts are evaluated together, and depend only on the earlier ones of the same start.
 Search search(const SearchOptions& options, const CostsOf& costs, const SearchProgress& progress);
-/// Spends the budget at random.
-Search random_search(const SearchOptions& options, const CostsOf& costs, const SearchProgress& progress);
+// Hard poses.
 
-}  // namespace lrb::tails
+enum class Hard : std::uint8_t {
+  first_contact,   ///< the last double before the surfaces meet on a straight motion, and the next
+  coplanar_faces,  ///< a face of B in the plane of a face of A, with a common point
+  parallel_edges,  ///< an edge of B along an edge of A, with a common midpoint
+  vertices,        ///< a vertex of B on one of A; axes of B along axes of A
+};
+constexpr auto enum_names(Hard) {
+  return std::to_array<EnumName<Hard>>({{Hard::first_contact, "first_contact"},
+                                        {Hard::coplanar_faces, "coplanar_faces"},
+                                        {Hard::parallel_edges, "parallel_edges"},
+                                        {Hard::vertices, "vertices"}});
+}
+
+struct HardPose {
+  Hard kind = Hard::first_contact;
+  int ulps = 0;  ///< moved by this many units in the last place of the bodies' size
+  Pose pose;
+};
+
+/// Returns `count` poses: of each kind in turn, and at each of kUlps. Without a first contact on the drawn
+/// path another is drawn.
+std::vector<HardPose> hard_poses(const LrbRep& a, const LrbRep& b, const PoseSpace& space, std::size_t count,
+                                 std::uint64_t seed);
+/// Up to the rounding of poses in single precision.
+inline constexpr std::array<int, 11> kUlps = {0,          1,       -1,         16,      -16,       1 << 12,
+                                              -(1 << 12), 1 << 24, -(1 << 24), 1 << 30, -(1 << 30)};
+
+}  // namespace lrb::engines
