@@ -74,11 +74,6 @@ cases::Body saved_and_loaded(const LrbRep& rep) {
   return back;
 }
 
-Relation mirrored(Relation r) {
-  if (r == Relation::a_inside_b) return Relation::b_inside_a;
-  return r == Relation::b_inside_a ? Relation::a_inside_b : r;
-}
-
 }  // namespace
 
 TEST_CASE("the complete query equals brute force, with regions and without") {

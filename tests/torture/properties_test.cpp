@@ -19,12 +19,6 @@ using namespace lrb::cases;
 
 namespace {
 
-/// Coordinates on a grid of 2^-20: whole translations of up to 2^20 move them without rounding.
-cases::Body on_grid(Mesh m) {
-  for (auto& v : m.vertices) v = (v * 0x1p20).array().round() * 0x1p-20;
-  return cases::body(m);
-}
-
 std::vector<LrbRep> built() {
   std::vector<LrbRep> list;
   list.push_back(shapes::dented_box());
