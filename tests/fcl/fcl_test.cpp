@@ -166,8 +166,9 @@ TEST_CASE("FCL's names work without qualification; other shapes and moving objec
   const CollisionObjectd o1(box), o2(mesh);
   CollisionResultd result;
   CHECK(collide(&o1, &o2, CollisionRequestd(), result) == 1);
-  CHECK(collide(mesh.get(), Transform3d(Transform3d::Identity()), mesh.get(), o2.getTransform(),
-                CollisionRequestd(1000), result) == pairs_of(result).size());
+  const std::size_t found = collide(mesh.get(), Transform3d(Transform3d::Identity()), mesh.get(),
+                                    o2.getTransform(), CollisionRequestd(1000), result);
+  CHECK(found == result.numContacts());
   DistanceResultd nearest;
   CollisionObjectd far(box);
   far.setTranslation({5, 0, 0});
