@@ -126,7 +126,7 @@ TEST_CASE("the bound on the approach between two poses is valid and tight") {
   RandomEngine random(32);
   const LrbRep a = closed(shapes::bumpy_sphere(1, 7, 0.3)), b = closed(shapes::torus(6, 5));
   int near_bound = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 300; ++i) {
     CAPTURE(i);
     PosePair from{{shapes::random_rotation(random), std::pow(10, i % 5) * shapes::random_direction(random)},
                   shapes::random_pose(random, a, b, 1.5)};
@@ -150,7 +150,7 @@ TEST_CASE("the bound on the approach between two poses is valid and tight") {
     else
       near_bound += most > 0.25 * by;
   }
-  CHECK(near_bound > 10);
+  CHECK(near_bound > 50);  // a third of those that move apart or together
   PosePair mirrored;
   mirrored.b.r(0, 0) = -1;
   CHECK(nearer_by(a, b, {}, mirrored, 1) == INFINITY);

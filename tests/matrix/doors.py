@@ -269,7 +269,7 @@ class Matrix:
         self.run(points, check_points, made=f"{out}-p.png")
         self.run(["inspect", file, "--validate"], None, (0,) if stored or kind["builds"] else (0, 2))
         self.run(["figure", file, "-o", f"{out}.png", "--dpi", "100"], None, built)
-        self.run(["levels", file], None, built)
+        self.run(["inspect", file, "--levels"], None, built)
         self.run(["export", file, "-o", f"{out}.ply"], made=f"{out}.ply")
         self.run(["close", file, "-o", f"{out}-closed.obj"], None, (0, 1, 2))
 
