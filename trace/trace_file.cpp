@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -95,6 +96,7 @@ std::string read_all(const std::string& path, std::uint64_t max_bytes) {
     const int got = gzread(file.get(), chunk.data(), kChunk);
     int code = Z_OK;
     const char* why = gzerror(file.get(), &code);
+    if (code == Z_MEM_ERROR) throw std::bad_alloc();
     // A truncated gzip stream is an error, not an early end.
     if (got < 0 || (code != Z_OK && code != Z_STREAM_END))
       fail_to_read(path, code == Z_ERRNO       ? std::strerror(errno)
