@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <numeric>
 #include <string_view>
 #include <utility>
@@ -47,8 +48,12 @@ double number(std::string_view word, const std::string& where, const std::string
   const std::string_view digits = word.substr(word[0] == '+' ? 1 : 0);
   double x = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
-  if (error == std::errc::result_out_of_range)
+  if (error == std::errc::result_out_of_range) {
+    // Rounded to nearest: 0 for a number below the range.
+    const double nearest = std::strtod(std::string(digits).c_str(), nullptr);
+    if (std::abs(nearest) < 1) return nearest;
     throw InputError(where + shown(word) + " exceeds the range of a double");
+  }
   if (error != std::errc() || end != digits.data() + digits.size())
     throw InputError(where + shown(word) + " is not a number: expected " + wanted);
   if (!std::isfinite(x))
@@ -62,6 +67,11 @@ std::string_view next_line(const std::string& text, std::size_t& at) {
   const std::string_view line = std::string_view(text).substr(at, end - at);
   at = end + 1;
   return line;
+}
+
+/// Returns the length of a UTF-8 byte order mark at the beginning of a text, which spreadsheets write.
+std::size_t mark_of(const std::string& text) {
+  return text.starts_with("\xef\xbb\xbf") ? 3 : 0;
 }
 
 std::string_view trimmed(std::string_view cell) {
@@ -121,6 +131,17 @@ void check_last_row(const std::vector<std::string_view>& cells, const std::strin
       throw InputError(where + "expected 0, 0, 0, 1 as the last row of the 4x4 pose");
 }
 
+/// Returns the number of the first cell of a line, from 1, that has nothing before its comma; 0: none.
+std::size_t empty_cell(std::string_view line) {
+  line = line.substr(0, line.find('#'));
+  for (std::size_t cell = 1, at = 0;; ++cell) {
+    const std::size_t end = line.find(',', at);
+    if (end == std::string_view::npos) return 0;
+    if (trimmed(line.substr(at, end - at)).empty()) return cell;
+    at = end + 1;
+  }
+}
+
 /// Calls see(numbers, line) for each line of `count` numbers; `meaning` describes them for messages.
 template <class See>
 void read_lines(const std::string& text, const std::string& name, std::size_t count, const char* meaning,
@@ -128,10 +149,13 @@ void read_lines(const std::string& text, const std::string& name, std::size_t co
   const std::string numbers = std::to_string(count) + " numbers";
   std::vector<double> x(count);
   std::size_t line_number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::vector<std::string_view> words = words_in(next_line(text, at));
+  for (std::size_t at = mark_of(text); at < text.size();) {
+    const std::string_view line = next_line(text, at);
+    const std::vector<std::string_view> words = words_in(line);
     const std::string where = name + ":" + std::to_string(++line_number) + ": ";
     if (words.empty()) continue;
+    if (const std::size_t cell = empty_cell(line))
+      throw InputError(where + "cell " + std::to_string(cell) + " is empty: expected a number");
     for (std::size_t i = 0; i < words.size() && i < count; ++i)
       x[i] = number(words[i], where, numbers + " per line");
     if (words.size() != count)
@@ -189,10 +213,11 @@ std::vector<PosePair> read_motions(const std::string& path) {
 std::vector<Eigen::Vector3d> parse_points(const std::string& text, const std::string& name) {
   std::vector<Eigen::Vector3d> points;
   // The names of the columns, as tables have them, become a comment: the lines keep their numbers.
-  std::size_t at = 0;
+  const std::size_t mark = mark_of(text);
+  std::size_t at = mark;
   const std::vector<std::string_view> names = words_in(next_line(text, at));
   const bool named = names == std::vector<std::string_view>{"x", "y", "z"};
-  read_lines(named ? "#" + text : text, name, 3, "x, y and z of a point",
+  read_lines(named ? "#" + text.substr(mark) : text, name, 3, "x, y and z of a point",
              [&](std::span<const double> x, std::size_t) { points.emplace_back(x[0], x[1], x[2]); });
   if (points.empty()) throw InputError(name + ": no points: expected lines of 3 numbers (x, y, z)");
   return points;
@@ -209,7 +234,7 @@ std::vector<Pose> parse_pose_table(const std::string& text, const std::string& n
   std::iota(column.begin(), column.end(), 0U);
   bool named = false;
   std::size_t line_number = 0;
-  for (std::size_t at = 0; at < text.size();) {
+  for (std::size_t at = mark_of(text); at < text.size();) {
     const std::vector<std::string_view> cells = cells_of(next_line(text, at));
     const std::string where = name + ":" + std::to_string(++line_number) + ": ";
     if (cells.empty()) continue;

@@ -28,6 +28,13 @@ inline std::optional<OffHeader> parse_off_header(std::string_view word) {
   return word == "OFF" ? std::optional(header) : std::nullopt;
 }
 
+/// Returns the length of the header of an OFF file at the beginning of its first word, or 0. Some files have
+/// no blank between it and the first count: OFF8.
+inline std::size_t off_header_size(std::string_view word) {
+  const std::size_t digits = word.find_last_not_of("0123456789") + 1;
+  return parse_off_header(word.substr(0, digits)) ? digits : 0;
+}
+
 // One reader for each format. They take the content of the file and its name for messages. They throw
 // InputError with name and line (binary files: byte and element), the expected and the found content, and a
 // remedy.

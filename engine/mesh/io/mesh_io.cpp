@@ -133,7 +133,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   if (first_of_all == "ply") return MeshFormat::ply;
   // A binary STL of a wrong size may also begin with "solid"; its reader reports the sizes.
   if (lower(first_of_all) == "solid") return is_text(bytes) ? MeshFormat::stl_ascii : MeshFormat::stl_binary;
-  if (parse_off_header(first)) return MeshFormat::off;
+  if (off_header_size(first) > 0) return MeshFormat::off;
   // Unsupported formats are named in the message.
   if (const auto what = looks_like(bytes)) reject(name, *what);
   if (is_utf16_without_mark(bytes)) reject(name, "UTF-16 text (save it as UTF-8)");

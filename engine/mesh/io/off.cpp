@@ -19,9 +19,10 @@ class OffReader {
   Mesh read() {
     // The keyword is optional; without it the first token is a count.
     std::string_view first = text_.any_token();
-    if (const auto header = parse_off_header(first)) {
-      take_header(*header, first);
-      first = text_.any_token();
+    if (const std::size_t size = off_header_size(first)) {
+      take_header(*parse_off_header(first.substr(0, size)), first);
+      first.remove_prefix(size);
+      if (first.empty()) first = text_.any_token();
     }
     counts(first);
     for (std::uint64_t i = 0; i < vertices_; ++i) vertex();

@@ -38,7 +38,8 @@ class StlText {
     // A file may contain several solids; they are combined in one mesh.
     do {
       if (!same_word(word, "solid")) unexpected(word, "solid");
-      text_.next_line();  // the rest of the line is the solid's name
+      // The rest of the line is the solid's name, unless the file has no line breaks.
+      if (!go_to_facet()) text_.next_line();
       solid();
       word = text_.any_token();
     } while (!word.empty());
@@ -54,7 +55,19 @@ class StlText {
       if (!same_word(word, "facet")) unexpected(word, "facet or endsolid");
       facet();
     }
+    if (go_to_facet()) unexpected("facet", "the end of the line after endsolid");
     text_.next_line();
+  }
+
+  /// Advances to the first facet on this line. Returns false, and stays, if there is none.
+  bool go_to_facet() {
+    for (TextCursor at = text_, next = text_;; at = next) {
+      const std::string_view word = next.token();
+      if (word.empty()) return false;
+      if (!same_word(word, "facet") || !same_word(TextCursor(next).token(), "normal")) continue;
+      text_ = at;
+      return true;
+    }
   }
 
   void facet() {
@@ -128,8 +141,12 @@ Mesh read_stl_ascii(std::string_view bytes, std::string_view name) {
 }
 
 Mesh read_stl_binary(std::string_view bytes, std::string_view name) {
-  if (!has_size_of_binary_stl(bytes)) reject_size(bytes, name);
-  // The size is consistent with the count, so all reads below are within the file.
+  // Some exporters append other data. Further triangles mean that the count is wrong.
+  const bool has_all =
+      bytes.size() >= kStart && bytes.size() >= kStart + kTriangle * claimed_triangles(bytes);
+  if (!has_all || (!has_size_of_binary_stl(bytes) && (bytes.size() - kStart) % kTriangle == 0))
+    reject_size(bytes, name);
+  // All reads below are within the file.
   const std::size_t count = claimed_triangles(bytes);
   check_index_limits(0, 3 * std::uint64_t{count}, name);
   Mesh mesh;

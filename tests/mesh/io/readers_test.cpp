@@ -141,6 +141,14 @@ TEST_CASE("STL binary: recognised by its size, whatever its header") {
   CHECK(read_mesh(to_stl_binary(body, "solid"), "misnamed.obj").face_count() == body.face_count());
 }
 
+TEST_CASE("STL: a text without line breaks, and binary data with other data after them") {
+  std::string line = to_stl_ascii(tetrahedron());
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  const Mesh body = read_mesh(to_stl_ascii(tetrahedron()), "t.stl");
+  check_same(read_mesh(line, "t.stl"), body);
+  check_same(read_mesh(to_stl_binary(tetrahedron()) + "appended", "t.stl"), body);
+}
+
 TEST_CASE("PLY: any order and type of properties, other elements and lists skipped") {
   const Mesh m = read_mesh(
       "ply\nformat ascii 1.0\ncomment c\nobj_info o\nelement material 2\nproperty uchar red\nproperty list "
@@ -208,6 +216,7 @@ TEST_CASE("OFF: keyword forms, comments, colours, counts on the keyword's line")
   check_same(read_mesh("# first\n\nOFF # keyword\n# counts\n4 4 6 # these\n" + off.substr(10), "t.off"),
              body);
   check_same(read_mesh("OFF 4 4 0\n" + off.substr(10), "t.off"), body);
+  check_same(read_mesh("OFF4 4 0\n" + off.substr(10), "t.off"), body);
   check_same(read_mesh("OFF\n4 4\n" + off.substr(10), "t.off"), body);
   check_same(read_mesh(off.substr(4), "t.off"), body);  // the keyword may be left out
   std::string coloured = "COFF\n4 4 0\n";
