@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
 #include "bench/stability/rational_oracles.hpp"
 #include "bench/stability/stability_report.hpp"
 #include "render/pictures/panel.hpp"
@@ -52,7 +54,7 @@ CasePicture::CasePicture(const cases::Case& c, const Verdict& verdict)
   mark(verdict.extra, Mark::extra);
   mark(verdict.missed, Mark::missed);
   if (!all_marked()) return;
-  worst = verdict.worst_mark();
+  worst = !verdict.missed.empty() ? Mark::missed : !verdict.extra.empty() ? Mark::extra : Mark::found;
   for (const SimplexPair& p : verdict.worst()) add_place(p);
 }
 
@@ -133,6 +135,12 @@ Piece PosedBody::simplex(SimplexId s) const {
   return {{x_[v[0]], x_[v[1]], x_[v[2]]}, {i == 0, true, i + 3 == rep_->face(f).size()}};
 }
 
+Eigen::AlignedBox3d PosedBody::box(SimplexId s) const {
+  Eigen::AlignedBox3d out;
+  for (const Eigen::Vector3d& p : simplex(s).corners) out.extend(p);
+  return out;
+}
+
 double diagonal(const Eigen::AlignedBox3d& box) {
   return box.isEmpty() ? 0 : (box.max() / 4 - box.min() / 4).stableNorm() * 4;
 }
@@ -152,16 +160,55 @@ class PictureFrame {
   Eigen::Vector3d operator()(const Eigen::Vector3d& world) const {
     return (world * before_ - centre_) / radius_;
   }
-  Piece operator()(Piece world) const {
-    for (Eigen::Vector3d& p : world.corners) p = (*this)(p);
-    return world;
-  }
+  /// Returns the part of a piece in [-reach, reach]^3, or no corners if it is empty. A piece may be 1e60
+  /// times larger than the cube, so it is clipped with 100 digits.
+  Piece cut(const Piece& world, double reach) const;
 
  private:
   Eigen::Vector3d centre_;
   double before_ = 1;  ///< scale that keeps differences of the largest doubles finite
   double radius_ = 1;
 };
+
+using Wide = boost::multiprecision::cpp_bin_float_100;
+using WidePoint = std::array<Wide, 3>;
+
+struct WidePiece {
+  std::vector<WidePoint> corners;
+  std::vector<bool> edges;
+};
+
+/// One pass of Sutherland-Hodgman clipping (I. Sutherland, G. Hodgman, "Reentrant Polygon Clipping", 1974):
+/// keeps the part with sign * x[axis] <= reach.
+WidePiece clip(const WidePiece& in, std::size_t axis, int sign, const Wide& reach) {
+  WidePiece out;
+  const std::size_t n = in.corners.size();
+  const auto beyond = [&](const WidePoint& p) -> Wide { return sign * p[axis] - reach; };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (n == 2 && i == 1) {  // a segment has no second side
+      if (beyond(in.corners[1]) <= 0) out.corners.push_back(in.corners[1]), out.edges.push_back(false);
+      break;
+    }
+    const WidePoint &p = in.corners[i], &q = in.corners[(i + 1) % n];
+    const Wide dp = beyond(p), dq = beyond(q);
+    if (dp <= 0) out.corners.push_back(p), out.edges.push_back(in.edges[i]);
+    if ((dp < 0 && dq > 0) || (dp > 0 && dq < 0)) {
+      const Wide t = dp / (dp - dq);
+      WidePoint cut;
+      for (std::size_t k = 0; k < 3; ++k) cut[k] = p[k] + t * (q[k] - p[k]);
+      // On leaving, the next side lies on the cube and is not an outline; on entering, it lies on the old
+      // side.
+      out.corners.push_back(cut), out.edges.push_back(dp > 0 && in.edges[i]);
+    }
+  }
+  return out;
+}
+
+bool inside(const Piece& piece, double reach) {
+  for (const Eigen::Vector3d& p : piece.corners)
+    if (!(p.cwiseAbs().maxCoeff() <= reach)) return false;
+  return true;
+}
 
 PictureFrame::PictureFrame(const Eigen::AlignedBox3d& box) {
   const double largest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
@@ -171,6 +218,26 @@ PictureFrame::PictureFrame(const Eigen::AlignedBox3d& box) {
   radius_ = (high - low).maxCoeff() / 2;
   // Bodies that have collapsed to a point are drawn as a point, so any size is valid.
   if (!(radius_ > 0)) radius_ = std::max(largest * before_, std::numeric_limits<double>::min());
+}
+
+Piece PictureFrame::cut(const Piece& world, double reach) const {
+  Piece near = world;
+  for (Eigen::Vector3d& p : near.corners) p = (*this)(p);
+  if (inside(near, reach)) return near;
+  WidePiece wide;
+  wide.edges = world.edges;
+  for (const Eigen::Vector3d& p : world.corners) {
+    WidePoint& q = wide.corners.emplace_back();
+    for (int k = 0; k < 3; ++k)
+      q[static_cast<std::size_t>(k)] = (Wide(p[k]) * before_ - Wide(centre_[k])) / Wide(radius_);
+  }
+  for (std::size_t axis = 0; axis < 3 && !wide.corners.empty(); ++axis)
+    for (const int sign : {-1, 1}) wide = clip(wide, axis, sign, reach);
+  Piece out;
+  out.edges = wide.edges;
+  for (const WidePoint& q : wide.corners)
+    out.corners.emplace_back(static_cast<double>(q[0]), static_cast<double>(q[1]), static_cast<double>(q[2]));
+  return out;
 }
 
 // Draw lists.
@@ -240,18 +307,22 @@ void add_body(render::DrawList& list, const Piece& p, std::size_t body, std::uin
   }
 }
 
+/// Fills a 2D body, unless it is too large to be filled in doubles.
 void add_fill(render::DrawList& list, const PosedBody& body, std::size_t i, const PictureFrame& frame) {
+  constexpr double kLargest = 1e6;
   render::DrawFill fill;
   fill.colour = render::with_alpha(render::palette::body(side(i)), 56);
   for (SimplexId f = 0; f < body.size(); ++f) {
-    const Piece p = frame(body.simplex(f));
-    fill.segments.push_back({p.corners[0], p.corners[1]});
+    const Piece p = body.simplex(f);
+    fill.segments.push_back({frame(p.corners[0]), frame(p.corners[1])});
+    if (!(fill.segments.back()[0].cwiseAbs().maxCoeff() < kLargest)) return;
   }
   list.fills.push_back(std::move(fill));
 }
 
-/// Returns a draw list: bodies translucent, marks in their colours.
-render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame) {
+/// Returns a draw list: bodies translucent, marks in their colours. Geometry outside [-reach, reach]^3 of the
+/// frame is clipped.
+render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame, double reach) {
   render::DrawList list;
   const Fill fill = s.all_marked() ? Fill::in_colour_of_body : s.crowded() ? Fill::see_through : Fill::opaque;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -259,7 +330,8 @@ render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame) {
     const render::Rgba edge = render::palette::edge_of(render::palette::body(side(i)));
     const std::uint8_t style = list.edge_style({render::with_alpha(edge, 120), 1, 0.5F});
     for (SimplexId f = 0; f < s.marks[i].size(); ++f) {
-      const Piece p = frame(s.bodies[i].simplex(f));
+      const Piece p = frame.cut(s.bodies[i].simplex(f), reach);
+      if (p.corners.size() < 2) continue;
       if (s.marks[i][f] == Mark::none)
         add_body(list, p, i, style);
       else
@@ -267,7 +339,7 @@ render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame) {
     }
   }
   for (const Piece& whole : s.places) {
-    const Piece p = frame(whole);
+    const Piece p = frame.cut(whole, reach);
     constexpr std::int8_t kInFront = 12;
     constexpr float kWidth = 4;
     if (p.corners.size() > 1) add_outline(list, p, colour_of(s.worst), kWidth, kInFront);
@@ -283,14 +355,15 @@ render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame) {
 }
 
 /// Adds a dot for each mark smaller than `least`, in units of the frame.
-void add_dots(render::DrawList& list, const CasePicture& s, const PictureFrame& frame, double least) {
+void add_dots(render::DrawList& list, const CasePicture& s, const PictureFrame& frame, double reach,
+              double least) {
   for (std::size_t i = 0; i < 2; ++i)
     for (SimplexId f = 0; f < s.marks[i].size(); ++f) {
       if (s.marks[i][f] == Mark::none) continue;
-      const Piece p = frame(s.bodies[i].simplex(f));
+      const Piece p = frame.cut(s.bodies[i].simplex(f), reach);
       Eigen::AlignedBox3d box;
       for (const Eigen::Vector3d& x : p.corners) box.extend(x);
-      if (diagonal(box) > least) continue;
+      if (p.corners.empty() || diagonal(box) > least) continue;
       render::DrawPoint dot;
       dot.x = box.center();
       dot.colour = colour_of(s.marks[i][f]);
@@ -301,7 +374,84 @@ void add_dots(render::DrawList& list, const CasePicture& s, const PictureFrame& 
 
 // Pictures.
 
-constexpr int kWidth = 1280, kHeight = 720;
+constexpr int kWidth = 1280, kHeight = 720, kBetweenViews = 4;
+/// Marks whose combined size is a smaller fraction of the scene than this get a close-up,
+constexpr double kSmallShare = 0.25;
+/// and so do widespread marks, if the smallest is smaller than this fraction.
+constexpr double kTiny = 0.04;
+/// Extent of a close-up, relative to its subject.
+constexpr double kContext = 2.4;
+/// Bodies are clipped beyond the view of close-ups, at this distance in extents of the close-up.
+constexpr double kReach = 6;
+
+// ---- Regions of interest
+
+/// Halves first: sums of the largest doubles overflow.
+Eigen::Vector3d centre_of(const Eigen::AlignedBox3d& box) {
+  return box.min() / 2 + box.max() / 2;
+}
+
+/// Returns a box around the intersection of two simplices, or around the smaller one if their boxes are
+/// disjoint.
+Eigen::AlignedBox3d place_of(const CasePicture& s, const SimplexPair& p) {
+  const Eigen::AlignedBox3d a = s.bodies[0].box(p.a), b = s.bodies[1].box(p.b);
+  const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
+  const Eigen::AlignedBox3d common = a.intersection(b);
+  const Eigen::Vector3d centre = centre_of(common.isEmpty() ? smaller : common);
+  const double half = diagonal(smaller) / 4;
+  Eigen::AlignedBox3d out(centre - Eigen::Vector3d::Constant(half), centre + Eigen::Vector3d::Constant(half));
+  return common.isEmpty() ? out.merged(smaller) : out.merged(common);
+}
+
+struct CloseUp {
+  Eigen::AlignedBox3d box;
+  std::string caption;
+};
+
+/// Returns the smallest box around the place of a pair: its extent, or if it is a point the shortest edge of
+/// the two simplices.
+CloseUp close_up_of_place(const CasePicture& s, const Piece& place, const SimplexPair& pair,
+                          const char* kind) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& x : place.corners) box.extend(x);
+  double size = diagonal(box);
+  if (!(size > 0)) {
+    for (const Piece& p : {s.bodies[0].simplex(pair.a), s.bodies[1].simplex(pair.b)})
+      for (std::size_t k = 0; k < p.corners.size(); ++k) {
+        const double length = (p.corners[k] - p.corners[(k + 1) % p.corners.size()]).stableNorm();
+        if (length > 0 && (!(size > 0) || length < size)) size = length;
+      }
+  }
+  const Eigen::Vector3d centre = centre_of(box), half = Eigen::Vector3d::Constant(size / 2);
+  return {Eigen::AlignedBox3d(centre - half, centre + half), std::string("close-up, ") + kind};
+}
+
+std::optional<CloseUp> close_up(const CasePicture& s, const Verdict& verdict) {
+  const double whole = diagonal(s.box);
+  const Pairs& pairs = verdict.worst();
+  if (pairs.empty()) {
+    const Eigen::AlignedBox3d &a = s.bodies[0].box(), &b = s.bodies[1].box();
+    const Eigen::AlignedBox3d& smaller = diagonal(a) < diagonal(b) ? a : b;
+    if (diagonal(smaller) < kTiny * whole) return CloseUp{smaller, "close-up of the smaller body"};
+    return std::nullopt;
+  }
+  const char* kind = !verdict.missed.empty() ? "missed" : !verdict.extra.empty() ? "extra" : "expected";
+  if (!s.places.empty()) {
+    CloseUp close = close_up_of_place(s, s.places.front(), pairs.front(), kind);
+    if (diagonal(close.box) < kSmallShare * whole) return close;
+    return std::nullopt;
+  }
+  Eigen::AlignedBox3d all;
+  const Eigen::AlignedBox3d* smallest = nullptr;
+  std::vector<Eigen::AlignedBox3d> places;
+  for (const SimplexPair& p : pairs) all.extend(places.emplace_back(place_of(s, p)));
+  for (const Eigen::AlignedBox3d& b : places)
+    if (smallest == nullptr || diagonal(b) < diagonal(*smallest)) smallest = &b;
+  if (diagonal(all) < kSmallShare * whole) return CloseUp{all, std::string("close-up, ") + kind};
+  if (diagonal(*smallest) < kTiny * whole)
+    return CloseUp{*smallest, std::string("close-up of one pair, ") + kind};
+  return std::nullopt;
+}
 
 /// Returns the direction from which the projected area of the marks is largest, with some preference for the
 /// usual one.
@@ -311,7 +461,7 @@ render::ViewDirection best_view(const CasePicture& s, const PictureFrame& frame)
   for (std::size_t i = 0; i < 2; ++i)
     for (SimplexId f = 0; f < s.marks[i].size(); ++f) {
       if (s.marks[i][f] == Mark::none) continue;
-      const Piece p = frame(s.bodies[i].simplex(f));
+      const Piece p = frame.cut(s.bodies[i].simplex(f), 1);
       for (std::size_t k = 2; k < p.corners.size(); ++k)
         areas.push_back((p.corners[k - 1] - p.corners[0]).cross(p.corners[k] - p.corners[0]));
     }
@@ -333,28 +483,112 @@ render::ViewDirection best_view(const CasePicture& s, const PictureFrame& frame)
   return best;
 }
 
-render::Image draw(const CasePicture& s, int width, int height, render::Rasterizer& rasterizer) {
-  const PictureFrame frame(s.box);
-  std::vector<Eigen::Vector3d> points;
+// ---- Pictures
+
+struct View {
+  PictureFrame frame;
+  double reach;
+  render::ViewDirection direction;
+};
+
+run::CameraFit camera_of(const View& v, const std::vector<Eigen::Vector3d>& points, const CasePicture& s) {
+  render::FitOptions options;
+  options.view = v.direction;
+  return run::fit_points(points, s.flat() ? 2 : 3, options);
+}
+
+render::Image draw_view(const CasePicture& s, const View& v, const run::CameraFit& fit, int width, int height,
+                        render::Rasterizer& rasterizer) {
+  const render::Camera camera = fit(width, height);
+  render::DrawList list = draw_list(s, v.frame, v.reach);
+  const render::Projection projection(camera, width, height, render::bounds(list));
+  add_dots(list, s, v.frame, v.reach, 7 * projection.unit_per_pixel(camera.target));
+  return run::draw_panel(rasterizer, {list, fit, "", false}, {}, width, height);
+}
+
+std::vector<Eigen::Vector3d> corners_of(const PictureFrame& frame, const Eigen::AlignedBox3d& box) {
+  std::vector<Eigen::Vector3d> out;
+  for (int i = 0; i < 8; ++i)
+    out.push_back(frame(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i))));
+  return out;
+}
+
+std::vector<Eigen::Vector3d> all_points(const CasePicture& s, const PictureFrame& frame) {
+  std::vector<Eigen::Vector3d> out;
   for (const PosedBody& body : s.bodies)
     for (SimplexId f = 0; f < body.size(); ++f)
-      for (const Eigen::Vector3d& p : body.simplex(f).corners) points.push_back(frame(p));
-  render::FitOptions options;
-  options.view = best_view(s, frame);
-  const run::CameraFit fit = run::fit_points(points, s.flat() ? 2 : 3, options);
-  const render::Camera camera = fit(width, height);
-  render::DrawList list = draw_list(s, frame);
-  const render::Projection projection(camera, width, height, render::bounds(list));
-  add_dots(list, s, frame, 7 * projection.unit_per_pixel(camera.target));
-  return run::draw_panel(rasterizer, {list, fit, "", false}, {}, width, height);
+      for (const Eigen::Vector3d& p : body.simplex(f).corners) out.push_back(frame(p));
+  return out;
+}
+
+void write_caption(render::Image& image, const std::string& text) {
+  render::TextStyle style;
+  style.height = 17;
+  style.colour = render::palette::kInk;
+  const render::TextSize size = render::default_font().measure(text, style);
+  const render::PixelRect back{0, 0, std::min(image.width(), size.width + 20), size.height + 12};
+  for (int y = 0; y < back.height; ++y)
+    for (int x = 0; x < back.width; ++x) image.blend(x, y, render::with_alpha(render::kWhite, 225));
+  render::default_font().draw(image, text, 10, 6, style);
+}
+
+/// Frames the location of the close-up in the view of the whole, at a minimum size.
+void frame_place(render::Image& image, const render::Camera& camera,
+                 const std::vector<Eigen::Vector3d>& corners, const Eigen::AlignedBox3d& scene) {
+  const render::Projection projection(camera, image.width(), image.height(), scene);
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& c : corners)
+    if (const auto p = projection.to_pixel(c)) box.extend(*p);
+  if (box.isEmpty()) return;
+  constexpr double kLeast = 11;  // half a side, pixels
+  const Eigen::Vector2d centre = box.center();
+  const Eigen::Vector2d half = (box.sizes() / 2).cwiseMax(kLeast);
+  const render::PixelRect r{static_cast<int>(centre.x() - half.x()), static_cast<int>(centre.y() - half.y()),
+                            static_cast<int>(2 * half.x()), static_cast<int>(2 * half.y())};
+  image.stroke({r.x - 1, r.y - 1, r.width + 2, r.height + 2}, render::kWhite, 4);
+  image.stroke(r, render::palette::kInk, 2);
+}
+
+render::Image both_views(const CasePicture& s, const Verdict& verdict, int width, int height,
+                         render::Rasterizer& rasterizer) {
+  const std::optional<CloseUp> close = close_up(s, verdict);
+  const PictureFrame whole_frame(s.box);
+  std::optional<PictureFrame> near_frame;
+  if (close) near_frame.emplace(close->box);
+  const render::ViewDirection direction = best_view(s, close ? *near_frame : whole_frame);
+  const int left = close ? (width - kBetweenViews) / 2 : width;
+  const View whole{whole_frame, 2, direction};
+  const std::vector<Eigen::Vector3d> points = all_points(s, whole_frame);
+  const run::CameraFit fit = camera_of(whole, points, s);
+  render::Image image = draw_view(s, whole, fit, left, height, rasterizer);
+  if (!close) return image;
+
+  frame_place(image, fit(left, height), corners_of(whole_frame, close->box), render::bounds(points));
+  write_caption(image, "whole");
+  const View near{*near_frame, kReach, direction};
+  std::vector<Eigen::Vector3d> shown = corners_of(*near_frame, close->box);
+  for (Eigen::Vector3d& p : shown) p *= kContext / std::numbers::sqrt3;
+  render::Image detail =
+      draw_view(s, near, camera_of(near, shown, s), width - left - kBetweenViews, height, rasterizer);
+  write_caption(detail,
+                close->caption + ", " +
+                    render::short_number(diagonal(s.box) / std::max(diagonal(close->box) * kContext,
+                                                                    std::numeric_limits<double>::min())) +
+                    " times as large");
+  render::Image out(width, height, render::palette::kRule);
+  out.paste(image, 0, 0);
+  out.paste(detail, left + kBetweenViews, 0);
+  return out;
 }
 
 render::Overlay overlay_of(const CasePicture& s, const Verdict& verdict, const WorstCaseText& text) {
   render::Overlay o;
   o.title = text.title;
   o.event = text.answer;
-  o.event_colour = verdict.listed && verdict.worst_mark() != Mark::found ? colour_of(verdict.worst_mark())
-                                                                         : render::kTransparent;
+  const Mark worst = !verdict.missed.empty()  ? Mark::missed
+                     : !verdict.extra.empty() ? Mark::extra
+                                              : Mark::found;
+  o.event_colour = verdict.listed && worst != Mark::found ? colour_of(worst) : render::kTransparent;
   o.counters = text.counters;
   const auto count = [](const Pairs& p) { return render::group_digits(p.size()); };
   if (verdict.listed) {
@@ -385,8 +619,8 @@ render::Image worst_case_picture(const cases::Case& c, std::span<const SimplexPa
   const CasePicture subject(c, verdict);
   const render::Overlay overlay = overlay_of(subject, verdict, text);
   const render::PixelRect place = render::lay_out(overlay, kWidth, kHeight).picture;
-  return render::compose_frame(draw(subject, place.width, place.height, rasterizer), place, overlay, kWidth,
-                               kHeight);
+  return render::compose_frame(both_views(subject, verdict, place.width, place.height, rasterizer), place,
+                               overlay, kWidth, kHeight);
 }
 
 namespace {

@@ -35,6 +35,7 @@ class PosedBody {
 
   std::uint32_t size() const { return rep_->real_simplex_count(); }
   Piece simplex(SimplexId s) const;
+  Eigen::AlignedBox3d box(SimplexId s) const;
   const Eigen::AlignedBox3d& box() const { return box_; }
   int dim() const { return rep_->dim(); }
 
@@ -60,9 +61,6 @@ struct Verdict {
 
   /// Returns the pairs of the most severe non-empty kind.
   const Pairs& worst() const { return !missed.empty() ? missed : !extra.empty() ? extra : found; }
-  Mark worst_mark() const {
-    return !missed.empty() ? Mark::missed : !extra.empty() ? Mark::extra : Mark::found;
-  }
 };
 Verdict compare(std::span<const SimplexPair> expected, const std::optional<Pairs>& answered);
 
@@ -99,7 +97,8 @@ struct WorstCaseText {
 };
 
 /// Draws both bodies translucent, and the simplices of all expected and answered pairs coloured by their mark
-/// (of several marks: missed before extra before found). Marks that are small in the picture get a dot.
+/// (of several marks: missed before extra before found). A close-up of the wrong pairs is added if they are
+/// small compared to the bodies.
 /// `answered`: nullopt if the method returned no list; all expected pairs are then drawn as found. Pairs are
 /// of real simplices, in any order; 3D or 2D. Throws InputError if world coordinates are not finite or a pair
 /// refers to no real simplex.
