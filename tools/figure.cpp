@@ -5,14 +5,10 @@
 #include <memory>
 #include <numbers>
 
-#include <nlohmann/json.hpp>
-
-#include "render/gl.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/io/zip.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -20,7 +16,6 @@
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
-#include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/svg.hpp>
@@ -30,7 +25,7 @@ namespace lrb::cli {
 namespace {
 
 struct FigureOptions {
-  std::string source, file, width, line_width, artifact;
+  std::string source, file, width, line_width;
   std::vector<std::string> bodies;
   std::vector<std::uint32_t> faces, events, steps;
   bool layers = false, close_up = false, try_views = false;
@@ -187,98 +182,7 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
   return frames;
 }
 
-/// Returns a scenario's text with the mesh files that it names as files of the archive, which it appends.
-std::string with_own_bodies(const std::string& path, std::vector<io::ZipEntry>& entries) {
-  nlohmann::ordered_json scenario = nlohmann::ordered_json::parse(io::read_text(path), nullptr, true, true);
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  for (auto& [name, body] : scenario["bodies"].items()) {
-    if (!body.contains("file")) continue;
-    const std::filesystem::path mesh = folder / body["file"].get<std::string>();
-    const std::string own = name + "_" + mesh.filename().string();
-    entries.push_back({"inputs/" + own, io::read_text(mesh.string())});
-    body["file"] = own;
-  }
-  return scenario.dump(2) + "\n";
-}
-
-/// Returns the options of a call as words for a shell, without those that name files.
-std::string shell_options(const App& app) {
-  std::string out;
-  for (const Option& option : app.options()) {
-    const std::string name = option.name();
-    if (!option.given() || option.is_argument() || name == "--output" || name == "--artifact" ||
-        name == "--bodies")
-      continue;
-    // Options without a delimiter have one value each time that they are given.
-    if (!option.is_flag() && !option.has_delimiter()) {
-      for (const std::string& value : option.values()) out += " " + name + " " + shell_word(value);
-      continue;
-    }
-    std::string values;
-    for (const std::string& value : option.values()) values += (values.empty() ? "" : ",") + value;
-    out += " " + name + (!option.is_flag() ? " " + shell_word(values) : values == "true" ? "" : "=" + values);
-  }
-  return out;
-}
-
-/// Writes an archive from which one command makes the figure again: the input files, the figure, the command,
-/// the versions, and a container with the program.
-void write_artifact(const FigureOptions& o, const App& app, const std::string& file,
-                    const std::string& bytes) {
-  std::vector<io::ZipEntry> entries;
-  std::string source, bodies;
-  const auto add = [&](const std::string& path, const std::string& name) {
-    entries.push_back({"inputs/" + name, io::read_text(path)});
-    return "inputs/" + name;
-  };
-  std::error_code error;
-  const auto name_of_file = [](const std::string& path) {
-    return std::filesystem::path(path).filename().string();
-  };
-  if (std::filesystem::is_directory(o.source, error) || is_trace_name(o.source)) {
-    const std::string trace = run::trace_of(o.source);
-    source = add(trace, name_of_file(trace));
-    for (std::size_t i = 0; i < o.bodies.size(); ++i)
-      bodies +=
-          " " + shell_word(add(o.bodies[i], std::string(i == 0 ? "a_" : "b_") + name_of_file(o.bodies[i])));
-    for (const char* name : {"a.lrb", "b.lrb", "trees.json", "trees.json.gz"}) {
-      const std::filesystem::path beside = std::filesystem::path(trace).replace_filename(name);
-      if (std::filesystem::exists(beside, error)) add(beside.string(), name);
-    }
-  } else if (is_mesh_name(o.source)) {
-    source = add(o.source, name_of_file(o.source));
-  } else if (std::filesystem::exists(o.source, error)) {
-    source = "inputs/" + name_of_file(o.source);
-    const std::string text = with_own_bodies(o.source, entries);
-    entries.push_back({source, text});
-  } else {
-    source = o.source;  // a shipped scenario
-  }
-  const std::string name = name_of_file(file), version = trace::lrbscope_version();
-  entries.push_back({name, bytes});
-  entries.push_back(
-      {"make.sh", "#!/bin/sh\n# Makes the figure again from inputs/, as made/" + name +
-                      ", and compares it with this one. LRBSCOPE names the program.\n# Made by lrbscope " +
-                      version + "; image parts by OpenGL " + render::gl_version() +
-                      ".\nset -e\ncd \"$(dirname \"$0\")\"\n\"${LRBSCOPE:-lrbscope}\" figure " +
-                      shell_word(source) + (bodies.empty() ? "" : " --bodies" + bodies) + shell_options(app) +
-                      " -o " + shell_word("made/" + name) + "\ncmp " + shell_word("made/" + name) + " " +
-                      shell_word(name) + "\necho \"made/" + name + ": the same, byte for byte\"\n"});
-  entries.push_back(
-      {"Dockerfile",
-       "# docker build -t figure . && docker run --rm figure\n# LRBSCOPE: the address of a folder with lrbscope's "
-       "packages for Debian 12.\nFROM debian:12\nARG LRBSCOPE=https://lrbscope.example.org/releases/" +
-           version +
-           "\nRUN apt-get update -q && apt-get install -y -q --no-install-recommends ca-certificates curl \\\n"
-           " && curl -fsSLO \"$LRBSCOPE/lrbscope_" +
-           version +
-           "-1_amd64.deb\" \\\n"
-           " && apt-get install -y -q --no-install-recommends ./lrbscope_*.deb\n"
-           "COPY . /figure\nCMD [\"sh\", \"/figure/make.sh\"]\n"});
-  write_file(o.artifact, io::zip(entries));
-}
-
-int run_figure(const FigureOptions& o, const App& app, const Globals& globals) {
+int run_figure(const FigureOptions& o, const Globals& globals) {
   const run::ProgressReport progress = progress_report(globals.quiet);
   if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // check the file before an expensive run
   const Source source = open_source(o, progress);
@@ -300,10 +204,6 @@ int run_figure(const FigureOptions& o, const App& app, const Globals& globals) {
   io::write_text(file, drawn.bytes);
   io::write_text(caption.string(), drawn.caption + "\n");
   print(file + "\n");
-  if (!o.artifact.empty()) {
-    write_artifact(o, app, file, drawn.bytes);
-    print(o.artifact + "\n");
-  }
   return kOk;
 }
 
@@ -407,11 +307,7 @@ Command add_figure(App& root, const Globals& globals) {
   add_camera_options(*app, o->picture.camera, UpOption::axis_or_auto);
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);
-  app->add_option(
-      "--artifact", o->artifact, "ZIP",
-      "Also write an archive with the inputs, the command and a container recipe, which makes the same "
-      "figure again, byte for byte");
-  return {app, [o, app, &globals] { return run_figure(*o, *app, globals); }};
+  return {app, [o, &globals] { return run_figure(*o, globals); }};
 }
 
 }  // namespace lrb::cli

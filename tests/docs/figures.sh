@@ -29,29 +29,11 @@ for file in fig.pdf titled.pdf; do # 85 mm are 240.945 points
   "$pdf_text" <"$file" | grep -aE '/MediaBox \[ 0 0 240\.94[0-9]* ' >/dev/null || { echo "$file: expected a width of 85 mm"; exit 1; }
 done
 grep -q 'width="85mm"' tests.svg || { echo "tests.svg: expected a width of 85 mm"; exit 1; }
-# The archives make the same figures, from their own copies of the inputs; options that are given twice are kept.
-lrbscope figure out/mine --steps 0,20 --inset b:contact --callout "a:face:3=a, b" --callout b:face:b3 --artifact twice.zip -o twice.svg
-for name in fig twice; do
-  mkdir "archive_$name"
-  (cd "archive_$name" && python3 -m zipfile -e "../$name.zip" .)
-done
-mv out/mine moved
-printf '#!/bin/sh\nexec "%s" -q "$@"\n' "$program" >program.sh
-chmod +x program.sh
-for figure in fig.pdf twice.svg; do
-  LRBSCOPE=$work/program.sh sh "archive_${figure%.*}/make.sh" | grep -qx "made/$figure: the same, byte for byte" ||
-    { echo "${figure%.*}.zip makes another figure"; exit 1; }
-done
 [ -s fig.caption.txt ] || { echo "fig.caption.txt is empty"; exit 1; }
 if command -v pdflatex >/dev/null; then
   block tex >paper.tex
   pdflatex -halt-on-error -interaction=batchmode paper.tex >/dev/null 2>&1 || { cat paper.log; exit 1; }
   [ -s paper.pdf ] || { echo "paper.pdf was not made"; exit 1; }
-  # The overlay of --tex, as the page describes.
-  sed 's/\\includegraphics{fig.pdf}/\\input{fig}/' paper.tex >overlay.tex
-  grep -q 'input{fig}' overlay.tex || { echo "overlay.tex: found no figure"; exit 1; }
-  pdflatex -halt-on-error -interaction=batchmode overlay.tex >/dev/null 2>&1 || { cat overlay.log; exit 1; }
-  grep -q 'Overfull' overlay.log && { cat overlay.log; exit 1; }
   echo "included by LaTeX"
 else
   echo "skipped: including the figure; needs pdflatex"
