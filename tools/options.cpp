@@ -30,10 +30,11 @@ std::string option_of(Value CollideRequest::*member) {
 
 template <class Target>
 void add_recursion(App& app, Target& recursion, const std::string& usual) {
-  add_choice<Recursion>(app, option_of(&CollideRequest::recursion), recursion,
-                        "complete: never misses a contact; paper, paper_strict: the paper's algorithm, which "
-                        "can miss contacts [" +
-                            usual + "]");
+  add_choice<Recursion>(
+      app, option_of(&CollideRequest::recursion), recursion,
+      "complete: never misses a contact; paper, paper_strict, paper_wrapper: the paper's algorithm, which "
+      "can miss contacts [" +
+          usual + "]");
 }
 
 /// Adds an option that takes a count, at least 1.

@@ -8,13 +8,19 @@
 /// failures.
 ///
 /// The paper does not define "the new faces are recursively tested" for a region that was refined before ("a
-/// region or even an individual face can only be refined once"). Two readings are implemented:
+/// region or even an individual face can only be refined once"). Three readings are implemented:
 /// - Recursion::paper: each *pair* of regions (or of a real face and a region) is recursed into at most once.
 ///   The floor of a refined region is tested again when another region of the other body intersects its lids.
 /// - Recursion::paper_strict: the floor of a region is tested only when the region is first refined, against
 ///   the new faces (or the real face) of the other body, and never again.
+/// - Recursion::paper_wrapper: the new faces are tested against the whole current wrapper of the other body.
+/// A
+///   pair is tested if both faces are still part of their wrappers.
 
+#include <deque>
+#include <set>
 #include <span>
+#include <vector>
 
 #include "engine/collide/query_context.hpp"
 
@@ -28,7 +34,10 @@ class PaperQuery {
     for (auto& set : ctx_.visited) set.clear();
   }
 
-  void run() { test_all(ctx_[Side::a].rep().outermost_faces(), ctx_[Side::b].rep().outermost_faces()); }
+  void run() {
+    const Faces as = ctx_[Side::a].rep().outermost_faces(), bs = ctx_[Side::b].rep().outermost_faces();
+    request_.recursion == Recursion::paper_wrapper ? test_wrappers(as, bs) : test_all(as, bs);
+  }
 
  private:
   using Faces = std::span<const FaceId>;
@@ -69,6 +78,49 @@ class PaperQuery {
       // collision, then the algorithm exits declaring a collision."
       record(fa, fb);
       done_ = request_.mode != Mode::all_pairs;
+    }
+  }
+
+  /// Tests the current wrappers against each other until no face that intersects the other wrapper is a lid.
+  void test_wrappers(Faces outer_a, Faces outer_b) {
+    std::set<FaceId> wrapper[2] = {{outer_a.begin(), outer_a.end()}, {outer_b.begin(), outer_b.end()}};
+    struct Task {
+      Side side;  ///< of the new faces
+      std::vector<FaceId> fresh, others;
+    };
+    std::deque<Task> tasks;
+    const auto add = [&](Side side, Faces fresh, const auto& others) {
+      if (!fresh.empty())
+        tasks.push_back({side, {fresh.begin(), fresh.end()}, {others.begin(), others.end()}});
+    };
+    // Refines the region behind a lid that intersects. Returns the faces that replace its lids.
+    const auto open = [&](Side side, FaceId f) {
+      const LrbRep& rep = ctx_[side].rep();
+      if (rep.is_real(f)) return Faces();
+      const RegionId region = rep.inner_cell(f).as_region();
+      refine(side, f);
+      for (const FaceId lid : rep.lids(region)) wrapper[static_cast<int>(side)].erase(lid);
+      return rep.floor(region);
+    };
+    add(Side::a, outer_a, wrapper[1]);
+    for (; !tasks.empty() && !done_; tasks.pop_front()) {
+      const bool of_a = tasks.front().side == Side::a;
+      for (const FaceId fresh : tasks.front().fresh)
+        for (const FaceId other : tasks.front().others) {
+          const FaceId fa = of_a ? fresh : other, fb = of_a ? other : fresh;
+          if (done_ || !wrapper[0].contains(fa) || !wrapper[1].contains(fb) || !faces_meet(fa, fb)) continue;
+          if (ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb)) {
+            record(fa, fb);
+            done_ = request_.mode != Mode::all_pairs;
+            continue;
+          }
+          const Faces new_a = open(Side::a, fa), new_b = open(Side::b, fb);
+          add(Side::a, new_a, wrapper[1]);
+          add(Side::b, new_b, wrapper[0]);
+          add(Side::a, new_a, new_b);
+          wrapper[0].insert(new_a.begin(), new_a.end());
+          wrapper[1].insert(new_b.begin(), new_b.end());
+        }
     }
   }
 

@@ -17,7 +17,7 @@ _Ids = npt.NDArray[np.uint32]
 _Flags = npt.NDArray[np.bool_]
 _Keys = npt.NDArray[np.int64]
 _Mode = Literal["all", "first", "any"]
-_Recursion = Literal["complete", "paper", "paper_strict"]
+_Recursion = Literal["complete", "paper", "paper_strict", "paper_wrapper"]
 _Relation = Literal["separate", "crossing", "touching", "a_inside_b", "b_inside_a", "undefined", "unresolved"]
 _Colours = Literal[
     "kind",

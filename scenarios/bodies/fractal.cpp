@@ -33,6 +33,7 @@ constexpr double kSteepest = 60 * std::numbers::pi / 180;
 // Unevenness of detail: in the order of dents, a face counts as if it were wider or narrower by up to this
 // many powers of two.
 constexpr double kUneven = 2.5;
+constexpr double kFirst = 1e6;  ///< more than any width
 
 struct Polygon {
   std::vector<VertexId> corners;  ///< counter-clockwise seen from outside
@@ -61,22 +62,38 @@ class Carver {
   explicit Carver(const FractalSpec& spec) : spec_(spec), random_(spec.seed) { start(); }
 
   LrbRep run() {
-    const int outer = static_cast<int>(faces_.size());
-    lids_left_ = static_cast<std::int64_t>(spec_.total_faces) - spec_.real_faces;
-    gain_left_ = static_cast<std::int64_t>(spec_.real_faces) - outer;
+    const auto real =
+        std::count_if(faces_.begin(), faces_.end(), [](const Polygon& f) { return f.inner == kSolid; });
+    const auto lids = static_cast<std::int64_t>(faces_.size()) - real;
+    lids_left_ = static_cast<std::int64_t>(spec_.total_faces) - spec_.real_faces - lids;
+    gain_left_ = static_cast<std::int64_t>(spec_.real_faces) - real;
     if (spec_.total_faces < spec_.real_faces || !fits(lids_left_, gain_left_))
-      throw InputError(
-          "fractal body: no dents make " + std::to_string(spec_.real_faces) + " real faces of " +
-          std::to_string(spec_.total_faces) +
-          "; expected real_faces - 7 to be 2.5 to 7 times the number of pseudo faces (total_faces - "
-          "real_faces)");
+      throw InputError("fractal body: no dents make " + std::to_string(spec_.real_faces) + " real faces of " +
+                       std::to_string(spec_.total_faces) + "; expected real_faces - " + std::to_string(real) +
+                       " to be 2.5 to 7 times the number of pseudo faces (total_faces - real_faces)" +
+                       (lids > 0 ? " without the " + std::to_string(lids) + " outermost" : ""));
     while (lids_left_ > 0) carve_next();
     return LrbRep(data());
   }
 
  private:
-  /// Makes a pentagonal prism, lying on its side like a house.
+  /// Makes the basic shape. Its edges limit the dents of their faces.
   void start() {
+    spec_.outer_faces == 7 ? start_prism() : start_star();
+    // Each edge may use half of the angle of the solid between its two faces. At a reflex edge that is more
+    // than a right angle.
+    for (Polygon& f : faces_)
+      for (std::size_t i = 0; f.inner == kSolid && i < f.corners.size(); ++i)
+        for (const Polygon& g : faces_)
+          if (g.inner == kSolid && has_edge(g, f.corners[(i + 1) % f.corners.size()], f.corners[i])) {
+            const double turn = deterministic::acos(normal(f).dot(normal(g)));
+            const bool reflex = normal(f).dot(centre(g) - position(f.corners[i])) > 0;
+            f.room.push_back(std::min((std::numbers::pi + (reflex ? turn : -turn)) / 2, kMaxRoom));
+          }
+  }
+
+  /// A pentagonal prism, lying on its side like a house.
+  void start_prism() {
     const std::array<Eigen::Vector2d, 5> house = {{{-1, -0.75}, {1, -0.75}, {1, 0.25}, {0, 1}, {-1, 0.25}}};
     for (const double z : {-0.875, 0.875})
       for (const auto& p : house) points_.push_back(on_grid({p.x(), p.y(), z}, 0));
@@ -86,12 +103,32 @@ class Carver {
       const VertexId j((i + 1) % 5);
       add({i, j, VertexId(j + 5), VertexId(i + 5)}, {}, kOutside, 0);
     }
-    // Each edge may use half of the angle between its two faces.
-    for (Polygon& f : faces_)
-      for (std::size_t i = 0; i < f.corners.size(); ++i)
-        for (const Polygon& g : faces_)
-          if (&f != &g && has_edge(g, f.corners[(i + 1) % f.corners.size()], f.corners[i]))
-            f.room.push_back((std::numbers::pi - deterministic::acos(normal(f).dot(normal(g)))) / 2);
+  }
+
+  /// The stella octangula: an octahedron with a tetrahedron on each face, whose tips are the corners of a
+  /// cube. The faces of the cube are the lids of the first region; the 24 faces of the star are its floor.
+  void start_star() {
+    regions_ = 1;
+    for (int k = 0; k < 3; ++k)  // vertices 2 k and 2 k + 1: the ends of axis k of the octahedron
+      for (const double end : {-1.0, 1.0}) points_.push_back(on_grid(end * Vector3d::Unit(k), 0));
+    for (int c = 0; c < 8; ++c) {
+      const int positive[3] = {c & 1, c >> 1 & 1, c >> 2 & 1};
+      const VertexId tip =
+          new_vertex(on_grid({2.0 * positive[0] - 1, 2.0 * positive[1] - 1, 2.0 * positive[2] - 1}, 0));
+      const bool mirrored = (positive[0] + positive[1] + positive[2]) % 2 == 0;
+      for (int k = 0; k < 3; ++k) {
+        VertexId from(2 * k + positive[k]), to(2 * ((k + 1) % 3) + positive[(k + 1) % 3]);
+        if (mirrored) std::swap(from, to);
+        add({tip, from, to}, {}, RegionId(0), 0);
+      }
+    }
+    constexpr int kSides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (const auto& side : kSides) {
+      Polygon lid{{}, {}, RegionId(0), kOutside, 0};
+      for (const int corner : side) lid.corners.emplace_back(6 + corner);
+      faces_.push_back(std::move(lid));
+    }
   }
 
   static bool has_edge(const Polygon& f, VertexId a, VertexId b) {
@@ -145,11 +182,13 @@ class Carver {
     return *std::min_element(d.begin(), d.end());
   }
 
-  /// Adds a face and puts it in the queue for dents. Wide faces come first: slivers are left unchanged.
+  /// Adds a face and puts it in the queue for dents. Wide faces come first: slivers are left unchanged. Each
+  /// face of the star gets a dent before any detail does.
   void add(std::vector<VertexId> corners, std::vector<double> room, CellId outer, int level) {
     faces_.push_back({std::move(corners), std::move(room), kSolid, outer, level});
     const auto f = static_cast<FaceId>(faces_.size() - 1);
-    waiting_.push({breadth(faces_[f]) * deterministic::exp2(random_.in(-kUneven, kUneven)), f});
+    const double first = level == 0 && is_region(outer) ? kFirst : 0;
+    waiting_.push({breadth(faces_[f]) * deterministic::exp2(random_.in(-kUneven, kUneven)) + first, f});
   }
 
   /// Returns true if some set of dents can add up to these numbers. Keeps a margin while many dents remain;
@@ -327,14 +366,14 @@ LrbRep fractal_body(const FractalSpec& spec) {
 }
 
 std::span<const FractalSpec> paper_objects() {
-  static const std::array<FractalSpec, 8> objects = {{{"A", 34474, 43396, 1},
-                                                      {"B", 144, 168, 2},
-                                                      {"C", 214, 282, 3},
-                                                      {"D", 2004, 2532, 4},
-                                                      {"E", 3659, 4463, 5},
-                                                      {"F", 10534, 13224, 6},
-                                                      {"G", 20719, 25233, 7},
-                                                      {"H", 34474, 43396, 8}}};
+  static const std::array<FractalSpec, 8> objects = {{{"A", 34474, 43396, 1, 6},
+                                                      {"B", 144, 168, 2, 6},
+                                                      {"C", 214, 282, 3, 6},
+                                                      {"D", 2004, 2532, 4, 6},
+                                                      {"E", 3659, 4463, 5, 6},
+                                                      {"F", 10534, 13224, 6, 6},
+                                                      {"G", 20719, 25233, 7, 6},
+                                                      {"H", 34474, 43396, 8, 6}}};
   return objects;
 }
 
@@ -342,6 +381,7 @@ LrbRep fractal_rep(const GeneratorValues& v, std::uint64_t seed) {
   FractalSpec spec;
   spec.real_faces = static_cast<std::uint32_t>(v.at("real_faces"));
   spec.total_faces = static_cast<std::uint32_t>(v.at("total_faces"));
+  spec.outer_faces = static_cast<std::uint32_t>(v.at("outer_faces"));
   spec.seed = seed;
   return fractal_body(spec);
 }

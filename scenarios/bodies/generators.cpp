@@ -99,7 +99,8 @@ std::vector<Generator> make_generators() {
        3,
        {{"real_faces", 2004, 7, 200000, true, "number of faces of the body; the default is object D's"},
         {"total_faces", 2532, 7, 300000, true,
-         "number of real and pseudo faces; real_faces - 7 must be 2.5 to 7 times the number of pseudo faces"}},
+         "number of real and pseudo faces; real_faces - 7 must be 2.5 to 7 times the number of pseudo faces"},
+        {"outer_faces", 7, 6, 7, true, "7: dents in a prism; 6: in a star of 24 faces, inside a cube"}},
        fractal,
        fractal_rep},
   };

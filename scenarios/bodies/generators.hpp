@@ -75,19 +75,25 @@ struct FractalSpec {
   std::uint32_t real_faces = 2004;
   std::uint32_t total_faces = 2532;  ///< real and pseudo
   std::uint64_t seed = 1;
+  std::uint32_t outer_faces = 7;  ///< of the outermost wrapper: 7 or 6
 };
 
-/// Makes a body with exactly these numbers of faces. Its outermost wrapper is the basic shape's, a pentagonal
-/// prism (7 faces); its size is about 2. It is closed and free of self-intersections (a dent stays within the
+/// Makes a body with exactly these numbers of faces; its size is about 2. The basic shape is a pentagonal
+/// prism (7 faces), or the stella octangula (24 faces, not convex) in a cube, whose 6 faces are the lids of
+/// its first region. The body is closed and free of self-intersections (a dent stays within the
 /// angles available at its face's edges; tests prove it exactly for the paper's bodies). All coordinates are
 /// integer multiples of one power of two, so that corners of one face are coplanar in double arithmetic, and
 /// so are lids and the rims they cover.
 ///
 /// Every dent turns one face into a lid (a pseudo face) and adds 3 to 11 faces, which limits the possible
-/// numbers. Throws InputError unless (real_faces - 7) / pseudo faces is between 2.5 and 7.
+/// numbers. Throws InputError unless (real_faces - 7) / pseudo faces is between 2.5 and 7; for the star,
+/// (real_faces - 24) / (pseudo faces - 6).
 LrbRep fractal_body(const FractalSpec& spec);
 
-/// Returns the paper's table 1: objects A to H.
+/// Returns the paper's table 1: objects A to H. The paper says that they share a basic non-convex shape.
+/// Their numbers of real faces are all 4 modulo 5, those of pseudo faces all even, and B has 24 x 6 real and
+/// 24 x 1 pseudo faces: as if a detail turned one face into six, and B were a shape of 24 faces, each with
+/// one detail. This is why the basic shape is a star of 24 faces.
 std::span<const FractalSpec> paper_objects();
 
 }  // namespace lrb::generators

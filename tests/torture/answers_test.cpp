@@ -53,8 +53,8 @@ CollideResult ask(const cases::Case& c, const CollideRequest& request = {}) {
 CollideRequest any_request() {
   CollideRequest r;
   r.mode = *rc::gen::element(Mode::all_pairs, Mode::first_pair);
-  r.recursion =
-      *rc::gen::element(Recursion::complete, Recursion::complete, Recursion::paper, Recursion::paper_strict);
+  r.recursion = *rc::gen::element(Recursion::complete, Recursion::complete, Recursion::paper,
+                                  Recursion::paper_strict, Recursion::paper_wrapper);
   r.wrapper = *rc::gen::element(WrapperMode::regularised, WrapperMode::unregularised);
   return r;
 }

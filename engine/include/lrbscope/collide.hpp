@@ -37,15 +37,17 @@ constexpr auto enum_names(Mode) {
 
 enum class Recursion : std::uint8_t {
   complete,
-  paper,         ///< each pair of regions is recursed into once
-  paper_strict,  ///< each region is refined once; its new faces are tested only against the new faces of the
-                 ///< regions it hit
+  paper,          ///< each pair of regions is recursed into once
+  paper_strict,   ///< each region is refined once; its new faces are tested only against the new faces of the
+                  ///< regions it hit
+  paper_wrapper,  ///< new faces are tested against the whole current wrapper of the other body
 };
 
 constexpr auto enum_names(Recursion) {
   return std::to_array<EnumName<Recursion>>({{Recursion::complete, "complete"},
                                              {Recursion::paper, "paper"},
-                                             {Recursion::paper_strict, "paper_strict"}});
+                                             {Recursion::paper_strict, "paper_strict"},
+                                             {Recursion::paper_wrapper, "paper_wrapper"}});
 }
 const char* to_string(Recursion r);
 
