@@ -4,6 +4,7 @@
 #include <set>
 
 #include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
 #include <lrbscope/render/draw_list.hpp>
 
 namespace lrb::render {
@@ -68,17 +69,20 @@ std::uint8_t DrawList::edge_style(const EdgeStyle& style) {
 }
 
 void DrawList::add_polygon(const std::vector<Eigen::Vector3d>& corners, const DrawTriangle& like,
-                           const std::vector<bool>& borders) {
+                           const std::vector<bool>& borders, const std::vector<Eigen::Vector3d>& shape) {
   const std::size_t n = corners.size();
-  const auto border = [&](std::size_t i, int bit) { return !borders.empty() && borders[i] ? 1 << bit : 0; };
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    // Fan of the polygon. Its diagonals must not be drawn as edges.
+  std::vector<std::array<std::uint32_t, 3>> parts;
+  cut_polygon(shape.empty() ? corners : shape, parts);
+  for (const auto& part : parts) {
     DrawTriangle t = like;
-    t.x = {corners[0], corners[i], corners[i + 1]};
-    if (like.edges !=
-        0) {  // corners 0 and i + 1 are joined by a diagonal unless the fan ends here, and so on
-      t.edges = static_cast<std::uint8_t>((i == 1 ? 1 : 0) | 2 | (i + 2 == n ? 4 : 0));
-      t.borders = static_cast<std::uint8_t>(t.edges & (border(0, 0) | border(i, 1) | border(n - 1, 2)));
+    t.x = {corners[part[0]], corners[part[1]], corners[part[2]]};
+    // Diagonals must not be drawn as edges: only sides of the polygon are.
+    if (like.edges != 0) t.edges = t.borders = 0;
+    for (std::size_t k = 0; k < 3 && like.edges != 0; ++k) {
+      const std::uint32_t from = part[k], to = part[(k + 1) % 3];
+      if (to != (from + 1) % n) continue;
+      t.edges = static_cast<std::uint8_t>(t.edges | 1u << k);
+      if (!borders.empty() && borders[from]) t.borders = static_cast<std::uint8_t>(t.borders | 1u << k);
     }
     triangles.push_back(t);
   }

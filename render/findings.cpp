@@ -206,6 +206,8 @@ FaultStyle fault_style(MeshFault kind) {
       return {"non-planar polygon", "non-planar polygons", "", "", palette::kYellow, Mark::solid};
     case MeshFault::non_convex_face:
       return {"concave polygon", "concave polygons", "", "", palette::kYellow, Mark::solid};
+    case MeshFault::folded_face:
+      return {"crossed polygon", "crossed polygons", "", "", palette::kYellow, Mark::solid};
     case MeshFault::repeated_corner:
       return {"face with a corner twice", "faces with a corner twice", "", "", palette::kYellow, Mark::solid};
     case MeshFault::zero_area_face:

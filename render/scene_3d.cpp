@@ -275,7 +275,9 @@ class Scene3dBuilder {
     std::vector<bool> borders;
     for (std::size_t i = 0; !borders_.empty() && i < rep_.face(f).size(); ++i)
       borders.push_back(std::binary_search(borders_.begin(), borders_.end(), edge(f, i)));
-    c_.out.list.add_polygon(c_.corners(f, moved), like, borders);
+    std::vector<Vector3d> shape;
+    for (const VertexId v : rep_.face(f)) shape.push_back(rep_.vertices()[v]);
+    c_.out.list.add_polygon(c_.corners(f, moved), like, borders, shape);
   }
 
   // ---- borders

@@ -130,9 +130,13 @@ Piece PosedBody::simplex(SimplexId s) const {
   VertexId v[3];
   rep_->simplex(s, v);
   if (rep_->dim() == 2) return {{x_[v[0]], x_[v[1]]}, {true, false}};
-  const FaceId f = rep_->face_of_simplex(s);
-  const std::uint32_t i = s - rep_->first_simplex(f);
-  return {{x_[v[0]], x_[v[1]], x_[v[2]]}, {i == 0, true, i + 3 == rep_->face(f).size()}};
+  const auto corners = rep_->face(rep_->face_of_simplex(s));
+  const auto is_side = [&](VertexId a, VertexId b) {
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      if (corners[i] == a && corners[(i + 1) % corners.size()] == b) return true;
+    return false;
+  };
+  return {{x_[v[0]], x_[v[1]], x_[v[2]]}, {is_side(v[0], v[1]), is_side(v[1], v[2]), is_side(v[2], v[0])}};
 }
 
 Eigen::AlignedBox3d PosedBody::box(SimplexId s) const {

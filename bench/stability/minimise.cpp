@@ -54,12 +54,10 @@ Mesh simplices_of(const Mesh& mesh) {
   if (mesh.dim == 2) return out;
   out.face_offsets = {0};
   out.face_vertices.clear();
+  std::vector<std::array<VertexId, 3>> triangles;
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    const auto corners = mesh.face(f);
-    for (std::size_t k = 2; k < corners.size(); ++k) {
-      const VertexId triangle[3] = {corners[0], corners[k - 1], corners[k]};
-      out.add_face(triangle);
-    }
+    cut_polygon(mesh, f, triangles);
+    for (const auto& t : triangles) out.add_face(t);
   }
   return out;
 }
@@ -275,7 +273,7 @@ class Shrinking {
     calls_ += cost_of(answer);
     if (failure_of(case_of(c), answer) != kind_ || !is_confirmed(c)) return;
     now_ = c;
-    degenerate_ = degenerate_faces(c);  // also fans of polygons with corners in a line
+    degenerate_ = degenerate_faces(c);  // also triangles of polygons with corners in a line
     answer_ = answer;
   }
 

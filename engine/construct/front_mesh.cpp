@@ -13,11 +13,10 @@
 namespace lrb::construct {
 namespace {
 
-/// Triangulates a polygon: if planar and convex, without degenerate triangles, otherwise into its fan, which
+/// Triangulates a face: if planar and convex, without degenerate triangles, otherwise by cut_polygon(), which
 /// defines its shape.
-void triangulate(const Mesh& mesh, std::span<const VertexId> corners,
-                 std::vector<std::array<VertexId, 3>>& triangles) {
-  triangles.clear();
+void triangulate(const Mesh& mesh, FaceId f, std::vector<std::array<VertexId, 3>>& triangles) {
+  const auto corners = mesh.face(f);
   if (corners.size() > 3) {
     const auto plane = spanning_corners(mesh, corners);
     // Planar and convex: a triangulation without degenerate triangles exists, and all triangulations have the
@@ -25,9 +24,7 @@ void triangulate(const Mesh& mesh, std::span<const VertexId> corners,
     if (plane && is_planar(mesh, corners, *plane) && is_convex(mesh, corners))
       return triangulate_convex(mesh, corners, triangles);
   }
-  // Otherwise the fan from the first corner is the polygon's shape by definition (see Mesh).
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-    triangles.push_back({corners[0], corners[i], corners[i + 1]});
+  cut_polygon(mesh, f, triangles);
 }
 
 }  // namespace
@@ -45,7 +42,7 @@ void FrontMesh::add_faces(const Mesh& mesh) {
   const bool polygons = mesh.face_vertices.size() != 3 * mesh.face_count();
   std::vector<std::array<VertexId, 3>> parts;
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    triangulate(mesh, mesh.face(f), parts);
+    triangulate(mesh, f, parts);
     // Triangles of a polygon are consecutive, so that unit() is an index range.
     const Slot first = slot_count();
     for (const auto& part : parts) {

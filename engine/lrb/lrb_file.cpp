@@ -17,6 +17,8 @@ constexpr std::string_view kMagic("\x89LRB\r\n\x1a\n", 8);
 
 /// The first versions that contain the hash and the tree, and levels of detail.
 constexpr std::uint32_t kFirstWithTree = 2, kFirstWithLevels = 3;
+/// The last version that took all polygons as fans.
+constexpr std::uint32_t kLastWithFans = 3;
 
 class Writer {
  public:
@@ -244,7 +246,7 @@ void save_lrb(const LrbRep& rep, const std::string& path) {
   Writer w;
   // Header, then the complex, then data derived from it, then the checksum of everything before it.
   w.bytes().append(kMagic);
-  w.value(kLrbFileVersion);
+  w.value(rep.has_cut_faces() ? kLrbFileVersion : kLastWithFans);
   w.value(static_cast<std::uint32_t>(d.dim));
   w.value(d.real_face_count);
   w.value(static_cast<std::uint32_t>(d.closed) | static_cast<std::uint32_t>(d.self_intersecting) << 1);
@@ -297,6 +299,8 @@ LrbRep load(Reader r, const std::string& name) {
     // The constructors check the structure: indices, cells, the shape of the trees, the order of the levels.
     LrbRep rep =
         with_tree ? LrbRep(std::move(d), std::move(nodes), std::move(blocks), hash) : LrbRep(std::move(d));
+    // The regions, tree and levels of such a file belong to the fans.
+    if (version <= kLastWithFans && rep.has_cut_faces()) return LrbRep::without_regions(rep, true);
     if (levels) rep.keep_levels(WrapperLevels(rep, std::move(levels->needed), std::move(levels->levels)));
     return rep;
   } catch (const InputError& e) {

@@ -70,8 +70,8 @@ void check(const LrbData& d) {
 double face_size(const LrbData& d, FaceId f) {
   const auto c = d.face(f);
   if (d.dim == 2) return norm3(d.vertices[c[1]] - d.vertices[c[0]]);
-  // Twice the vector area of the fan. It underestimates polygons that are not planar, which affects only the
-  // choice of parents.
+  // Twice the vector area, which does not depend on the triangles. It underestimates polygons that are not
+  // planar, which affects only the choice of parents.
   Eigen::Vector3d twice = Eigen::Vector3d::Zero();
   for (std::size_t i = 1; i + 1 < c.size(); ++i)
     twice += (d.vertices[c[i]] - d.vertices[c[0]]).cross(d.vertices[c[i + 1]] - d.vertices[c[0]]);
@@ -144,6 +144,7 @@ void LrbRep::derive() {
   if (whole_faces_ < face_count())
     for (FaceId f = 0; f < face_count(); ++f)
       face_of_simplex_.insert(face_of_simplex_.end(), Mesh::simplices_of(d_.face(f).size(), 3), f);
+  if (d_.dim == 3) cut_polygons();
   // Unique in the process. Copies keep the serial, so caches for one copy serve the others.
   static std::atomic<std::uint64_t> next_serial{1};
   serial_ = next_serial++;
@@ -151,6 +152,29 @@ void LrbRep::derive() {
   overlap_ = std::make_shared<FoundOverlap>();
   graph_ = std::make_shared<FoundGraph>();
   hash_ = std::make_shared<FoundHash>();
+}
+
+void LrbRep::cut_polygons() {
+  std::vector<Eigen::Vector3d> corners;
+  std::vector<std::array<std::uint32_t, 3>> parts;
+  for (FaceId f(whole_faces_); f < d_.real_face_count; ++f) {
+    const auto face = d_.face(f);
+    if (face.size() == 3) continue;
+    corners.clear();
+    for (const VertexId v : face) corners.push_back(d_.vertices[v]);
+    const PolygonCut cut = cut_polygon(corners, parts);
+    if (cut == PolygonCut::folded) folded_faces_.push_back(f);
+    if (cut != PolygonCut::ears) continue;
+    // The first one: the table holds the fans of all other faces.
+    if (triangles_.empty()) {
+      std::vector<std::array<VertexId, 3>> all(simplex_count() - whole_faces_);
+      for (SimplexId s(whole_faces_); s < simplex_count(); ++s) simplex(s, all[s - whole_faces_].data());
+      triangles_ = std::move(all);
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        triangles_[first_simplex(f) - whole_faces_ + i][k] = face[parts[i][k]];
+  }
 }
 
 std::uint64_t LrbRep::hash() const {
@@ -226,7 +250,7 @@ LrbRep LrbRep::without_regions(const Mesh& mesh, bool closed, bool self_intersec
   return LrbRep(std::move(d), threads);
 }
 
-LrbRep LrbRep::without_regions(const LrbRep& rep) {
+LrbRep LrbRep::without_regions(const LrbRep& rep, bool dropped_fans) {
   // Real faces come first, so truncating the arrays removes exactly the pseudo faces.
   LrbData d = rep.d_;
   d.face_offsets.resize(d.real_face_count + 1);
@@ -235,7 +259,9 @@ LrbRep LrbRep::without_regions(const LrbRep& rep) {
   d.inner_cell.assign(d.real_face_count, kSolid);
   d.outer_cell.assign(d.real_face_count, kOutside);
   d.region_layer.clear();
-  return LrbRep(std::move(d));
+  LrbRep out(std::move(d));
+  out.dropped_fans_ = dropped_fans || rep.dropped_fans_;
+  return out;
 }
 
 void LrbRep::link_faces_to_regions() {
@@ -306,7 +332,8 @@ void LrbRep::find_components() {
 }
 
 std::uint32_t LrbRep::simplex_count() const {
-  // A fan of n corners has n - 2 triangles, so the sum over all faces is the number of corners minus 2 |F|.
+  // A polygon of n corners has n - 2 triangles, so the sum over all faces is the number of corners minus 2
+  // |F|.
   return d_.dim == 2 ? face_count() : static_cast<std::uint32_t>(d_.face_vertices.size()) - 2 * face_count();
 }
 
@@ -319,8 +346,8 @@ std::size_t LrbRep::memory_bytes() const {
   return sizeof(*this) + bytes(d_.vertices) + bytes(d_.face_offsets) + bytes(d_.face_vertices) +
          bytes(d_.inner_cell) + bytes(d_.outer_cell) + bytes(d_.region_layer) + bytes(outermost_) +
          bytes(component_vertices_) + bytes(collector_offsets_) + bytes(collector_faces_) +
-         bytes(lid_count_) + bytes(parent_) + bytes(depth_) + bytes(face_of_simplex_) + tree_.memory_bytes() +
-         (has_levels() ? levels().memory_bytes() : 0);
+         bytes(lid_count_) + bytes(parent_) + bytes(depth_) + bytes(face_of_simplex_) + bytes(triangles_) +
+         bytes(folded_faces_) + tree_.memory_bytes() + (has_levels() ? levels().memory_bytes() : 0);
 }
 
 std::uint64_t hash_of(const LrbData& d) {
@@ -339,7 +366,7 @@ std::uint64_t hash_of(const LrbData& d) {
 }
 
 // Volumes by the divergence theorem: a closed surface encloses the sum of the signed cones from any point
-// over its faces, each taken as its fan. In floating point; kVolumeRounding is the tolerance.
+// over its faces' triangles. In floating point; kVolumeRounding is the tolerance.
 
 namespace {
 
@@ -347,12 +374,16 @@ namespace {
 /// face is oriented away from it. The origin is close to the faces, so that bodies far from zero keep their
 /// precision.
 double cone(const LrbRep& rep, FaceId f, const Eigen::Vector3d& origin) {
-  const auto corners = rep.face(f);
-  const auto at = [&](std::size_t i) -> Eigen::Vector3d { return rep.vertices()[corners[i]] - origin; };
-  if (rep.dim() == 2) return 0.5 * (at(0).x() * at(1).y() - at(0).y() * at(1).x());
-  // Six times the volume of a tetrahedron is the determinant of its three edges from the apex.
+  const auto at = [&](VertexId v) -> Eigen::Vector3d { return rep.vertices()[v] - origin; };
+  const std::size_t count = Mesh::simplices_of(rep.face(f).size(), rep.dim());
   double sum = 0;
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += dot3(at(0), at(i).cross(at(i + 1)));
+  for (std::size_t i = 0; i < count; ++i) {
+    VertexId v[3];
+    rep.simplex(SimplexId(rep.first_simplex(f) + i), v);
+    if (rep.dim() == 2) return 0.5 * (at(v[0]).x() * at(v[1]).y() - at(v[0]).y() * at(v[1]).x());
+    // Six times the volume of a tetrahedron is the determinant of its three edges from the apex.
+    sum += dot3(at(v[0]), at(v[1]).cross(at(v[2])));
+  }
   return sum / 6;
 }
 
@@ -363,7 +394,7 @@ double size_of(const LrbRep& rep, FaceId f) {
     return rep.vertices()[corners[i]] - rep.vertices()[corners[0]];
   };
   if (rep.dim() == 2) return norm3(side(1));
-  // Twice the vector area of the fan.
+  // Twice the vector area, which does not depend on the triangles.
   Eigen::Vector3d sum(0, 0, 0);
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) sum += side(i).cross(side(i + 1));
   return norm3(sum) / 2;

@@ -344,16 +344,13 @@ class Validator {
       on_face |= hit == exact::RayHit::on_face;
     };
     for (const FaceId g : boundary) {
-      const auto corners = rep_.face(g);
-      const auto at = [&](std::size_t i) { return rep_.vertices()[corners[i]].data(); };
-      if (rep_.dim() == 2) {
-        const double* c[2] = {at(0), at(1)};
-        note(exact::ray_crosses_2d(p, c));
-      }
-      // The fan of a polygon. Empty in 2D, where a face has two corners.
-      for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-        const double* c[3] = {at(0), at(i), at(i + 1)};
-        note(exact::ray_crosses(p, c));
+      const std::size_t count = Mesh::simplices_of(rep_.face(g).size(), rep_.dim());
+      for (std::size_t i = 0; i < count; ++i) {
+        VertexId ids[3];
+        rep_.simplex(SimplexId(rep_.first_simplex(g) + i), ids);
+        const auto at = [&](int k) { return rep_.vertices()[ids[k]].data(); };
+        const double* const c[3] = {at(0), at(1), rep_.dim() == 2 ? nullptr : at(2)};
+        note(rep_.dim() == 2 ? exact::ray_crosses_2d(p, c) : exact::ray_crosses(p, c));
       }
     }
     return inside || on_face;

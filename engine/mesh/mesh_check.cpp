@@ -32,6 +32,18 @@ VertexId repeated_corner(std::span<const VertexId> corners, std::vector<VertexId
   return twice == sorted.end() ? kNull : *twice;
 }
 
+/// Returns true if a face with a repeated corner is an outline that only touches itself, as at the bridge to
+/// a hole: all its triangles have area.
+bool is_bridged(const Mesh& mesh, FaceId f) {
+  std::vector<std::array<VertexId, 3>> triangles;
+  if (mesh.dim == 2 || mesh.face(f).size() <= 4 || cut_polygon(mesh, f, triangles) == PolygonCut::folded)
+    return false;
+  return std::none_of(triangles.begin(), triangles.end(), [&](const auto& t) {
+    return exact::collinear3d(mesh.vertices[t[0]].data(), mesh.vertices[t[1]].data(),
+                              mesh.vertices[t[2]].data());
+  });
+}
+
 FaceUse check_segment(const Mesh& mesh, FaceId f, MeshReport& report) {
   const auto corners = mesh.face(f);
   // 2D bodies are in the plane z = 0, so x and y decide.
@@ -54,7 +66,10 @@ FaceUse check_polygon(const Mesh& mesh, FaceId f, MeshReport& report) {
   const bool planar = is_planar(mesh, corners, *triple), convex = is_convex(mesh, corners);
   if (!planar) note(report, MeshFault::non_planar_face, f);
   if (!convex) note(report, MeshFault::non_convex_face, f);
-  return planar && convex ? FaceUse::convex : FaceUse::area;
+  if (planar && convex) return FaceUse::convex;
+  std::vector<std::array<VertexId, 3>> triangles;
+  if (cut_polygon(mesh, f, triangles) == PolygonCut::folded) note(report, MeshFault::folded_face, f);
+  return FaceUse::area;
 }
 
 FaceUse check_face(const Mesh& mesh, FaceId f, const std::vector<bool>& finite,
@@ -67,11 +82,12 @@ FaceUse check_face(const Mesh& mesh, FaceId f, const std::vector<bool>& finite,
     return FaceUse::nothing;
   }
   const VertexId twice = repeated_corner(corners, scratch);
-  if (twice != kNull) note(report, MeshFault::repeated_corner, f, twice);
-  if (!std::all_of(corners.begin(), corners.end(), [&](VertexId v) { return finite[v]; }))
-    return FaceUse::topology;
+  const bool all_finite = std::all_of(corners.begin(), corners.end(), [&](VertexId v) { return finite[v]; });
+  if (twice != kNull && !(all_finite && is_bridged(mesh, f)))
+    note(report, MeshFault::repeated_corner, f, twice);
+  if (!all_finite) return FaceUse::topology;
   const FaceUse use = mesh.dim == 2 ? check_segment(mesh, f, report) : check_polygon(mesh, f, report);
-  // A repeated corner makes triangles of the face degenerate, so the face never counts as convex.
+  // A face with a repeated corner never counts as convex: most have degenerate triangles.
   return twice == kNull ? use : std::min(use, FaceUse::area);
 }
 
@@ -187,7 +203,7 @@ CheckedMesh check(Mesh mesh, std::size_t kept) {
   return {std::move(mesh), kept};
 }
 
-/// Uses and topology do not change: each face keeps its corner set, its fan keeps its triangles, and the
+/// Uses and topology do not change: each face keeps its corner set and the region that it covers, and the
 /// entire component is reversed. Intersections do not change either.
 std::uint32_t CheckedMesh::turn_outward() {
   const auto turned = static_cast<std::uint32_t>(found_.inside_out.size());
@@ -218,7 +234,7 @@ std::vector<FaceId> CheckedMesh::self_intersecting_faces(Workers& workers) const
 namespace {
 
 /// Reverses a face. A triangle keeps its first corner and a quad starts at its third, so that the triangles
-/// of its fan keep their numbers; those of larger polygons are numbered in reverse.
+/// of its fan keep their numbers; those of larger polygons change their numbers.
 void turn(Mesh& mesh, FaceId f) {
   const auto first = mesh.face_vertices.begin() + mesh.face_offsets[f];
   const auto last = mesh.face_vertices.begin() + mesh.face_offsets[f + 1];
@@ -393,8 +409,10 @@ Help help_for(MeshFault fault, int dim) {
       return {ElementKind::face, "collapse or remove it"};
     case MeshFault::non_planar_face:
     case MeshFault::non_convex_face:
+      return {ElementKind::face, "triangulate it to choose its triangles"};
+    case MeshFault::folded_face:
       return {ElementKind::face,
-              "it is read as a fan of triangles from its first corner; triangulate it to choose others"};
+              "it is read as a fan of triangles from its first corner, which goes beyond it; triangulate it"};
     case MeshFault::duplicate_face:
       return {ElementKind::two_faces, "remove one of them"};
     case MeshFault::open_edge:

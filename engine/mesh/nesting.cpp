@@ -10,6 +10,7 @@
 #include "engine/mesh/nesting.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -27,17 +28,23 @@ namespace lrb {
 
 namespace {
 
-/// Calls visit(hit) for each triangle of the face's fan (2D: for the segment) until it returns false. Returns
-/// false if it did.
+/// Calls visit(hit) for each triangle of the face (2D: for the segment) until it returns false. Returns false
+/// if it did. `ears`: the triangles, or none: those of the fan.
 template <class Visit>
-bool cast_at_face(const Mesh& mesh, FaceId f, const Eigen::Vector3d& p, Visit visit) {
+bool cast_at_face(const Mesh& mesh, FaceId f, std::span<const std::array<VertexId, 3>> ears,
+                  const Eigen::Vector3d& p, Visit visit) {
   const auto corners = mesh.face(f);
   const auto point = [&](std::size_t i) { return mesh.vertices[corners[i]].data(); };
   if (mesh.dim == 2) {
     const double* const segment[2] = {point(0), point(1)};
     return visit(exact::ray_crosses_2d(p.data(), segment));
   }
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+  for (const auto& [a, b, c] : ears) {
+    const double* const triangle[3] = {mesh.vertices[a].data(), mesh.vertices[b].data(),
+                                       mesh.vertices[c].data()};
+    if (!visit(exact::ray_crosses(p.data(), triangle))) return false;
+  }
+  for (std::size_t i = 1; ears.empty() && i + 1 < corners.size(); ++i) {
     const double* const triangle[3] = {point(0), point(i), point(i + 1)};
     if (!visit(exact::ray_crosses(p.data(), triangle))) return false;
   }
@@ -53,8 +60,11 @@ PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eige
     inside ^= hit == exact::RayHit::crosses;
     return hit != exact::RayHit::on_face;
   };
-  for (const FaceId f : faces)
-    if (!cast_at_face(mesh, f, p, count)) return PointSide::on_surface;
+  std::vector<std::array<VertexId, 3>> triangles;
+  for (const FaceId f : faces) {
+    if (mesh.dim == 3) cut_polygon(mesh, f, triangles);
+    if (!cast_at_face(mesh, f, triangles, p, count)) return PointSide::on_surface;
+  }
   return inside ? PointSide::inside : PointSide::outside;
 }
 
@@ -64,6 +74,9 @@ SideFinder::SideFinder(const Mesh& mesh, std::vector<std::uint32_t> surface_of_f
     if (surface_of_face_[f] == kNull) continue;
     for (const VertexId v : mesh.face(f)) boxes_[f].extend(mesh.vertices[v]);
     order_.push_back(f);
+    std::vector<std::array<VertexId, 3>> triangles;
+    if (mesh.dim == 3 && mesh.face(f).size() > 3 && cut_polygon(mesh, f, triangles) == PolygonCut::ears)
+      ears_.emplace(f, std::move(triangles));
   }
   if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
 }
@@ -100,7 +113,9 @@ std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const 
   std::map<std::uint32_t, PointSide> found;
   const auto cast = [&](FaceId f) {
     PointSide& side = found.try_emplace(surface_of_face_[f], PointSide::outside).first->second;
-    cast_at_face(mesh_, f, p, [&](exact::RayHit hit) {
+    const auto ears = ears_.empty() ? ears_.end() : ears_.find(f);
+    const std::span<const std::array<VertexId, 3>> none;
+    cast_at_face(mesh_, f, ears == ears_.end() ? none : ears->second, p, [&](exact::RayHit hit) {
       if (hit == exact::RayHit::on_face) side = PointSide::on_surface;
       if (side == PointSide::on_surface) return false;
       if (hit == exact::RayHit::crosses)
@@ -139,16 +154,18 @@ namespace {
 
 using boost::multiprecision::cpp_int;
 
-/// Calls visit(a, b, c) for each triangle of the faces' fans; in 2D visit(a, b, b) for each segment.
+/// Calls visit(a, b, c) for each triangle of the faces; in 2D visit(a, b, b) for each segment.
 template <class Visit>
 void for_each_simplex(const Mesh& mesh, std::span<const FaceId> faces, Visit visit) {
+  std::vector<std::array<VertexId, 3>> triangles;
   for (const FaceId f : faces) {
     const auto c = mesh.face(f);
-    if (mesh.dim == 2) {
-      visit(c[0], c[1], c[1]);
+    if (c.size() <= 3) {
+      visit(c[0], c[1], c[mesh.dim - 1]);
       continue;
     }
-    for (std::size_t i = 1; i + 1 < c.size(); ++i) visit(c[0], c[i], c[i + 1]);
+    cut_polygon(mesh, f, triangles);
+    for (const auto& t : triangles) visit(t[0], t[1], t[2]);
   }
 }
 

@@ -2,7 +2,9 @@
 /// Points and components inside closed surfaces.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -15,7 +17,7 @@ namespace lrb {
 
 enum class PointSide { outside, inside, on_surface };
 
-/// Locates a point relative to a closed set of faces (fans of triangles; 2D: segments), by the parity of an
+/// Locates a point relative to a closed set of faces (their triangles; 2D: segments), by the parity of an
 /// exact ray.
 PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eigen::Vector3d& p);
 
@@ -62,6 +64,7 @@ class SideFinder {
   std::uint32_t build(std::uint32_t first, std::uint32_t last);
 
   const Mesh& mesh_;
+  std::map<FaceId, std::vector<std::array<VertexId, 3>>> ears_;  ///< the triangles of faces that are not fans
   std::vector<std::uint32_t> surface_of_face_;
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< (|F|)
   std::vector<FaceId> order_;               ///< in the order of the tree's leaves
@@ -75,7 +78,7 @@ class SideFinder {
 std::vector<std::vector<FaceId>> wrongly_facing_components(const Mesh& mesh, const std::vector<FaceUse>& use,
                                                            const SurfaceTopology& topology);
 
-/// Returns the sign (-1, 0, +1) of the volume behind a closed set of faces, each taken as its fan (2D: of the
+/// Returns the sign (-1, 0, +1) of the volume behind a closed set of faces, of their triangles (2D: of the
 /// area left of a closed set of segments): +1 if they face outward. Exact; coordinates must be finite.
 int volume_sign(const Mesh& mesh, std::span<const FaceId> faces);
 

@@ -19,16 +19,12 @@ const double* point(const Mesh& mesh, VertexId v) {
   return mesh.vertices[v].data();
 }
 
-/// Returns the axes in order of decreasing component of the polygon's normal (Newell's method, on the polygon
-/// scaled to size 1).
+/// Returns the axes in order of decreasing component of the polygon's normal. Rounding only affects which
+/// axis is tried first.
 std::array<int, 3> axes_by_normal(const Mesh& mesh, std::span<const VertexId> corners) {
-  // Scaled by the largest coordinate, to avoid overflow. Rounding only affects which axis is tried first.
-  double size = 0;
-  for (const VertexId v : corners) size = std::max(size, mesh.vertices[v].cwiseAbs().maxCoeff());
-  const Eigen::Vector3d origin = mesh.vertices[corners[0]] / size;
-  Eigen::Vector3d sum(0, 0, 0);
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-    sum += (mesh.vertices[corners[i]] / size - origin).cross(mesh.vertices[corners[i + 1]] / size - origin);
+  const Eigen::Vector3d sum = newell_normal(corners.size(), [&](std::size_t i) -> const Eigen::Vector3d& {
+                                return mesh.vertices[corners[i]];
+                              }).first;
   std::array<int, 3> axes = {0, 1, 2};
   std::sort(axes.begin(), axes.end(), [&](int i, int j) { return std::abs(sum[i]) > std::abs(sum[j]); });
   return axes;

@@ -1,14 +1,30 @@
 #pragma once
 /// Exact tests of the shape of one polygon in 3D, and its triangulations.
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include <lrbscope/mesh.hpp>
 
 namespace lrb {
+
+/// Returns the normal of a polygon of `n` corners at(i) by Newell's method, for the polygon divided by its
+/// size, and the size: its largest coordinate. The division avoids overflow.
+template <class At>
+std::pair<Eigen::Vector3d, double> newell_normal(std::size_t n, const At& at) {
+  double size = 0;
+  for (std::size_t i = 0; i < n; ++i) size = std::max(size, at(i).cwiseAbs().maxCoeff());
+  const Eigen::Vector3d origin = at(0) / size;
+  Eigen::Vector3d sum(0, 0, 0);
+  for (std::size_t i = 1; i + 1 < n; ++i) sum += (at(i) / size - origin).cross(at(i + 1) / size - origin);
+  return {sum, size};
+}
 
 /// Returns three corners that span a plane, or nullopt if all corners are collinear (the polygon has no
 /// area).

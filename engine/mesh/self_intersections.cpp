@@ -1,5 +1,5 @@
 // Self-intersections of a mesh, exactly:
-// 1. Triangulate polygons: exactly for planar convex faces, by the fan for others.
+// 1. Triangulate polygons: planar convex faces without degenerate triangles, others by cut_polygon().
 // 2. FacePairs finds the pairs of faces whose bounds overlap.
 // 3. Each pair is decided by exact tests of its triangles. A face with very many corners has a tree of its
 //    triangles, so that a pair of such faces does not take the product of their triangle counts.
@@ -196,15 +196,15 @@ class Pieces {
       triangulate_convex(mesh_, corners, scratch_);
       triangles_.insert(triangles_.end(), scratch_.begin(), scratch_.end());
     } else {
-      add_fan(corners, triangles_);
+      add_cut(f, triangles_);
     }
   }
 
-  /// Adds the fan of a polygon that is not planar and convex.
-  void add_fan(std::span<const VertexId> corners, std::vector<Triangle>& out) const {
-    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-      if (!exact::collinear3d(point(corners[0]), point(corners[i]), point(corners[i + 1])))
-        out.push_back({corners[0], corners[i], corners[i + 1]});
+  /// Adds the triangles of a polygon that is not planar and convex.
+  void add_cut(FaceId f, std::vector<Triangle>& out) {
+    cut_polygon(mesh_, f, scratch_);
+    for (const Triangle& t : scratch_)
+      if (!exact::collinear3d(point(t[0]), point(t[1]), point(t[2]))) out.push_back(t);
   }
 
   void add_large(FaceId f, FaceUse use) {
@@ -215,7 +215,7 @@ class Pieces {
       triangulate_by_halves(mesh_, mesh_.face(f), triangles);
       ring.emplace(mesh_.face(f));
     } else {
-      add_fan(mesh_.face(f), triangles);
+      add_cut(f, triangles);
     }
     large_.emplace(f,
                    LargeFace{TriangleTree(mesh_, pairs_.cube(), std::move(triangles), 1), std::move(ring)});
@@ -259,7 +259,7 @@ class Pieces {
   }
 
   /// Returns true if two corners of a triangle are adjacent in the face. (A face that is not planar and
-  /// convex is its fan, and all sides of the fan count as its own.)
+  /// convex is its triangles, and all their sides count as its own.)
   bool is_side(FaceId f, VertexId v, VertexId w) const {
     if (use_[f] != FaceUse::convex) return true;
     // Binary search in the sorted corners: a linear search for every triangle would be quadratic.

@@ -54,6 +54,11 @@ std::string note_without_regions(const CheckedMesh& mesh, bool turn) {
   return mesh.mesh().name + ": queries will not use regions, because an LRB-rep cannot be built: " + why;
 }
 
+std::vector<std::string> notes_on_polygons(const CheckedMesh& mesh) {
+  if (mesh.report()[MeshFault::folded_face].count == 0) return {};
+  return {mesh.report().line(MeshFault::folded_face, mesh.mesh())};
+}
+
 bool can_be_built(const CheckedMesh& mesh, bool turn) {
   return turn ? mesh.report().when_turned().buildable() : mesh.report().buildable();
 }
@@ -92,7 +97,22 @@ std::string note_unproven(const LrbRep& rep) {
          report.violations.front();
 }
 
+std::string note_polygons(const LrbRep& rep) {
+  if (!rep.folded_faces().empty()) {
+    MeshReport report;
+    for (const FaceId f : rep.folded_faces()) note(report, MeshFault::folded_face, f);
+    Mesh named;
+    named.name = rep.name();
+    return report.line(MeshFault::folded_face, named);
+  }
+  if (!rep.dropped_fans()) return {};
+  return rep.name() +
+         ": the file is of a version that took concave polygons as fans; queries use its faces without "
+         "regions; build it again from the mesh";
+}
+
 LrbRep proven(LrbRep rep, std::vector<std::string>& notes) {
+  if (std::string note = note_polygons(rep); !note.empty()) notes.push_back(std::move(note));
   std::string fault = note_unproven(rep);
   if (fault.empty()) return rep;
   notes.push_back(std::move(fault));
@@ -110,7 +130,7 @@ std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
   using Clock = std::chrono::steady_clock;
   reject_unless_queryable(mesh);
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = notes_on_polygons(mesh);
   // Steps 2 and 3. The time includes the proof.
   if (can_be_built(mesh, turn)) {
     const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
@@ -139,7 +159,7 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
 
 MadeBody make_body_of_faces(CheckedMesh mesh, bool turn, unsigned threads) {
   reject_unless_queryable(mesh);
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = notes_on_polygons(mesh);
   std::uint32_t turned = 0;
   if (!can_be_built(mesh, turn))
     notes.push_back(note_without_regions(mesh, turn));
@@ -286,6 +306,7 @@ Body Body::from(LrbRep rep) {
 Body Body::from(std::shared_ptr<const LrbRep> rep) {
   // An LRB-rep from elsewhere is not trusted: if the proof of its cells fails, only its real faces are kept.
   std::vector<std::string> notes;
+  if (std::string note = note_polygons(*rep); !note.empty()) notes.push_back(std::move(note));
   if (std::string fault = note_unproven(*rep); !fault.empty()) {
     notes.push_back(std::move(fault));
     rep = std::make_shared<const LrbRep>(LrbRep::without_regions(*rep));

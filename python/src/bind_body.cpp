@@ -289,7 +289,7 @@ void bind_geometry(BodyClass& c) {
   c.def_property_readonly(
       "triangles", &triangles_of,
       "(t, 3) uint32, in 2D (t, 2): the corners of each triangle; pairs index this array. A "
-      "polygon is a fan of triangles from its first corner.");
+      "convex polygon is the fan of triangles from its first corner (docs/meshes.md).");
   c.def_property_readonly("face_of_triangle", &face_of_triangle, "(t,) uint32: the face of each triangle.");
   define(c, &box,
          "box(pose=None)\n\n"

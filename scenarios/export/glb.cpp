@@ -10,6 +10,7 @@
 
 #include "scenarios/export/model.hpp"
 #include <lrbscope/error.hpp>
+#include <lrbscope/mesh.hpp>
 
 namespace lrb::exchange {
 namespace {
@@ -53,9 +54,13 @@ void add_cell(Primitive& out, const Part& part, std::size_t cell, const Eigen::V
   if (part.shape == Shape::lines)
     for (std::uint32_t i = 0; i + 1 < count; ++i)
       out.indices.insert(out.indices.end(), {first + i, first + i + 1});
-  if (part.shape == Shape::polygons)
-    for (std::uint32_t i = 1; i + 1 < count; ++i)
-      out.indices.insert(out.indices.end(), {first, first + i, first + i + 1});
+  if (part.shape != Shape::polygons) return;
+  std::vector<Eigen::Vector3d> polygon;
+  for (const std::uint32_t v : corners) polygon.push_back(part.vertices[v]);
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  cut_polygon(polygon, triangles);
+  for (const auto& t : triangles)
+    for (const std::uint32_t i : t) out.indices.push_back(first + i);
 }
 
 class GlbOut {

@@ -103,7 +103,7 @@ render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, doub
     render::DrawTriangle t;
     t.colour = tests[f] > 0 ? render::palette::viridis(share(tests[f], most)) : render::palette::kPaleFront;
     t.edges = 7;
-    list.add_polygon(run::corners_of(rep, f, pose_of(view)), t);
+    list.add_polygon(run::corners_of(rep, f, pose_of(view)), t, {}, run::corners_of(rep, f));
   }
   for (const ContactRegion& region : view.contact->regions)
     for (const ContactLoop& loop : region.loops) {

@@ -171,14 +171,24 @@ json geometry(const LrbRep& rep, const SceneFrame& frame, std::uint32_t faces) {
     parents.push_back(region_or_null(rep.parent(r)));
     layers.push_back(rep.layer(r));
   }
-  return {{"vertices", packed(vertices)},
-          {"sizes", packed(sizes)},
-          {"corners", packed_each(std::span(rep.data().face_vertices).first(corners),
-                                  [](VertexId v) { return v.value(); })},
-          {"inner", packed(inner)},
-          {"outer", packed(outer)},
-          {"parent", packed(parents)},
-          {"layer", packed(layers)}};
+  json out = {{"vertices", packed(vertices)},
+              {"sizes", packed(sizes)},
+              {"corners", packed_each(std::span(rep.data().face_vertices).first(corners),
+                                      [](VertexId v) { return v.value(); })},
+              {"inner", packed(inner)},
+              {"outer", packed(outer)},
+              {"parent", packed(parents)},
+              {"layer", packed(layers)}};
+  // The corners of all triangles, in the order of the simplices; without them, polygons are fans.
+  if (!rep.has_cut_faces()) return out;
+  Numbers triangles;
+  for (SimplexId s = 0; s < rep.simplex_count() && rep.face_of_simplex(s) < faces; ++s) {
+    VertexId v[3];
+    rep.simplex(s, v);
+    for (const VertexId corner : v) triangles.push_back(corner.value());
+  }
+  out["triangles"] = packed(triangles);
+  return out;
 }
 
 /// Returns the real simplices of a body that events compare, in the events' order: contacts first.

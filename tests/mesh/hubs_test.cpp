@@ -45,9 +45,10 @@ std::vector<Triangle> triangles_of(const Mesh& m, FaceId f, FaceUse use) {
     triangulate_convex(m, c, out);
     return out;
   }
-  for (std::size_t i = 1; i + 1 < c.size(); ++i)
-    if (!exact::collinear3d(m.vertices[c[0]].data(), m.vertices[c[i]].data(), m.vertices[c[i + 1]].data()))
-      out.push_back({c[0], c[i], c[i + 1]});
+  cut_polygon(m, f, out);
+  std::erase_if(out, [&](const Triangle& t) {
+    return exact::collinear3d(m.vertices[t[0]].data(), m.vertices[t[1]].data(), m.vertices[t[2]].data());
+  });
   return out;
 }
 

@@ -125,7 +125,7 @@ std::vector<Row> rows_3d() {
        "zero_area_face *, self_intersection *, duplicate_vertex *", false, kApart},
       {"concave polygons",
        hard::cog(40),
-       "non_convex_face 2, self_intersection *",
+       "non_convex_face 2",
        true,
        kInside,
        {0.1, 0.2, 0.5}},

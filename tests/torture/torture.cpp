@@ -19,8 +19,8 @@
 // not marked as grazing.
 //
 // interiors_overlap is a statement about bodies as rounded to world coordinates: a crossing gives "yes" only
-// where that is proven, and a body that rounding has made flat gives "unknown". A face that is not convex is
-// the fan of triangles from its first corner, and inside is the parity of these.
+// where that is proven, and a body that rounding has made flat gives "unknown". A face is the
+// triangles of cut_polygon(), and inside is the parity of these.
 
 #include <algorithm>
 #include <chrono>

@@ -137,6 +137,9 @@ MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true, unsigned threads
 /// Returns a note with the first violation if the proof of an LRB-rep's cells fails (validate_cells()), or an
 /// empty string if they are proven.
 std::string note_unproven(const LrbRep& rep);
+/// Returns a note on polygons that are not what their outlines say, or an empty string if there are none:
+/// LrbRep::folded_faces(), LrbRep::dropped_fans().
+std::string note_polygons(const LrbRep& rep);
 /// Returns the LRB-rep if its cells are proven; otherwise its real faces without regions, and adds that note.
 LrbRep proven(LrbRep rep, std::vector<std::string>& notes);
 

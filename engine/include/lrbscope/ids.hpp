@@ -22,7 +22,7 @@ class Id;
 using VertexId = Id<struct VertexKind>;  ///< index into LrbRep::vertices() or Mesh::vertices
 /// Index of a face: a polygon (3D) or a segment (2D). Real faces come first, in file order.
 using FaceId = Id<struct FaceKind>;
-/// Index of a simplex: a triangle of a face's fan (3D) or the segment itself (2D). Real simplices come first.
+/// Index of a simplex: a triangle of a face (3D) or the segment itself (2D). Real simplices come first.
 using SimplexId = Id<struct SimplexKind>;
 using RegionId = Id<struct RegionKind>;  ///< index of a region of an LRB-rep, 0 .. region_count() - 1
 /// Index of a cell of the complex: a region, or one of the two cells of every body, kSolid and kOutside.

@@ -17,6 +17,7 @@
 /// regions can be built (open, non-manifold) becomes an LRB-rep without regions. It can be queried exactly,
 /// but only a closed one has an inside.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -73,7 +74,8 @@ class LrbRep {
   /// reports. `threads`: as for the constructor.
   static LrbRep without_regions(const Mesh& mesh, bool closed, bool self_intersecting, unsigned threads = 1);
   /// Creates a body without regions from the real faces of another. Faces and vertices keep their numbers.
-  static LrbRep without_regions(const LrbRep& rep);
+  /// `dropped_fans`: what dropped_fans() is to return.
+  static LrbRep without_regions(const LrbRep& rep, bool dropped_fans = false);
 
   /// Returns the mesh: the real faces and the vertices up to the last one that they use, with their numbers.
   Mesh real_mesh() const;
@@ -122,8 +124,9 @@ class LrbRep {
   /// Returns the number of steps to the outside along parents: 1 for a region whose parent is the outside.
   std::uint32_t depth(RegionId r) const { return depth_[r]; }
 
-  /// Return the number of simplices. Simplices are the triangles of each face's fan from its first corner
-  /// (2D: its segment), numbered face by face. Those of real faces come first, in the order of the mesh file.
+  /// Return the number of simplices. Simplices are the triangles of each face (cut_polygon(); of a pseudo
+  /// face its fan; 2D: its segment), numbered face by face. Those of real faces come first, in the order of
+  /// the mesh file.
   std::uint32_t simplex_count() const;
   std::uint32_t real_simplex_count() const;
   bool is_real_simplex(SimplexId s) const { return is_real(face_of_simplex(s)); }
@@ -133,7 +136,7 @@ class LrbRep {
     return s < whole_faces_ ? FaceId(s.value()) : face_of_simplex_[s];
   }
   SimplexId first_simplex(FaceId f) const {
-    // A fan has two triangles fewer than corners.
+    // A polygon has two triangles fewer than corners.
     return SimplexId(f < whole_faces_ ? f.value() : d_.face_offsets[f] - 2 * f);
   }
   /// Writes the corners of a simplex (3, or 2 in 2D) to out.
@@ -145,6 +148,10 @@ class LrbRep {
       if (d_.dim == 3) out[2] = corners[2];
       return;
     }
+    if (!triangles_.empty()) {
+      for (int i = 0; i < 3; ++i) out[i] = triangles_[s - whole_faces_][static_cast<std::size_t>(i)];
+      return;
+    }
     const FaceId f = face_of_simplex(s);
     const VertexId* corners = d_.face_vertices.data() + d_.face_offsets[f];
     const std::uint32_t i = s - first_simplex(f);
@@ -152,6 +159,14 @@ class LrbRep {
     out[1] = corners[i + 1];
     out[2] = corners[i + 2];
   }
+
+  /// Returns true if a real face is not its fan (PolygonCut::ears).
+  bool has_cut_faces() const { return !triangles_.empty(); }
+  /// Returns the real faces that are fans although these do not cover them (PolygonCut::folded).
+  std::span<const FaceId> folded_faces() const { return folded_faces_; }
+  /// Returns true if this was read from a file of an earlier version, which took all polygons as fans,
+  /// although it has other ones: its regions do not fit the body and were left out.
+  bool dropped_fans() const { return dropped_fans_; }
 
   /// Returns the view from which the tree is built; it refers to this LRB-rep.
   SimplexView simplices() const;
@@ -183,6 +198,7 @@ class LrbRep {
   struct FoundHash;
 
   void derive();
+  void cut_polygons();
   void link_faces_to_regions();
   void find_parents();
   void find_components();
@@ -197,6 +213,10 @@ class LrbRep {
   std::vector<std::uint32_t> depth_;      ///< (|R|)
   std::uint32_t whole_faces_ = 0;         ///< faces [0, whole_faces_) consist of one simplex each
   std::vector<FaceId> face_of_simplex_;   ///< (simplices) empty if every face is one simplex
+  /// (simplices after those of whole faces); empty if all faces are fans.
+  std::vector<std::array<VertexId, 3>> triangles_;
+  std::vector<FaceId> folded_faces_;
+  bool dropped_fans_ = false;
   std::uint32_t layer_count_ = 0;
   std::uint64_t serial_ = 0;
   ObbTree tree_;
@@ -206,14 +226,16 @@ class LrbRep {
   std::shared_ptr<FoundHash> hash_;
 };
 
-/// The version of the file format that save_lrb() writes, and the newest one that load_lrb() reads.
-inline constexpr std::uint32_t kLrbFileVersion = 3;
+/// The version of the file format that save_lrb() writes, and the newest one that load_lrb() reads. Files of
+/// bodies without polygons of PolygonCut::ears are also those of version 3, and are written as such.
+inline constexpr std::uint32_t kLrbFileVersion = 4;
 
 /// Writes an LRB-rep to a binary file (`.lrb`), little-endian: magic, version, the arrays of LrbData, each
 /// preceded by its length, their hash, the OBB tree, the levels of detail if they exist
-/// (LrbRep::has_levels()), and a checksum of all preceding bytes (lrb_checksum()). Version 2 had no levels.
-/// Version 1 had no levels, hash or tree, and used FNV-1a as its checksum. The write is atomic. Throws
-/// EnvironmentError or InputError as AtomicFile does.
+/// (LrbRep::has_levels()), and a checksum of all preceding bytes (lrb_checksum()). Version 3 took all
+/// polygons as fans (LrbRep::dropped_fans()). Version 2 had no levels. Version 1 had no levels, hash or tree,
+/// and used FNV-1a as its checksum. The write is atomic. Throws EnvironmentError or InputError as AtomicFile
+/// does.
 void save_lrb(const LrbRep& rep, const std::string& path);
 
 /// Reads an LRB-rep from a `.lrb` file of this version or an older one. Throws InputError if the file is

@@ -15,9 +15,9 @@
 
 namespace lrb {
 
-/// The boundary of a body. 3D: a face is a polygon with its corners counter-clockwise seen from outside; one
-/// that is not planar and convex stands for the fan of triangles from its first corner. 2D: a face is a
-/// segment in the plane z = 0 with the solid on its left.
+/// The boundary of a body. 3D: a face is a polygon with its corners counter-clockwise seen from outside, and
+/// consists of the triangles of cut_polygon(). 2D: a face is a segment in the plane z = 0 with the solid on
+/// its left.
 struct Mesh {
   int dim = 3;                                    ///< 3, or 2 for closed polygons made of segments
   std::vector<Eigen::Vector3d> vertices;          ///< (|V| x 3), unit of the file; z = 0 in 2D
@@ -35,10 +35,27 @@ struct Mesh {
     face_vertices.insert(face_vertices.end(), corners.begin(), corners.end());
     face_offsets.push_back(static_cast<std::uint32_t>(face_vertices.size()));
   }
-  /// Returns the number of simplices of a face with `corners` corners: in 3D the triangles of the fan from
-  /// its first corner, in 2D 1 (the segment itself).
+  /// Returns the number of simplices of a face with `corners` corners: in 3D its triangles, in 2D 1 (the
+  /// segment itself).
   static std::size_t simplices_of(std::size_t corners, int dim) { return dim == 2 ? 1 : corners - 2; }
 };
+
+/// How a polygon is divided into triangles.
+enum class PolygonCut : std::uint8_t {
+  fan,     ///< by the fan from its first corner, which covers it; so are all convex polygons
+  ears,    ///< by other triangles, which cover it
+  folded,  ///< by the fan, although that does not cover it: the outline crosses itself, or is far from planar
+};
+
+/// Divides a polygon of n > 2 corners (finite) into n - 2 triangles, as all queries do: triples of indices of
+/// corners. Decides by exact tests in the projection along the axis closest to the polygon's normal. There
+/// the triangles of `fan` and `ears` cover each point as often as the outline winds around it. The outline
+/// may touch itself, and walk an edge in both directions, as at the bridge to a hole. `folded`: a corner is
+/// further than a tenth of the polygon's size from its mean plane, or no such triangles exist.
+PolygonCut cut_polygon(std::span<const Eigen::Vector3d> corners,
+                       std::vector<std::array<std::uint32_t, 3>>& triangles);
+/// Divides a face of a mesh, whose corners exist and are finite.
+PolygonCut cut_polygon(const Mesh& mesh, FaceId f, std::vector<std::array<VertexId, 3>>& triangles);
 
 // Reading and writing of mesh files.
 

@@ -23,6 +23,7 @@ namespace lrb {
   MESH_FAULT(zero_area_face, "a face has no area", false, true)                                           \
   MESH_FAULT(non_planar_face, "a polygon is not planar", true, true)                                      \
   MESH_FAULT(non_convex_face, "a polygon is not convex", true, true)                                      \
+  MESH_FAULT(folded_face, "a polygon crosses itself or is far from planar", true, true)                   \
   MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                              \
   MESH_FAULT(open_edge, "an edge has only one face", false, true)                                         \
   MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                           \
@@ -92,7 +93,7 @@ MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 /// Orients every closed component so that the solid is behind its faces. A component nested directly inside
 /// an odd number of others is a void and is oriented the other way (decided by parity). Components that are
 /// not closed are unchanged. Returns the number of components reversed. The triangles of a reversed triangle
-/// or quad keep their numbers; the fan of a larger polygon is renumbered in reverse.
+/// or convex quad keep their numbers; those of a larger polygon are renumbered.
 std::uint32_t orient_outward(Mesh& mesh);
 
 /// Reverses the faces of these components, as orient_outward() does.
@@ -105,7 +106,7 @@ enum class FaceUse : std::uint8_t {
   nothing,   ///< a vertex index is out of range
   topology,  ///< its corners exist, but one is not finite
   points,    ///< its corners are finite, but it has no area (2D: no length) or too few distinct corners
-  area,      ///< has area; need not be planar or convex
+  area,      ///< has area; need not be planar or convex (its triangles: cut_polygon())
   convex,    ///< planar and convex (always so for triangles and segments)
 };
 

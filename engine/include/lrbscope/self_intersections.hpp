@@ -4,9 +4,8 @@
 /// Two faces intersect themselves if they share a point beyond the corners and edges that they share by
 /// index: the definition of the checks (MeshFault::self_intersection), of the builder and of clash(). Exact.
 /// Faces without area are left out (2D: without length; the checks report them), and a polygon is not
-/// compared with itself. Polygons are triangulated: planar convex ones exactly, others as fans from their
-/// first corners. Corners with equal coordinates but different indices are different: merge them first
-/// (join_corners()).
+/// compared with itself. Polygons are divided into triangles (cut_polygon()). Corners with equal coordinates
+/// but different indices are different: merge them first (join_corners()).
 ///
 /// Algorithm: pairs whose boxes overlap, from an AABB tree (OBBs where very many AABBs overlap); then signs
 /// of determinants, exactly (interval overlap, Moeller 1997). Ends of segments are identified by the

@@ -119,16 +119,9 @@ export class FaceMesh {
     if (this.flat) faces.forEach((face, k) => this.faceOf.fill(face, 2 * k, 2 * k + 2));
     faces.forEach((face, k) => {
       if (this.flat) return;
-      const corners = body.face(face);
-      for (let i = 1; i + 1 < corners.length; i++, t++) {
+      for (const corners of body.trianglesOf(face)) {
         this.faceOf[t] = face;
-        this.place(
-          positions,
-          normals,
-          9 * t,
-          [corners[0], corners[i], corners[i + 1]],
-          shifts ? shifts[k] : [0, 0, 0],
-        );
+        this.place(positions, normals, 9 * t++, [...corners], shifts ? shifts[k] : [0, 0, 0]);
       }
     });
     const geometry = new THREE.BufferGeometry();

@@ -54,6 +54,7 @@ export class Body {
     const g = json.geometry;
     this.vertices = unpack(g.vertices);
     this.corners = unpack(g.corners);
+    this.triangles = g.triangles ? unpack(g.triangles) : null; // corners of each simplex; null: polygons are fans
     this.inner = unpack(g.inner); // region behind each face; NONE: the solid
     this.outer = unpack(g.outer); // region in front of it; NONE: the outside
     this.parent = unpack(g.parent);
@@ -72,7 +73,7 @@ export class Body {
     this.counts.misses = this.counts.tests.map((n, f) => n - this.counts.hits[f]);
   }
 
-  /** Numbers the triangles of all faces' fans (2D: segments), as LrbRep does. */
+  /** Numbers the triangles of all faces (2D: segments), as LrbRep does. */
   countCorners(sizes) {
     this.offsets = new Uint32Array(sizes.length + 1);
     this.firstSimplex = new Uint32Array(sizes.length + 1);
@@ -87,6 +88,16 @@ export class Body {
   }
   face(face) {
     return this.corners.subarray(this.offsets[face], this.offsets[face + 1]);
+  }
+  /** Returns the corners of the triangles of a face (not 2D). */
+  trianglesOf(face) {
+    const corners = this.face(face),
+      first = this.firstSimplex[face];
+    return Array.from({ length: Math.max(0, corners.length - 2) }, (_, i) =>
+      this.triangles
+        ? this.triangles.subarray(3 * (first + i), 3 * (first + i + 1))
+        : [corners[0], corners[i + 1], corners[i + 2]],
+    );
   }
   faceOfSimplex(simplex) {
     return lastAtMost(this.firstSimplex, simplex);

@@ -100,10 +100,11 @@ struct DrawList {
   /// Returns the index of a style, which is added if the list has no equal one. Throws InputError beyond 256
   /// styles.
   std::uint8_t edge_style(const EdgeStyle& style);
-  /// Adds a convex polygon as a fan, with its outline as edges. `borders`: DrawTriangle::borders of the
-  /// polygon's edges; empty: none.
+  /// Adds a polygon as its triangles (cut_polygon()), with its outline as edges. `borders`:
+  /// DrawTriangle::borders of the polygon's edges; empty: none. `shape`: the corners in the frame of their
+  /// body, where they are not rounded; empty: `corners`.
   void add_polygon(const std::vector<Eigen::Vector3d>& corners, const DrawTriangle& like,
-                   const std::vector<bool>& borders = {});
+                   const std::vector<bool>& borders = {}, const std::vector<Eigen::Vector3d>& shape = {});
   void append(const DrawList& other);
   bool empty() const;
 };
