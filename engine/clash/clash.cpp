@@ -87,13 +87,19 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
 /// Decides the kind of contact of bodies that share a point.
 void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& result) {
   // Exact. Fails, with a reason, for bodies that are not solids and for faces cut into too many cells.
-  const auto pieces = penetration::surface_pieces(query, found, false, &result.reason);
+  const bool is_proven =
+      found.relation == Relation::crossing && crossing_interiors_overlap(query, found) == Answer::yes;
+  bool solid_inside = true;
+  const auto pieces =
+      penetration::surface_pieces(query, found, false, &result.reason, is_proven ? nullptr : &solid_inside);
   if (!pieces) return;
   result.pieces = *pieces;
   const bool enters = (*pieces)[0].inside + (*pieces)[1].inside > 0;
-  // A piece of one surface inside the other solid proves overlap.
-  if (enters)
+  // A piece of one surface inside the other solid proves overlap, if it is not of a flap without thickness.
+  if (is_proven || (enters && solid_inside))
     result.interiors_overlap = Answer::yes;
+  else if (enters)
+    result.interiors_overlap = (*pieces)[0].on_same ? Answer::unknown : Answer::no;
   else
     // Otherwise interiors overlap only if surfaces coincide with both solids on the same side.
     result.interiors_overlap = (*pieces)[0].on_same ? interiors_overlap(query, found) : Answer::no;

@@ -30,8 +30,14 @@
 /// Parallel triangles. A triangle that is so nearly parallel to x that the sign of F is ambiguous (F < 16 u
 /// D^2) contributes only an error: its area is less than 16 u D^2.
 ///
-/// Corners. The error of a corner is at most u in each coordinate, 2 u in length. The volume that a triangle
-/// sweeps when its corners move by 2 u is at most 2 u times its area, plus 2 u for its perimeter.
+/// Corners. The error of a corner is at most e = u in each coordinate, 2 e in length. The volume that a
+/// triangle sweeps when its corners move by 2 e is at most 2 e times its area, plus 2 e for its perimeter.
+///
+/// Bodies of different sizes. The common volume is in the intersection of the bodies' boxes. If that is
+/// small, all triangles are cut to its shadow along x, their heights are limited to its heights, and it
+/// becomes the unit, so that the errors are those of the overlap. Below and above it the common volume of the
+/// limited bodies is 0. Each of the six cuts moves a corner by at most 16 u from the exact triangle: the
+/// parameter has an error of 4 u, edges are at most sqrt 3 long, and the sum is rounded.
 
 #include <algorithm>
 #include <cmath>
@@ -217,8 +223,8 @@ std::vector<Seen> seen_of(const UnitBody& body) {
   return out;
 }
 
-/// Returns an upper bound on the change of the volume by the rounding of corners.
-double rounding_of_corners(const UnitBody& body) {
+/// Returns an upper bound on the change of the volume by an error of corners in each coordinate.
+double rounding_of_corners(const UnitBody& body, double error) {
   double sum = 0;
   for (const auto& t : body.triangles) {
     const Vector3d u = body.points[t[1]] - body.points[t[0]], v = body.points[t[2]] - body.points[t[0]];
@@ -226,7 +232,7 @@ double rounding_of_corners(const UnitBody& body) {
     // Doubled area and perimeter, plus their own rounding.
     sum += u.cross(v).norm() + 0x1p-40 * edges + 0x1p-80;
   }
-  return 4 * kRounding * sum;
+  return 4 * error * sum;
 }
 
 /// Finds the pairs of overlapping boxes in strips across y.
@@ -258,9 +264,60 @@ class Strips {
   std::vector<std::vector<std::uint32_t>> in_;
 };
 
-}  // namespace
+/// The intersection of the bodies' boxes, grown by `more`.
+Eigen::AlignedBox3d box_of_overlap(const UnitBodies& bodies, double more) {
+  Eigen::AlignedBox3d box[2];
+  for (int side = 0; side < 2; ++side)
+    for (const auto& t : bodies.body[side].triangles)
+      for (const std::uint32_t v : t) box[side].extend(bodies.body[side].points[v]);
+  const Vector3d by = Vector3d::Constant(more);
+  return {box[0].min().cwiseMax(box[1].min()) - by, box[0].max().cwiseMin(box[1].max()) + by};
+}
 
-ProvedInterval shared_volume(const UnitBodies& bodies) {
+using Outline = std::vector<Vector3d>;
+
+/// Returns the part of a polygon in { x : sign (x[axis] - at) >= 0 }.
+Outline part_of(const Outline& in, int axis, double at, double sign) {
+  Outline out;
+  const auto ahead = [&](const Vector3d& x) { return sign * (x[axis] - at); };
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const Vector3d &p = in[i], &q = in[(i + 1) % in.size()];
+    const double d = ahead(p), e = ahead(q);
+    if (d >= 0) out.push_back(p);
+    if ((d >= 0) == (e >= 0) || d == 0 || e == 0) continue;
+    out.emplace_back(p + d / (d - e) * (q - p));
+    out.back()[axis] = at;
+  }
+  return out;
+}
+
+/// Returns a body cut and limited to a box, in a frame in which the box is centred and 2^zoom times as large.
+UnitBody limited(const UnitBody& body, const Eigen::AlignedBox3d& box, int zoom) {
+  UnitBody out;
+  const auto add = [&](const Outline& corners) {
+    const auto first = static_cast<std::uint32_t>(out.points.size());
+    for (const Vector3d& x : corners) {
+      Vector3d y = x;
+      y.x() = std::clamp(y.x(), box.min().x(), box.max().x());
+      out.points.emplace_back((y - box.center()) * std::ldexp(1.0, zoom));
+    }
+    for (std::uint32_t i = 2; i < corners.size(); ++i)
+      out.triangles.push_back({first, first + i - 1, first + i});
+  };
+  for (const auto& t : body.triangles) {
+    Outline inside = {body.points[t[0]], body.points[t[1]], body.points[t[2]]};
+    for (int axis = 1; axis < 3; ++axis) {
+      inside = part_of(inside, axis, box.min()[axis], 1);
+      inside = part_of(inside, axis, box.max()[axis], -1);
+    }
+    add(part_of(inside, 0, box.min().x(), -1));
+    add(part_of(inside, 0, box.max().x(), 1));
+    add(part_of(part_of(inside, 0, box.min().x(), 1), 0, box.max().x(), -1));
+  }
+  return out;
+}
+
+ProvedInterval volume_of(const UnitBodies& bodies, double error_of_corners) {
   const std::vector<Seen> a = seen_of(bodies.body[0]), b = seen_of(bodies.body[1]);
   // If triangles are evenly distributed, there are about as many strips as triangles in each.
   const auto count = static_cast<std::size_t>(std::sqrt(static_cast<double>(b.size()))) + 1;
@@ -268,7 +325,32 @@ ProvedInterval shared_volume(const UnitBodies& bodies) {
   Sum sum;
   for (const Seen& t : a) strips.each_near(t, [&](const Seen& s) { add_pair(t, s, sum); });
   // The error from the rounding of all corners is added once, at the end.
-  return sum.interval(rounding_of_corners(bodies.body[0]) + rounding_of_corners(bodies.body[1]));
+  return sum.interval(rounding_of_corners(bodies.body[0], error_of_corners) +
+                      rounding_of_corners(bodies.body[1], error_of_corners));
+}
+
+}  // namespace
+
+ProvedInterval shared_volume(const UnitBodies& bodies) {
+  // Larger than the rounding of corners and of the volume of the box.
+  const Eigen::AlignedBox3d box = box_of_overlap(bodies, 0x1p-40);
+  if (box.isEmpty()) return volume_of(bodies, kRounding);
+  // 2^zoom times the box has a size from 1/2 to 1. Bodies of similar sizes stay as they are.
+  constexpr int kMinZoom = 4, kMaxZoom = 28;
+  const int zoom = std::min(-std::ilogb(box.sizes().maxCoeff()) - 1, kMaxZoom);
+  ProvedInterval volume;
+  if (zoom < kMinZoom) {
+    volume = volume_of(bodies, kRounding);
+  } else {
+    const UnitBodies part{{}, {limited(bodies.body[0], box, zoom), limited(bodies.body[1], box, zoom)}};
+    constexpr double kCutError = 128 * kRounding;
+    volume = volume_of(part, std::ldexp(kCutError, zoom));
+    volume.lower = std::ldexp(volume.lower, -3 * zoom);
+    volume.upper = std::ldexp(volume.upper, -3 * zoom);
+  }
+  volume.upper = std::min(volume.upper, box.volume() * (1 + 0x1p-40));
+  volume.lower = std::min(volume.lower, volume.upper);
+  return volume;
 }
 
 }  // namespace lrb::penetration

@@ -262,7 +262,46 @@ class CutSurface {
     return pieces;
   }
 
+  /// After run(): returns whether the body has interior points beside one of its pieces inside the holder. A
+  /// face for which that is not decided counts.
+  bool has_solid_inside() {
+    for (SimplexId s = 0; s < body_.rep().real_simplex_count(); ++s) {
+      const auto face = touched_.find(s);
+      if (face == touched_.end()) {
+        if (is_inside_[nodes_.leader(s.value())] && has_solid_at(s, corner_of(s))) return true;
+        continue;
+      }
+      for (std::uint32_t i = 0; i < face->second.cell_count(); ++i)
+        if (is_inside_[nodes_.leader(face->second.first_node + i)] &&
+            has_solid_at(s, point_of_cell(s, face->second, i)))
+          return true;
+    }
+    return false;
+  }
+
  private:
+  exact::RationalPoint corner_of(SimplexId s) {
+    const double* corners[3];
+    body_.world.corners(s, corners);
+    return exact::RationalPoint(corners[0]);
+  }
+
+  /// Returns whether the body is solid beside a face, near a point of it inside the holder.
+  bool has_solid_at(SimplexId s, const exact::RationalPoint& p) {
+    const double* corners[3];
+    body_.world.corners(s, corners);
+    std::vector<exact::RationalPoint> points = {p};
+    for (const double* corner : corners) points.emplace_back(corner);
+    // Points inside the face, nearer and nearer, until one is inside the holder and on no edge.
+    for (const double share : {0.25, 0x1p-10, 0x1p-20, 0x1p-40, 0x1p-80}) {
+      const double weights[] = {1 - share, 0.31 * share, 0.27 * share, 0.42 * share};
+      const auto near = exact::RationalPoint::combination(points, weights);
+      if (locate(holder_, near) != Where::inside) continue;
+      if (const auto solid = has_solid_beside(body_, near)) return *solid;
+    }
+    return true;
+  }
+
   std::optional<SurfacePieces> count_pieces() {
     // Step 1: cut the triangles that intersect the other body.
     if (!cut_faces()) return std::nullopt;
@@ -485,13 +524,14 @@ class CutSurface {
     SurfacePieces out;
     std::map<std::uint32_t, std::uint32_t> outside;  // component of the surface -> its pieces outside
     std::vector<bool> seen(node_count_, false);
+    is_inside_.assign(node_count_, false);
     const auto see = [&](std::uint32_t node, SimplexId s, const auto& where) {
       const std::uint32_t group = nodes_.leader(node);
       // One point decides for the entire piece, because no piece crosses the other surface.
       if (seen[group]) return;
       seen[group] = true;
       const Where w = where();
-      if (w == Where::inside) ++out.inside;
+      if (w == Where::inside) ++out.inside, is_inside_[group] = true;
       // Two or more pieces outside on one component mean that the other body passes through it.
       if (w == Where::outside)
         out.max_outside = std::max(out.max_outside, ++outside[surface_.leader(s.value())]);
@@ -514,18 +554,27 @@ class CutSurface {
   }
 
   Where locate_cell(SimplexId s, const TouchedFace& face, std::uint32_t cell) {
+    if (face.simple)
+      if (const auto [edge, share] = face.simple->place_on_border(cell); share == 0) {
+        const double* corners[3];
+        body_.world.corners(s, corners);
+        return locate(holder_, corners[edge]);
+      }
+    return locate(holder_, point_of_cell(s, face, cell));
+  }
+
+  exact::RationalPoint point_of_cell(SimplexId s, const TouchedFace& face, std::uint32_t cell) {
     // Rational cells have a sample point already.
-    if (!face.simple) return locate(holder_, face.cut->samples()[cell]);
+    if (!face.simple) return face.cut->samples()[cell];
     const double* corners[3];
     body_.world.corners(s, corners);
     // A simple cell has a part of the border: take a point of it between the ends of chains.
     const auto [edge, share] = face.simple->place_on_border(cell);
-    if (share == 0) return locate(holder_, corners[edge]);
     // Rational, so that the point is exactly on the edge.
     const exact::RationalPoint ends[] = {exact::RationalPoint(corners[edge]),
                                          exact::RationalPoint(corners[(edge + 1) % 3])};
     const double weights[] = {1 - share, share};
-    return locate(holder_, exact::RationalPoint::combination(ends, weights));
+    return exact::RationalPoint::combination(ends, weights);
   }
 
   QueryBody& body_;
@@ -537,8 +586,9 @@ class CutSurface {
   const std::vector<VertexId> place_, holder_place_;
   std::map<SimplexId, TouchedFace> touched_;
   std::uint32_t node_count_ = 0;
-  DisjointSets nodes_;    ///< simplices in no contact, by their number, then cells
-  DisjointSets surface_;  ///< simplices
+  DisjointSets nodes_;           ///< simplices in no contact, by their number, then cells
+  DisjointSets surface_;         ///< simplices
+  std::vector<bool> is_inside_;  ///< (nodes) of a piece, by its leader: inside the holder
 };
 
 /// Returns the reason why two bodies do not bound two solids, or `none` if they do.
@@ -553,7 +603,8 @@ ClashReason reason_of_bodies(const LrbRep& a, const LrbRep& b) {
 }  // namespace
 
 std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
-                                                           bool only_rational, ClashReason* reason) {
+                                                           bool only_rational, ClashReason* reason,
+                                                           bool* solid_inside) {
   ClashReason unused = ClashReason::none;
   ClashReason& why = reason != nullptr ? *reason : unused;
   why = reason_of_bodies(context[Side::a].rep(), context[Side::b].rep());
@@ -573,12 +624,14 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
     if (!contacts.back().coplanar || contacts.back().corner_count < 3) continue;
     (same_direction_3d(a, b) != mirrored ? on_same : on_opposite) = true;
   }
+  if (solid_inside != nullptr) *solid_inside = false;
   std::array<SurfacePieces, 2> out;
   // Each surface is cut by the other.
   for (const Side side : {Side::a, Side::b}) {
-    const std::optional<SurfacePieces> pieces =
-        CutSurface(context, side, result, contacts, only_rational).run(why);
+    CutSurface surface(context, side, result, contacts, only_rational);
+    const std::optional<SurfacePieces> pieces = surface.run(why);
     if (!pieces) return std::nullopt;
+    if (solid_inside != nullptr && !*solid_inside) *solid_inside = surface.has_solid_inside();
     out[static_cast<std::size_t>(side)] = *pieces;
     out[static_cast<std::size_t>(side)].on_same = on_same;
     out[static_cast<std::size_t>(side)].on_opposite = on_opposite;

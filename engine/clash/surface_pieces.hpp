@@ -17,9 +17,11 @@ namespace lrb::penetration {
 /// other solid. Cells and uncut faces belong to the same piece if they share a part of an edge that is not on
 /// the other surface: edges are cut where they intersect it, and one point of each part decides.
 /// only_rational: cut all faces in rational arithmetic, and not only non-simple faces; the result is the
-/// same.
+/// same. solid_inside, unless null: set to whether a piece inside has its own solid beside it, and not only
+/// faces that cancel each other (has_solid_beside()).
 std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
                                                            bool only_rational = false,
-                                                           ClashReason* reason = nullptr);
+                                                           ClashReason* reason = nullptr,
+                                                           bool* solid_inside = nullptr);
 
 }  // namespace lrb::penetration

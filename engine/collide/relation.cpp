@@ -17,6 +17,7 @@
 
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
+#include "engine/exact/predicates.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/world_box.hpp>
 
@@ -65,6 +66,15 @@ class RayWalk {
     visit(0);
     // An odd number of crossings: inside.
     return on_surface_ ? Where::on_surface : crossings_ % 2 ? Where::inside : Where::outside;
+  }
+
+  /// See has_solid_beside(). The faces at the point separate two sides of the same parity if their number is
+  /// even. The ray starts on one of these sides, and crosses all or none of them.
+  std::optional<bool> beside() {
+    passes_surface_ = true;
+    visit(0);
+    if (on_surface_) return std::nullopt;
+    return faces_here_ % 2 == 1 || crossings_ % 2 == 1;
   }
 
  private:
@@ -213,8 +223,35 @@ class RayWalk {
     } else {
       hit = dim_ == 3 ? exact::ray_crosses(point_, corners) : exact::ray_crosses_2d(point_, corners);
     }
+    if constexpr (!kMayTurn)
+      if (passes_surface_ && hit == exact::RayHit::on_face) {
+        ++faces_here_;
+        on_surface_ |= !is_strictly_inside(corners);
+        return;
+      }
     on_surface_ |= hit == exact::RayHit::on_face;
     crossings_ += hit == exact::RayHit::crosses;
+  }
+
+  /// Returns true if the point, which is on a triangle, is on none of its edges, and the triangle is in the
+  /// plane of those seen before.
+  bool is_strictly_inside(const double* const corners[3]) {
+    Vector3d x[3];
+    for (int k = 0; k < 3; ++k) x[k] = Eigen::Map<const Vector3d>(corners[k]);
+    if (faces_here_ == 1) std::copy(std::begin(x), std::end(x), here_);
+    for (const Vector3d& corner : x)
+      if (exact::orient3d(here_[0].data(), here_[1].data(), here_[2].data(), corner.data()) != 0)
+        return false;
+    // A point beside the plane: along an axis that is not parallel to it.
+    for (int axis = 0; axis < 3; ++axis) {
+      Vector3d off = x[0];
+      off[axis] += (x[1] - x[0]).cwiseAbs().maxCoeff() + (x[2] - x[0]).cwiseAbs().maxCoeff();
+      if (exact::orient3d(corners[0], corners[1], corners[2], off.data()) == 0) continue;
+      for (int k = 0; k < 3; ++k)
+        if (exact::orient3d(corners[k], corners[(k + 1) % 3], off.data(), point_) == 0) return false;
+      return true;
+    }
+    return false;
   }
 
   QueryBody& body_;
@@ -227,6 +264,9 @@ class RayWalk {
   double margin_, turn_;
   int crossings_ = 0;
   bool on_surface_ = false;
+  bool passes_surface_ = false;  ///< for beside()
+  int faces_here_ = 0;           ///< that contain the point
+  Vector3d here_[3];             ///< corners of the first one
 };
 
 }  // namespace
@@ -239,6 +279,10 @@ Where locate(QueryBody& body, const double* point) {
 
 Where locate(QueryBody& body, const exact::RationalPoint& point) {
   return body.tree().empty() ? Where::outside : RayWalk(body, point, point.rounded()).run();
+}
+
+std::optional<bool> has_solid_beside(QueryBody& body, const exact::RationalPoint& point) {
+  return body.tree().empty() ? false : RayWalk(body, point, point.rounded()).beside();
 }
 
 bool decide_without_points(QueryContext& ctx, CollideResult& result) {

@@ -16,6 +16,11 @@ namespace lrb {
 Where locate(QueryBody& body, const double* point);
 Where locate(QueryBody& body, const exact::RationalPoint& point);
 
+/// Returns whether a closed body has interior points near a point of its surface; exact. Around the point its
+/// faces must lie in one plane, and the point must be inside each of them: nullopt otherwise. False beside
+/// faces that cancel each other, such as both sides of a plate without thickness.
+std::optional<bool> has_solid_beside(QueryBody& body, const exact::RationalPoint& point);
+
 /// Number of components of a body inside the other body.
 struct Enclosed {
   std::size_t inside = 0, components = 0;
