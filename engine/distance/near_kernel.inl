@@ -106,9 +106,12 @@ inline std::uint64_t near_along_offset(const TreeKernel& k, const TreeNode& na, 
                                        const NearBetween& w) {
   const float* t = w.t;
   const float square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
-  // As in is_too_wide(), but relative to |t|, and rounded up.
+  // As in is_too_wide(), but relative to |t|, and rounded up. The product under the root may underflow, which
+  // has an absolute error of 2^-149, and 2^-74.5 after the root: kKernelTiny would not cover it.
+  // (is_too_wide() compares two squares, whose order rounding does not reverse.)
+  constexpr float kRootTiny = 0x1p-74F;
   const float errors =
-      2 * w.error * (__builtin_fabsf(t[0]) + __builtin_fabsf(t[1]) + __builtin_fabsf(t[2])) + kKernelTiny;
+      2 * w.error * (__builtin_fabsf(t[0]) + __builtin_fabsf(t[1]) + __builtin_fabsf(t[2])) + kRootTiny;
   const float allowed = (__builtin_sqrtf(w.square * square) + errors) * (1 + kDistanceRounding);
   // All pairs of simplices that are present.
   const std::uint64_t all = (present(nb) * 0x0101010101010101U) & (~std::uint64_t{0} >> (64 - 8 * na.count));
