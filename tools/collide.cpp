@@ -14,6 +14,7 @@
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/hash.hpp>
+#include <lrbscope/core/random.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb::cli {
@@ -38,7 +39,8 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
   m.kind = spec::Motion::Kind::approach;
   m.target = box_a.center() - box_b.center();
   constexpr double kClear = 1.02;  // in distances at which the bounding spheres of both boxes touch
-  m.from = direction.normalized() * kClear * (box_a.diagonal().norm() + box_b.diagonal().norm()) / 2;
+  m.from = deterministic::scaled_direction(direction).normalized() * kClear *
+           (box_a.diagonal().norm() + box_b.diagonal().norm()) / 2;
   m.step_length = 0.004;
   m.steps = 100'000;
   m.before = 12;
@@ -94,7 +96,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
     // entire faces.
     Eigen::Vector3d direction(1, 0.35, 0.25);
     if (!o.approach.empty()) direction = io::parse_vector(o.approach, "--approach");
-    if (!(direction.squaredNorm() > 0)) throw InputError("--approach: expected a direction other than zero");
+    if (direction.isZero(0)) throw InputError("--approach: expected a direction other than zero");
     if (bodies[0].rep.dim() == 2) {
       if (!o.approach.empty() && direction.z() != 0)
         throw InputError("--approach: expected z = 0 because the bodies are 2D, found " + o.approach);

@@ -14,7 +14,7 @@ Eigen::Matrix3d eigenvectors_of_symmetric(const Eigen::Matrix3d& m) {
 }
 
 Pose Pose::rotation(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& t) {
-  return {deterministic::rotation(axis.normalized(), angle), t};
+  return {deterministic::rotation(deterministic::scaled_direction(axis).normalized(), angle), t};
 }
 
 namespace {

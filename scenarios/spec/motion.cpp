@@ -16,11 +16,18 @@ namespace lrb::spec {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+/// Equal to v.norm(), unless squares of coordinates overflow or underflow.
+double length_of(const Eigen::Vector3d& v) {
+  int exponent = 0;
+  std::frexp(v.cwiseAbs().maxCoeff(), &exponent);
+  return std::ldexp(deterministic::scaled_direction(v).norm(), exponent);
+}
+
 constexpr double kFar = 1e150;  // coordinates whose squares are still finite
 
 Eigen::Vector3d read_axis(const io::JsonNode& node) {
   const Eigen::Vector3d axis = node.vector();
-  if (!(axis.squaredNorm() > 0)) node.fail("expected a direction other than zero");
+  if (axis.isZero(0)) node.fail("expected a direction other than zero");
   return axis;
 }
 
@@ -60,7 +67,7 @@ void read_approach(const io::JsonNode& node, Motion& m) {
   node.object(
       {"kind", "from", "target", "step_length", "axis", "degrees", "before", "into", "most_steps", "exact"});
   m.from = node.at("from").vector();
-  if (!(m.from.squaredNorm() > 0)) node.at("from").fail("expected a direction other than zero");
+  if (m.from.isZero(0)) node.at("from").fail("expected a direction other than zero");
   if (const auto n = node.get("target")) m.target = n->vector();
   constexpr double kShortest = 1e-6;  // as a share of the bodies' diagonals: a million steps across
   if (const auto n = node.get("step_length")) m.step_length = n->number(kShortest, 1);
@@ -82,8 +89,9 @@ std::vector<Pose> keyframe_poses(const std::vector<Motion::Keyframe>& keys) {
     for (std::uint32_t s = 1; s <= span; ++s) {
       const double t = static_cast<double>(s) / span;
       const Motion::Keyframe &a = keys[i - 1], &b = keys[i];
-      out.push_back({deterministic::rotation_between(a.axis.normalized(), a.degrees * kDegree,
-                                                     b.axis.normalized(), b.degrees * kDegree, t),
+      out.push_back({deterministic::rotation_between(
+                         deterministic::scaled_direction(a.axis).normalized(), a.degrees * kDegree,
+                         deterministic::scaled_direction(b.axis).normalized(), b.degrees * kDegree, t),
                      a.position + t * (b.position - a.position)});
     }
   }
@@ -184,7 +192,8 @@ struct Steps {
 
   /// Returns the pose of B after `step` steps.
   Pose pose(std::uint32_t step) const {
-    const Eigen::Vector3d position = motion.target + motion.from * (1 - length * step / motion.from.norm());
+    const Eigen::Vector3d position =
+        motion.target + motion.from * (1 - length * step / length_of(motion.from));
     const double angle = motion.degrees * step * std::numbers::pi / 180;
     return then(start, motion.degrees == 0 ? Pose::translation(position)
                                            : Pose::rotation(motion.axis, angle, position));
@@ -194,9 +203,10 @@ struct Steps {
   lrb::Motion whole() const {
     lrb::Motion::Piece piece;
     piece.first = start;
-    piece.turn = motion.axis.normalized() * (motion.degrees * count * std::numbers::pi / 180);
+    piece.turn = deterministic::scaled_direction(motion.axis).normalized() *
+                 (motion.degrees * count * std::numbers::pi / 180);
     piece.from = motion.target + motion.from;
-    piece.to = motion.target + motion.from * (1 - length * count / motion.from.norm());
+    piece.to = motion.target + motion.from * (1 - length * count / length_of(motion.from));
     return lrb::Motion(std::vector<lrb::Motion::Piece>{piece});
   }
 };
@@ -247,8 +257,8 @@ Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, con
   const double length =
       motion.step_length * (shapes::box_of(a).diagonal().norm() + shapes::box_of(b).diagonal().norm());
   // After twice the distance, B is as far beyond the target as it started before it.
-  const auto whole_way =
-      static_cast<std::uint32_t>(std::min<double>(motion.steps, std::ceil(2 * motion.from.norm() / length)));
+  const auto whole_way = static_cast<std::uint32_t>(
+      std::min<double>(motion.steps, std::ceil(2 * length_of(motion.from) / length)));
   const Steps steps{motion, start, length, whole_way};
   FirstContactRequest request;
   request.max_steps = 200'000;

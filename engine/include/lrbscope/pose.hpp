@@ -31,7 +31,7 @@ struct Pose {
   /// Returns the translation by t.
   static Pose translation(const Eigen::Vector3d& t) { return {Eigen::Matrix3d::Identity(), t}; }
   /// Returns the rotation by `angle` (radians) about `axis`, followed by the translation by t. `axis` is
-  /// normalised and must not be zero.
+  /// normalised, whatever its length, and must not be zero.
   static Pose rotation(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& t = {0, 0, 0});
 };
 

@@ -62,6 +62,15 @@ double exp(double x);
 double exp2(double x);
 double pow10(double x);
 
+/// Returns a vector times the power of two that brings its largest coordinate into [1/2, 1), so that its
+/// squares neither overflow nor underflow; 0 remains 0. The direction is the same: normalized() returns the
+/// same bits, if it does not overflow or underflow without this.
+inline Eigen::Vector3d scaled_direction(const Eigen::Vector3d& v) {
+  int exponent = 0;
+  std::frexp(v.cwiseAbs().maxCoeff(), &exponent);
+  return v.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
+}
+
 /// Returns the rotation about a unit vector by an angle in radians.
 Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle);
 
