@@ -78,7 +78,8 @@ Command add_points(App& root, const Globals& globals) {
   app->add_option("--relative-tolerance", o->request.relative_tolerance, "E",
                   "Stop once the interval is at most this wide, relative to the distance");
   app->add_option("--threads", o->threads, "N",
-                  "Number of threads [all cores]; the result does not depend on it");
+                  "Number of threads [all cores]; the result does not depend on it")
+      ->in_range(1, 1024);
   add_picture_options(*app, o->draw,
                       "Draw the body with the points in the colours of their sides, and segments to the "
                       "closest points");

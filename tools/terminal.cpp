@@ -202,6 +202,7 @@ void end_cleanly_on_terminate() {
 void end_cleanly_on_signals() {
   pipes_end_us = !is_ignored(SIGPIPE);
   std::signal(SIGPIPE, SIG_IGN);  // writing fails with EPIPE instead, which can be handled
+  std::signal(SIGXFSZ, SIG_IGN);  // writing fails with EFBIG beyond the limit of `ulimit -f`
   sigset_t signals, before;
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})

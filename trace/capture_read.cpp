@@ -235,7 +235,7 @@ class Reader {
     return false;
   }
 
-  void read_engine() { out_.engine = characters(left()); }
+  void read_engine() { out_.engine = printable_name(characters(left())); }  // reaches the terminal
 
   void read_sync() {
     const std::uint64_t wall = u64();

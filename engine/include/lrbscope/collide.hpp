@@ -99,7 +99,8 @@ struct CollideRequest {
   /// each time they find it.
   std::uint64_t max_pairs = 0;
 
-  bool is_coarse() const { return tolerance > 0 || max_tests > 0 || max_time > 0; }
+  /// Also for NaN, which check_request() rejects.
+  bool is_coarse() const { return !(tolerance <= 0) || max_tests > 0 || !(max_time <= 0); }
   std::uint64_t pair_limit() const {
     return max_pairs > 0 ? max_pairs : contacts ? kMaxPairsWithContacts : kMaxPairs;
   }
