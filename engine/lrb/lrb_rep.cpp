@@ -378,7 +378,7 @@ double cone(const LrbRep& rep, FaceId f, const Eigen::Vector3d& origin) {
   const std::size_t count = Mesh::simplices_of(rep.face(f).size(), rep.dim());
   double sum = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    VertexId v[3];
+    VertexId v[3] = {};
     rep.simplex(SimplexId(rep.first_simplex(f) + i), v);
     if (rep.dim() == 2) return 0.5 * (at(v[0]).x() * at(v[1]).y() - at(v[0]).y() * at(v[1]).x());
     // Six times the volume of a tetrahedron is the determinant of its three edges from the apex.

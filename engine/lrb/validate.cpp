@@ -346,7 +346,7 @@ class Validator {
     for (const FaceId g : boundary) {
       const std::size_t count = Mesh::simplices_of(rep_.face(g).size(), rep_.dim());
       for (std::size_t i = 0; i < count; ++i) {
-        VertexId ids[3];
+        VertexId ids[3] = {};
         rep_.simplex(SimplexId(rep_.first_simplex(g) + i), ids);
         const auto at = [&](int k) { return rep_.vertices()[ids[k]].data(); };
         const double* const c[3] = {at(0), at(1), rep_.dim() == 2 ? nullptr : at(2)};

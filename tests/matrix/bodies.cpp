@@ -122,7 +122,9 @@ std::vector<Kind> make_kinds(int noisy) {
       true, false, false);
   add("hub", hard::bipyramid(60));
   add("drum", hard::drum(40));
-  add("cog", hard::cog(40), true, true, false);
+  add("cog", hard::cog(40));
+  add("concave", shapes::scaled(test::u_profile(), 0.25), true, true, true, "off");
+  add("bridged", shapes::scaled(test::plate_with_hole(), 0.25));
   add("unused", test::with_vertices(rock, {{40, 0, 0}, {0, 0, 0}}));
   add("shared-edge", two_cubes(true), true, false, false);
   add("shared-corner", two_cubes(false), true, true, false);

@@ -63,6 +63,18 @@ def test_polygons_and_triangles_of_their_fans():
     assert r.face_pairs.max() < 7 and len(r.face_pairs) == len(r.pairs)
 
 
+def test_a_concave_polygon_covers_its_outline():
+    corners = [(5, 0), (5, 4), (4, 4), (4, 1), (1, 1), (1, 4), (0, 4), (0, 0)]
+    vertices = [(x, y, z) for z in (0, 1) for x, y in corners]
+    sides = [(i, (i + 1) % 8, 8 + (i + 1) % 8, 8 + i) for i in range(8)]
+    body = Body(vertices, [tuple(range(7, -1, -1)), tuple(range(8, 16))] + sides)
+    peg = Body(*cube_arrays())
+    assert body.is_solid and not body.notes
+    assert not lrbscope.collide(body, peg, shifted(2, 2, 0))
+    d = lrbscope.distance(body, peg, shifted(2, 2, 0))
+    assert d.lower <= 1 <= d.upper < 1 + 1e-12
+
+
 def test_a_body_in_the_plane():
     vertices, faces = square_arrays()
     square = Body(vertices.tolist(), faces.tolist())

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <vector>
 
 #include "scenarios/bodies/shapes.hpp"
@@ -42,6 +43,44 @@ inline Mesh sheet(std::uint32_t n, const Eigen::Vector2d& low = {0, 0},
       mesh.add_face(std::array{VertexId(v), VertexId(v + 1), VertexId(v + n + 2), VertexId(v + n + 1)});
     }
   return mesh;
+}
+
+/// Returns the prism over an outline, from z = 0 to 1: two polygons and a quad for each side.
+inline Mesh prism(const std::vector<Eigen::Vector2d>& outline) {
+  Mesh mesh;
+  const auto n = static_cast<std::uint32_t>(outline.size());
+  for (const double z : {0.0, 1.0})
+    for (const Eigen::Vector2d& x : outline) mesh.vertices.push_back({x.x(), x.y(), z});
+  std::vector<VertexId> low, high;
+  for (std::uint32_t i = 0; i < n; ++i) low.emplace_back(n - 1 - i), high.emplace_back(n + i);
+  mesh.add_face(low);
+  mesh.add_face(high);
+  for (std::uint32_t i = 0, j = 1; i < n; ++i, j = (i + 1) % n)
+    mesh.add_face(std::array{VertexId(i), VertexId(j), VertexId(n + j), VertexId(n + i)});
+  return mesh;
+}
+
+/// Returns a U profile of size 5 x 4 x 1 with walls of 1. Its ends are polygons from the corner `first`.
+inline Mesh u_profile(std::ptrdiff_t first = 0) {
+  std::vector<Eigen::Vector2d> u = {{0, 0}, {5, 0}, {5, 4}, {4, 4}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
+  std::rotate(u.begin(), u.begin() + first, u.end());
+  return prism(u);
+}
+
+/// Returns a plate of size 6 x 6 x 1 with a hole of 2 x 2. Its sides are outlines with a bridge to the hole.
+inline Mesh plate_with_hole() {
+  Mesh mesh =
+      shapes::several({prism({{0, 0}, {6, 0}, {6, 6}, {0, 6}}), prism({{2, 2}, {2, 4}, {4, 4}, {4, 2}})});
+  Mesh out;
+  out.vertices = mesh.vertices;
+  const auto add = [&](std::initializer_list<std::uint32_t> corners) {
+    const std::vector<VertexId> ids(corners.begin(), corners.end());
+    out.add_face(ids);
+  };
+  add({0, 8, 11, 10, 9, 8, 0, 3, 2, 1});
+  add({4, 5, 6, 7, 4, 12, 13, 14, 15, 12});
+  for (const std::uint32_t f : {2, 3, 4, 5, 8, 9, 10, 11}) out.add_face(mesh.face(FaceId(f)));
+  return out;
 }
 
 /// Adds a triangle (2D: a segment) with corners of its own.
