@@ -78,8 +78,6 @@ class ManifoldMaker {
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
       enter(regions[r].pairs);
       const std::vector<std::vector<std::uint32_t>> groups = divided(regions[r].pairs);
-      region_meets_ = std::any_of(regions[r].pairs.begin(), regions[r].pairs.end(),
-                                  [&](std::uint32_t i) { return meets(i); });
       for (std::size_t g = 0; g < groups.size(); ++g)
         add_manifold(r, groups[g], normals_[g], regions[r].enclosed);
     }
@@ -452,12 +450,6 @@ class ManifoldMaker {
       out.points.push_back(point);
     }
     if (out.points.empty()) add_closest(out);
-    // Where surfaces overlap, pairs beside those that intersect may be those of a normal. Elsewhere a depth
-    // above 0 is rounding.
-    for (ManifoldPoint& point : out.points) {
-      out.intersects = out.intersects || (region_meets_ && point.depth > 0);
-      if (!region_meets_) point.depth = std::min(point.depth, 0.0);
-    }
     result_.manifolds.push_back(std::move(out));
   }
 
@@ -525,7 +517,6 @@ class ManifoldMaker {
   int dim_;
   double margin_;
   bool is_closed_[2], is_mirrored_[2];
-  bool region_meets_ = false;  ///< a pair of the region intersects
   double size_[2], smaller_ = 0;
   Vector3d origin_{0, 0, 0};
   double unit_ = 1;
