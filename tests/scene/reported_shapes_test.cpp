@@ -16,7 +16,6 @@
 #include <lrbscope/build.hpp>
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
-#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/near_pairs.hpp>
@@ -183,15 +182,6 @@ TEST_CASE("a rotation has an axis of any length") {
   for (const double size : {0x1p-1000, 0x1p-540, 0x1p10, 0x1p540, 0x1p1000})
     CHECK(Pose::rotation({size, 2 * size, 0}, 0.5).r == Pose::rotation({1, 2, 0}, 0.5).r);
   CHECK(Pose::rotation({0x1p-1074, 0, 0}, 0.5).r == Pose::rotation({1, 0, 0}, 0.5).r);
-}
-
-TEST_CASE("manifolds with a depth above 0 intersect") {
-  ManifoldRequest request;
-  request.margin = 0.5;
-  const LrbRep cube = closed(box());
-  const ManifoldResult r = contact_manifolds(cube, Pose{}, cube, Pose::translation({0.9, 0.8, 0.7}), request);
-  REQUIRE(!r.manifolds.empty());
-  for (const ContactManifold& m : r.manifolds) CHECK(m.intersects == (m.points[0].depth > 0));
 }
 
 }  // namespace lrb::reported
