@@ -80,7 +80,8 @@ struct ContactManifold {
   std::vector<ManifoldPoint> points;  ///< 1 to 4 (2D: 1 or 2), the deepest first
   std::vector<std::uint32_t> pairs;   ///< indices into ManifoldResult::pairs, ascending
   std::uint32_t region = 0;           ///< number of the connected region, which may have several manifolds
-  bool intersects = false;            ///< a pair intersects; otherwise all are speculative
+  /// A pair intersects; otherwise all points are speculative.
+  bool intersects = false;
 };
 
 struct ManifoldResult {
