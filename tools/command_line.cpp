@@ -55,15 +55,6 @@ bool Option::is_argument() const {
 bool Option::given() const {
   return option_->count() > 0;
 }
-bool Option::is_flag() const {
-  return option_->get_items_expected_max() == 0;
-}
-bool Option::has_delimiter() const {
-  return option_->get_delimiter() != '\0';
-}
-std::vector<std::string> Option::values() const {
-  return option_->results();
-}
 
 App::App(const std::string& description, const std::string& name)
     : own_(std::make_unique<CLI::App>(description, name)), app_(own_.get()) {}

@@ -45,10 +45,6 @@ class Option {
   std::string name() const;  ///< "--output", or of an argument "FILE"
   bool is_argument() const;
   bool given() const;
-  bool is_flag() const;
-  bool has_delimiter() const;
-  /// Returns the values that were given; those of a flag are "true" or "false".
-  std::vector<std::string> values() const;
 
  private:
   CLI::Option* option_;
