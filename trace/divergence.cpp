@@ -10,8 +10,6 @@
 #include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>
-#include <lrbscope/trace/trace.hpp>
-
 namespace lrb::trace {
 
 std::string to_text(const EngineReport& r) {

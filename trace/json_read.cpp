@@ -1,17 +1,11 @@
-#include "trace/json_read.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <optional>
 #include <set>
-#include <type_traits>
-#include <vector>
 
+#include "trace/json_sax.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
-#include <lrbscope/error.hpp>
 #include <lrbscope/trace/record_fields.hpp>
 
 namespace lrb::io {
@@ -246,12 +240,14 @@ std::size_t JsonIndex::offset(const std::string& pointer) const {
 JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
   reject_nul(text_, file_);
   const Check check(text_, file_);
-  root_ = nlohmann::json::parse(text_);
+  root_ = std::make_unique<nlohmann::json>(nlohmann::json::parse(text_));
   index_ = std::make_unique<JsonIndex>(text_);
   if (!index_->duplicate().empty())
     throw InputError(where(index_->duplicate() + "#") + ": the key " + printable_name(index_->duplicate()) +
                      " occurs twice; keep one");
 }
+
+JsonText::~JsonText() = default;
 
 std::string JsonText::where(const std::string& pointer) const {
   const std::size_t offset = index_->offset(pointer);
@@ -321,10 +317,25 @@ void JsonNode::fail_type(const char* expected) const {
   fail(std::string("expected ") + expected + ", found " + value_->type_name());
 }
 
-void JsonNode::fail_choice(const std::vector<std::string>& known) const {
+std::size_t JsonNode::index_among(const std::vector<std::string>& known) const {
   if (!value_->is_string()) fail_type("a word");
   const auto& word = value_->get_ref<const std::string&>();
-  fail("\"" + word + "\": unknown word" + suggestion(word, known));
+  const auto found = std::find(known.begin(), known.end(), word);
+  if (found == known.end()) fail("\"" + word + "\": unknown word" + suggestion(word, known));
+  return static_cast<std::size_t>(found - known.begin());
+}
+
+bool JsonNode::has(const std::string& key) const {
+  return value_->is_object() && value_->contains(key);
+}
+bool JsonNode::is_array() const {
+  return value_->is_array();
+}
+bool JsonNode::is_object() const {
+  return value_->is_object();
+}
+bool JsonNode::is_string() const {
+  return value_->is_string();
 }
 
 const JsonNode& JsonNode::object(const std::vector<std::string>& keys) const {
@@ -400,305 +411,3 @@ Eigen::Vector3d JsonNode::vector() const {
 }
 
 }  // namespace lrb::io
-
-namespace lrb::trace {
-
-namespace {
-
-using Json = nlohmann::json;
-
-std::string type_of(const Json& j) {
-  std::string name = j.is_null() ? "nothing" : j.type_name();
-  if (j.is_primitive() && !j.is_null()) name += " " + j.dump(-1, ' ', true, Json::error_handler_t::replace);
-  constexpr std::size_t kShown = 60;
-  return name.size() <= kShown ? name : name.substr(0, kShown) + "...";
-}
-
-}  // namespace
-
-void TraceNode::fail(const std::string& expected) const {
-  throw InputError(*file_ + ": " + pointer() + ": expected " + expected + ", found " + type_of(*j_) +
-                   "; the trace is damaged or was not written by lrbscope; record it again");
-}
-
-TraceNode TraceNode::at(const char* key) const {
-  static const Json nothing;
-  if (!j_->is_object()) fail("an object");
-  const auto it = j_->find(key);
-  return {it == j_->end() ? nothing : *it, this, key, 0};
-}
-
-std::string TraceNode::pointer() const {
-  if (!parent_) return "";
-  return parent_->pointer() + "/" + (key_ ? std::string(key_) : std::to_string(index_));
-}
-
-void check_format(const TraceNode& metadata, const std::string& name, std::string_view format,
-                  std::uint32_t version) {
-  if (!metadata.has("format") || metadata.at("format").string() != format)
-    throw InputError(name + ": /metadata/format: expected \"" + std::string(format) +
-                     "\", found another file format");
-  // Older versions are read; newer ones are rejected with the version that wrote them.
-  const auto found = metadata.at("version").integer<std::uint32_t>();
-  if (found > version)
-    throw InputError(name + ": /metadata/version: written in format " + std::to_string(found) +
-                     " by lrbscope " + printable_name(metadata.at("lrbscope").string()) +
-                     ", expected at most format " + std::to_string(version) +
-                     "; use that version or a newer one");
-  if (found == 0) metadata.at("version").fail("a version from 1");
-}
-
-namespace {
-
-template <class Number>  // or an id
-void read_value(const TraceNode& node, std::vector<Number>& values) {
-  const std::size_t count = node.array_size();
-  for (std::size_t i = 0; i < count; ++i) values.emplace_back(node.at(i).integer<std::uint32_t>());
-}
-
-void read_value(const TraceNode& node, Separation& s) {
-  const TraceNode faces = node.at("faces"), refined = node.at("refined");
-  if (faces.array_size() != 2) faces.fail("two numbers, of A and B");
-  if (refined.array_size() != 2) refined.fail("two lists of regions, of A and B");
-  for (std::size_t side = 0; side < 2; ++side) {
-    s.face_count[side] = faces.at(side).integer<std::uint32_t>();
-    read_value(refined.at(side), s.refined[side]);
-  }
-}
-
-/// Reads a number of at least 0; null is infinity.
-double read_end(const TraceNode& node) {
-  return node.is_null() ? std::numeric_limits<double>::infinity() : node.least(0);
-}
-
-template <std::size_t n>
-void read_ends(const TraceNode& node, std::array<double, n>& ends) {
-  if (node.array_size() != n) node.fail(std::to_string(n) + " numbers");
-  for (std::size_t i = 0; i < n; ++i) ends[i] = read_end(node.at(i));
-}
-
-template <std::size_t n>
-void read_vector(const TraceNode& node, std::array<double, n>& vector) {
-  if (node.array_size() != n) node.fail(std::to_string(n) + " numbers");
-  for (std::size_t i = 0; i < n; ++i) vector[i] = node.at(i).number();
-}
-
-void read_history(const TraceNode& node, std::vector<Bounds>& history) {
-  const std::size_t count = node.array_size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const TraceNode item = node.at(i);
-    if (item.array_size() != 3) item.fail("work, lower bound and upper bound");
-    history.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
-                       read_end(item.at(std::size_t{2}))});
-  }
-}
-
-void read_value(const TraceNode& node, MeasuredDistance& m) {
-  m.lower = read_end(node.at("lower"));
-  m.upper = read_end(node.at("upper"));
-  m.solids_meet = node.at("solids_meet").boolean();
-  read_vector(node.at("point_a"), m.points[0]);
-  read_vector(node.at("point_b"), m.points[1]);
-  read_history(node.at("course"), m.history);
-}
-
-void read_value(const TraceNode& node, MeasuredClash& m) {
-  m.kind = node.at("kind").named<ClashKind>();
-  if (node.has("reason")) m.reason = node.at("reason").named<ClashReason>();
-  m.shares_faces = node.at("shares_faces").boolean();
-  read_ends(node.at("distance"), m.distance);
-  if (node.has("depth")) {
-    read_ends(node.at("depth"), m.depth.emplace());
-    read_vector(node.at("translation"), m.translation);
-  }
-  if (node.has("volume")) read_ends(node.at("volume"), m.volume.emplace());
-  read_history(node.at("course"), m.history);
-}
-
-/// Reads an array of rows of numbers.
-template <class Row>
-void read_rows(const TraceNode& node, std::size_t columns, const Row& row) {
-  const std::size_t count = node.array_size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const TraceNode item = node.at(i);
-    if (item.array_size() != columns) item.fail(std::to_string(columns) + " numbers");
-    row(item);
-  }
-}
-
-template <std::size_t n>
-void read_columns(const TraceNode& row, std::size_t first, std::array<double, n>& out) {
-  for (std::size_t i = 0; i < n; ++i) out[i] = row.at(first + i).number();
-}
-
-void read_value(const TraceNode& node, MeasuredNearPairs& m) {
-  m.within = node.at("within").least(0);
-  m.pairs = node.at("pairs").integer<std::uint64_t>();
-  read_rows(node.at("nearest"), 10, [&](const TraceNode& row) {
-    MeasuredNearPairs::Pair& p = m.nearest.emplace_back();
-    p.a = SimplexId(row.at(std::size_t{0}).integer<std::uint32_t>(kMaxId));
-    p.b = SimplexId(row.at(std::size_t{1}).integer<std::uint32_t>(kMaxId));
-    p.lower = row.at(std::size_t{2}).least(0);
-    p.upper = row.at(std::size_t{3}).least(0);
-    read_columns(row, 4, p.points[0]);
-    read_columns(row, 7, p.points[1]);
-  });
-}
-
-void read_value(const TraceNode& node, MeasuredManifolds& m) {
-  m.margin = node.at("margin").least(0);
-  m.manifolds = node.at("manifolds").integer<std::uint64_t>();
-  m.found = node.at("points").integer<std::uint64_t>();
-  read_rows(node.at("contacts"), 12, [&](const TraceNode& row) {
-    MeasuredManifolds::Point& p = m.contacts.emplace_back();
-    p.id = row.at(std::size_t{0}).integer<std::uint64_t>();
-    p.manifold = row.at(std::size_t{1}).integer<std::uint32_t>();
-    p.depth = row.at(std::size_t{2}).number();
-    read_columns(row, 3, p.normal);
-    read_columns(row, 6, p.points[0]);
-    read_columns(row, 9, p.points[1]);
-  });
-}
-
-void read_value(const TraceNode& node, MeasuredPoints& m) {
-  m.count = node.at("count").integer<std::uint64_t>();
-  m.inside = node.at("inside").integer<std::uint64_t>();
-  m.on_surface = node.at("on_surface").integer<std::uint64_t>();
-  m.has_sides = node.at("has_sides").boolean();
-  read_rows(node.at("smallest"), 10, [&](const TraceNode& row) {
-    MeasuredPoints::Point& p = m.smallest.emplace_back();
-    p.number = row.at(std::size_t{0}).integer<std::uint32_t>();
-    p.face = FaceId(row.at(std::size_t{1}).integer<std::uint32_t>(kMaxId));
-    p.lower = row.at(std::size_t{2}).number();
-    p.upper = row.at(std::size_t{3}).number();
-    read_columns(row, 4, p.points[0]);
-    read_columns(row, 7, p.points[1]);
-  });
-}
-
-void read_marks(const TraceNode& node, std::vector<EngineReport::Mark>& marks, bool with_value) {
-  const std::size_t count = node.array_size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const TraceNode item = node.at(i);
-    if (item.array_size() != (with_value ? 3 : 2))
-      item.fail(with_value ? "name, place and value" : "name and place");
-    marks.push_back({item.at(std::size_t{0}).integer<std::uint32_t>(),
-                     item.at(std::size_t{1}).integer<std::uint32_t>(),
-                     with_value ? item.at(std::size_t{2}).integer<std::uint32_t>() : 0});
-  }
-}
-
-void read_value(const TraceNode& node, EngineReport& r) {
-  r.query = node.at("query").named<EngineQuery>();
-  r.verdict = node.at("verdict").named<EngineVerdict>();
-  r.pairs = node.at("pairs").integer<std::uint64_t>();
-  r.complete = node.at("complete").boolean();
-  r.thread = node.at("thread").integer<std::uint32_t>();
-  r.begin_ns = node.at("begin_ns").integer<std::uint64_t>();
-  r.duration_ns = node.at("duration_ns").integer<std::uint64_t>();
-  if (node.has("counts")) read_marks(node.at("counts"), r.counts, true);
-  if (node.has("phases")) read_marks(node.at("phases"), r.phases, false);
-}
-
-template <class Record>
-void read_record(const TraceNode& node, Record& record, bool coarse = false);
-
-template <class Record, class Value>
-void read_field(const TraceNode& node, const Field<Record, Value>& field, Value& value) {
-  if constexpr (std::is_enum_v<Value>)
-    value = node.named<Value>();
-  else if constexpr (std::is_same_v<Value, bool>)
-    value = node.boolean();
-  else if constexpr (std::is_same_v<Value, std::string>)
-    value = node.string();
-  else if constexpr (std::is_same_v<Value, std::uint32_t>)
-    value = node.integer<std::uint32_t>(field.form == Form::id ? kMaxId : kNull);
-  else if constexpr (std::is_same_v<Value, std::uint64_t>)
-    value = field.form == Form::hash ? node.hash() : node.integer<std::uint64_t>();
-  else if constexpr (std::is_same_v<Value, double>)
-    value = field.form == Form::or_infinite && node.is_null() ? std::numeric_limits<double>::infinity()
-                                                              : node.least(0);
-  else if constexpr (std::is_same_v<Value, std::optional<Separation>> ||
-                     std::is_same_v<Value, std::optional<MeasuredDistance>> ||
-                     std::is_same_v<Value, std::optional<MeasuredClash>> ||
-                     std::is_same_v<Value, std::optional<MeasuredNearPairs>> ||
-                     std::is_same_v<Value, std::optional<MeasuredManifolds>> ||
-                     std::is_same_v<Value, std::optional<MeasuredPoints>> ||
-                     std::is_same_v<Value, std::optional<EngineReport>>)
-    read_value(node, value.emplace());
-  else if constexpr (std::is_same_v<Value, Counters>)
-    read_record(node, value);
-  else
-    read_value(node, value);
-}
-
-/// Reads the fields that the record's table requires, and the optional ones that are present.
-template <class Record>
-void read_record(const TraceNode& node, Record& record, bool coarse) {
-  for_each_field<Record>([&](const auto& field) {
-    const char* const name = field.name.data();
-    // The table of fields decides: absence is an error, or the default.
-    const bool must_be = field.kept == Kept::always || (field.kept == Kept::if_coarse && coarse);
-    if (!node.has(name) && (!must_be || field.form == Form::or_infinite)) {
-      if (must_be) node.at(name).fail("a number of at least 0, or null");
-      return;
-    }
-    if (field.kept == Kept::if_coarse && !coarse) return;
-    read_field(node.at(name), field, record.*field.member);
-  });
-}
-
-}  // namespace
-
-BodyInfo read_body(const TraceNode& node) {
-  BodyInfo b;
-  read_record(node, b);
-  if (b.dim != 2 && b.dim != 3) node.at("dim").fail("2 or 3");
-  return b;
-}
-
-CollideRequest read_request(const TraceNode& node) {
-  CollideRequest r;
-  read_record(node, r);
-  return r;
-}
-
-StepResult read_answer(const TraceNode& node, const CollideRequest& request) {
-  StepResult r;
-  read_record(node, r, request.is_coarse());
-  return r;
-}
-
-MeasuredApproach read_approach(const TraceNode& node) {
-  MeasuredApproach m;
-  m.outcome = node.at("outcome").named<MotionOutcome>();
-  m.t0 = node.at("t0").least(0);
-  m.t1 = node.at("t1").least(0);
-  if (node.has("step")) {
-    read_vector(node.at("step"), m.step.emplace());
-    read_vector(node.at("length"), m.length.emplace());
-  }
-  const TraceNode history = node.at("course");
-  const std::size_t count = history.array_size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const TraceNode item = history.at(i);
-    if (item.array_size() != 5) item.fail("work, t0, t1, lower bound and upper bound");
-    m.history.push_back({item.at(std::size_t{0}).integer<std::uint64_t>(), item.at(std::size_t{1}).least(0),
-                         read_end(item.at(std::size_t{2})), read_end(item.at(std::size_t{3})),
-                         read_end(item.at(std::size_t{4}))});
-  }
-  return m;
-}
-
-Pose read_pose(const TraceNode& node) {
-  if (node.array_size() != 12) node.fail("12 numbers (a 3x4 matrix, row by row)");
-  Pose pose;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      pose.r(row, column) = node.at(static_cast<std::size_t>(4 * row + column)).number();
-    pose.t(row) = node.at(static_cast<std::size_t>(4 * row + 3)).number();
-  }
-  return pose;
-}
-
-}  // namespace lrb::trace

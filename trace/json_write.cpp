@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <lrbscope/trace/json_write.hpp>
 
 namespace lrb::trace {

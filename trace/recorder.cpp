@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <bit>
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>

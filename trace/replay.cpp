@@ -5,8 +5,6 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/replay.hpp>
-#include <lrbscope/trace/trace.hpp>
-
 namespace lrb::trace {
 
 namespace {

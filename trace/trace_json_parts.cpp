@@ -5,36 +5,69 @@
 #include <type_traits>
 #include <vector>
 
+#include "trace/measured_json.hpp"
 #include <lrbscope/trace/record_fields.hpp>
 
 namespace lrb::trace {
 
 namespace {
 
-template <class T>
-void write_array(JsonWriter& w, const T& values) {
-  w.begin_array();
-  for (const auto& value : values) w.value(value);
-  w.end_array();
-}
+/// Writes the members of a record.
+class MemberWriter {
+ public:
+  explicit MemberWriter(JsonWriter& w) : w_(w) {}
+
+  /// Writes nothing for an empty std::optional.
+  template <class T>
+  void member(const char* key, const T& value, Values values = {}) {
+    if constexpr (kIsOptional<T>) {
+      if (value) member(key, *value, values);
+    } else if constexpr (std::is_enum_v<T>) {
+      w_.member(key, name_of(value));
+    } else {
+      w_.member(key, value);
+    }
+  }
+  template <class T>
+  void member_unless(const T& usual, const char* key, const T& value) {
+    if (value != usual) member(key, value);
+  }
+  template <class Row, class Visit>
+  void rows(const char* key, const std::vector<Row>& rows, std::size_t, const char*, const Visit& visit) {
+    w_.key(key).begin_array();
+    for (const Row& row : rows) {
+      w_.begin_array();
+      visit(*this, row);
+      w_.end_array();
+    }
+    w_.end_array();
+  }
+  template <class Row, class Visit>
+  void rows_if_any(const char* key, const std::vector<Row>& all, std::size_t columns, const char* what,
+                   const Visit& visit) {
+    if (!all.empty()) rows(key, all, columns, what, visit);
+  }
+  /// Writes one value of a row, or several.
+  template <class T>
+  void cell(const T& value, Values = {}) {
+    if constexpr (std::ranges::range<T>)
+      for (const auto& x : value) cell(x);
+    else
+      w_.value(value);
+  }
+
+ private:
+  JsonWriter& w_;
+};
 
 template <class T>
 void write_value(JsonWriter& w, const T& value, Form form) {
-  if constexpr (std::is_enum_v<T>)
+  if constexpr (kIsOptional<T>)
+    write_json(w, value.value());
+  else if constexpr (std::is_enum_v<T>)
     w.value(name_of(value));
   else if constexpr (std::is_same_v<T, std::uint64_t>)
     form == Form::hash ? w.value(to_hex(value)) : w.value(value);
-  else if constexpr (std::is_same_v<T, std::vector<std::uint32_t>>)
-    write_array(w, value);
-  else if constexpr (std::is_same_v<T, std::optional<Separation>>)
-    write_json(w, value.value());
-  else if constexpr (std::is_same_v<T, std::optional<MeasuredDistance>> ||
-                     std::is_same_v<T, std::optional<MeasuredClash>> ||
-                     std::is_same_v<T, std::optional<MeasuredNearPairs>> ||
-                     std::is_same_v<T, std::optional<MeasuredManifolds>> ||
-                     std::is_same_v<T, std::optional<MeasuredPoints>> ||
-                     std::is_same_v<T, std::optional<EngineReport>>)
-    write_json(w, value.value());
   else if constexpr (std::is_same_v<T, Counters>)
     write_json(w, value);
   else
@@ -72,127 +105,33 @@ void write_json(JsonWriter& w, const CollideRequest& request) {
 }
 
 void write_json(JsonWriter& w, const Separation& separation) {
-  w.begin_object().key("faces");
-  write_array(w, separation.face_count);
-  w.key("refined").begin_array();
-  for (const std::vector<RegionId>& regions : separation.refined) write_array(w, regions);
-  w.end_array().end_object();
+  w.begin_object().member("faces", separation.face_count).member("refined", separation.refined).end_object();
 }
 
-void write_history(JsonWriter& w, const std::vector<Bounds>& history) {
-  w.key("course").begin_array();
-  for (const Bounds& b : history) w.begin_array().value(b.work).value(b.lower).value(b.upper).end_array();
-  w.end_array();
+void write_history(JsonWriter& w, const std::vector<Bounds>& all) {
+  MemberWriter io(w);
+  history(io, all);
 }
 
-void write_history(JsonWriter& w, const std::vector<ContactBounds>& history) {
-  w.key("course").begin_array();
-  for (const ContactBounds& b : history) {
-    w.begin_array().value(b.work).value(b.t0).value(b.t1).value(b.lower).value(b.upper);
-    w.end_array();
-  }
-  w.end_array();
-}
-
-void write_json(JsonWriter& w, const MeasuredDistance& m) {
-  w.begin_object().member("lower", m.lower).member("upper", m.upper).member("solids_meet", m.solids_meet);
-  w.key("point_a");
-  write_array(w, m.points[0]);
-  w.key("point_b");
-  write_array(w, m.points[1]);
-  write_history(w, m.history);
-  w.end_object();
-}
-
-void write_json(JsonWriter& w, const MeasuredClash& m) {
-  w.begin_object().member("kind", name_of(m.kind));
-  if (m.reason != ClashReason::none) w.member("reason", name_of(m.reason));
-  w.member("shares_faces", m.shares_faces);
-  w.key("distance");
-  write_array(w, m.distance);
-  if (m.depth) {
-    w.key("depth");
-    write_array(w, *m.depth);
-    w.key("translation");
-    write_array(w, m.translation);
-  }
-  if (m.volume) {
-    w.key("volume");
-    write_array(w, *m.volume);
-  }
-  write_history(w, m.history);
-  w.end_object();
-}
-
-void write_json(JsonWriter& w, const MeasuredNearPairs& m) {
-  w.begin_object().member("within", m.within).member("pairs", m.pairs).key("nearest").begin_array();
-  for (const MeasuredNearPairs::Pair& p : m.nearest) {
-    w.begin_array().value(p.a.value()).value(p.b.value()).value(p.lower).value(p.upper);
-    for (const std::array<double, 3>& point : p.points)
-      for (const double x : point) w.value(x);
-    w.end_array();
-  }
-  w.end_array().end_object();
-}
-
-void write_json(JsonWriter& w, const MeasuredManifolds& m) {
-  w.begin_object().member("margin", m.margin).member("manifolds", m.manifolds).member("points", m.found);
-  w.key("contacts").begin_array();
-  for (const MeasuredManifolds::Point& p : m.contacts) {
-    w.begin_array().value(p.id).value(p.manifold).value(p.depth);
-    for (const std::array<double, 3>& vector : {p.normal, p.points[0], p.points[1]})
-      for (const double x : vector) w.value(x);
-    w.end_array();
-  }
-  w.end_array().end_object();
-}
-
-void write_json(JsonWriter& w, const MeasuredPoints& m) {
-  w.begin_object().member("count", m.count).member("inside", m.inside).member("on_surface", m.on_surface);
-  w.member("has_sides", m.has_sides).key("smallest").begin_array();
-  for (const MeasuredPoints::Point& p : m.smallest) {
-    w.begin_array().value(p.number).value(p.face.value()).value(p.lower).value(p.upper);
-    for (const std::array<double, 3>& point : p.points)
-      for (const double x : point) w.value(x);
-    w.end_array();
-  }
-  w.end_array().end_object();
+void write_history(JsonWriter& w, const std::vector<ContactBounds>& all) {
+  MemberWriter io(w);
+  history(io, all);
 }
 
 void write_answer(JsonWriter& w, const MeasuredApproach& m) {
-  w.member("outcome", name_of(m.outcome)).member("t0", m.t0).member("t1", m.t1);
-  if (!m.step || !m.length) return;
-  w.key("step");
-  write_array(w, *m.step);
-  w.key("length");
-  write_array(w, *m.length);
+  MemberWriter io(w);
+  answer_members(io, m);
 }
 
-void write_json(JsonWriter& w, const MeasuredApproach& m) {
+template <class Measured>
+void write_json(JsonWriter& w, const Measured& m) {
+  MemberWriter io(w);
   w.begin_object();
-  write_answer(w, m);
-  write_history(w, m.history);
+  members(io, m);
   w.end_object();
 }
-
-void write_json(JsonWriter& w, const EngineReport& r) {
-  w.begin_object().member("query", name_of(r.query)).member("verdict", name_of(r.verdict));
-  w.member("pairs", r.pairs).member("complete", r.complete).member("thread", r.thread);
-  w.member("begin_ns", r.begin_ns).member("duration_ns", r.duration_ns);
-  const auto write = [&](const char* key, const std::vector<EngineReport::Mark>& marks, bool with_value) {
-    if (marks.empty()) return;
-    w.key(key).begin_array();
-    for (const EngineReport::Mark& mark : marks) {
-      w.begin_array().value(mark.name).value(mark.at);
-      if (with_value) w.value(mark.value);
-      w.end_array();
-    }
-    w.end_array();
-  };
-  write("counts", r.counts, true);
-  write("phases", r.phases, false);
-  w.end_object();
-}
+template void write_json(JsonWriter&, const MeasuredDistance&);
+template void write_json(JsonWriter&, const MeasuredClash&);
 
 void write_json(JsonWriter& w, const Pose& pose) {
   w.begin_array();
@@ -269,10 +208,7 @@ void write_metadata(const Trace& trace, JsonOut& out) {
   w.member("clock", name_of(h.clock));
   if (h.level != EventLevel::faces) w.member("level", name_of(h.level));
   if (!h.engine.empty()) w.member("engine", h.engine);
-  if (!h.names.empty()) {
-    w.key("names");
-    write_array(w, h.names);
-  }
+  if (!h.names.empty()) w.member("names", h.names);
   if (h.coherent) w.member("coherent", true);
   if (h.construction) w.member("construction", true);
   if (!h.pictures.empty()) w.key("pictures").json(h.pictures);

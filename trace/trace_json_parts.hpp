@@ -18,15 +18,11 @@ void write_json(JsonWriter& w, const Separation& separation);
 /// lower, upper]. Infinite values are written as null.
 void write_history(JsonWriter& w, const std::vector<Bounds>& history);
 void write_history(JsonWriter& w, const std::vector<ContactBounds>& history);
-void write_json(JsonWriter& w, const MeasuredDistance& m);
-void write_json(JsonWriter& w, const MeasuredClash& m);
-void write_json(JsonWriter& w, const MeasuredNearPairs& m);
-void write_json(JsonWriter& w, const MeasuredManifolds& m);
-void write_json(JsonWriter& w, const MeasuredPoints& m);
+/// Writes the answer to a further query, a Measured... or an EngineReport.
+template <class Measured>
+void write_json(JsonWriter& w, const Measured& m);
 /// Writes the members of a first contact except its bound history, without brackets.
 void write_answer(JsonWriter& w, const MeasuredApproach& m);
-void write_json(JsonWriter& w, const MeasuredApproach& m);
-void write_json(JsonWriter& w, const EngineReport& report);
 /// Writes a pose as the 12 numbers of a 3x4 matrix, row by row, as in pose files.
 void write_json(JsonWriter& w, const Pose& pose);
 /// Writes the members of a step's answer to `request`, without brackets.

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "trace/json_read.hpp"
 #include "trace/trace_json_parts.hpp"
+#include "trace/trace_node.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 

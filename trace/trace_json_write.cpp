@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <set>
 #include <span>
 #include <unordered_map>
@@ -47,74 +48,55 @@ constexpr ThreadName kBuildThreads[] = {{Thread::steps, "construction"},
                                         {Thread::caps, "patches and caps"},
                                         {Thread::hull, "hull"}};
 
+/// A counter's line between its name and its time.
+constexpr std::string_view kCounter = ",\"cat\":\"counter\",\"ph\":\"C\",\"pid\":1,\"tid\":0,\"ts\":";
+
 /// Number of events between "work" counters: small enough for a smooth curve, large enough to cost little.
 constexpr EventId kWorkInterval = 16;
 
-Thread thread_of(const Event& e) {
-  switch (e.kind) {
-    case EventKind::step:
-    case EventKind::result:
-      return Thread::steps;
-    case EventKind::face_test:
-      return Thread::tests;
-    case EventKind::refine:
-    case EventKind::coarsen:
-      return e.side == Side::a ? Thread::wrapper_a : Thread::wrapper_b;
-    case EventKind::contact:
-      return Thread::answer;
-    case EventKind::node_pair:
-    case EventKind::plane_test:
-      return Thread::walk;
-    case EventKind::point:
-    case EventKind::begin:
-    case EventKind::end:
-      return Thread::phases;
-    case EventKind::pass:
-    case EventKind::pass_end:
-      return Thread::passes;
-    case EventKind::patch:
-    case EventKind::cap:
-      return Thread::caps;
-    case EventKind::region:
-    case EventKind::merged:
-    case EventKind::closed:
-      return Thread::hull;
-  }
-  return Thread::steps;
-}
+/// The thread and the category of events of a kind.
+struct Place {
+  Thread thread;
+  std::string_view category;
+};
 
-std::string_view category_of(EventKind kind) {
+Place place_of(EventKind kind) {
   switch (kind) {
     case EventKind::step:
     case EventKind::result:
-      return "step";
+      return {Thread::steps, "step"};
     case EventKind::face_test:
-      return "test";
+      return {Thread::tests, "test"};
     case EventKind::refine:
     case EventKind::coarsen:
-      return "wrapper";
+      return {Thread::wrapper_a, "wrapper"};
     case EventKind::contact:
-      return "answer";
+      return {Thread::answer, "answer"};
     case EventKind::node_pair:
     case EventKind::plane_test:
-      return "walk";
+      return {Thread::walk, "walk"};
     case EventKind::point:
-      return "point";
+      return {Thread::phases, "point"};
     case EventKind::begin:
     case EventKind::end:
-      return "phase";
+      return {Thread::phases, "phase"};
     case EventKind::pass:
     case EventKind::pass_end:
-      return "pass";
+      return {Thread::passes, "pass"};
     case EventKind::patch:
     case EventKind::cap:
-      return "cap";
+      return {Thread::caps, "cap"};
     case EventKind::region:
     case EventKind::merged:
     case EventKind::closed:
-      return "hull";
+      return {Thread::hull, "hull"};
   }
-  return "";
+  return {Thread::steps, ""};
+}
+
+Thread thread_of(const Event& e) {
+  const Thread thread = place_of(e.kind).thread;
+  return thread == Thread::wrapper_a && e.side == Side::b ? Thread::wrapper_b : thread;
 }
 
 class TraceWriter {
@@ -149,7 +131,7 @@ class TraceWriter {
 
   void prepare(EventKind kind) {
     Parts& p = parts_[static_cast<std::size_t>(kind)];
-    p.head = "\",\"cat\":\"" + std::string(category_of(kind)) + "\",\"ph\":\"X\",\"pid\":1,\"tid\":";
+    p.head = "\",\"cat\":\"" + std::string(place_of(kind).category) + "\",\"ph\":\"X\",\"pid\":1,\"tid\":";
     const auto [a, b] = fields_of(kind);
     if (!a.empty()) p.a = ",\"" + std::string(a) + "\":";
     if (!b.empty()) p.b = ",\"" + std::string(b) + "\":";
@@ -164,23 +146,39 @@ class TraceWriter {
     }
   }
 
+  /// Writes parts in order: text as it is, numbers, and quoted strings.
+  template <class... Parts>
+  void put(const Parts&... parts) {
+    (put_part(parts), ...);
+  }
+  struct Quoted {
+    std::string_view text;
+  };
+  void put_part(std::string_view text) { out_.raw(text); }
+  void put_part(const Quoted& string) { out_.string(string.text); }
+  void put_part(std::unsigned_integral auto number) { out_.number(std::uint64_t{number}); }
+  void put_part(double number) { out_.number(number); }
+  void put_part(Thread thread) { put_part(static_cast<std::uint64_t>(thread)); }
+
+  /// Names or sorts a process or one of its threads.
+  template <class Value>
+  void write_label(std::string_view event, std::uint64_t process, std::uint64_t thread,
+                   std::string_view field, const Value& value) {
+    put(std::exchange(separator_, ",\n"), "{\"name\":\"", event,
+        "\",\"cat\":\"__metadata\",\"ph\":\"M\",\"ts\":0,\"pid\":", process, ",\"tid\":", thread,
+        ",\"args\":{\"", field, "\":", value, "}}");
+  }
+
   void write_names() {
-    out_.raw(
-        "{\"name\":\"process_name\",\"cat\":\"__metadata\",\"ph\":\"M\",\"ts\":0,\"pid\":1,\"tid\":0,"
-        "\"args\":{\"name\":");
-    out_.string("lrbscope: " + t_.header.scenario);
-    out_.raw("}}");
+    write_label("process_name", 1, 0, "name", Quoted{"lrbscope: " + t_.header.scenario});
     const std::span<const ThreadName> threads =
         t_.header.construction ? std::span<const ThreadName>(kBuildThreads) : kThreads;
     for (const auto& [thread, name, from] : threads) {
       // Threads without events at this detail would show as empty tracks.
       if (t_.header.level < from) continue;
-      write_thread_field(thread, "thread_name", "name");
-      out_.string(name);
-      out_.raw("}}");
-      write_thread_field(thread, "thread_sort_index", "sort_index");
-      out_.number(static_cast<std::uint64_t>(thread));
-      out_.raw("}}");
+      const auto number = static_cast<std::uint64_t>(thread);
+      write_label("thread_name", 1, number, "name", Quoted{name});
+      write_label("thread_sort_index", 1, number, "sort_index", number);
     }
   }
 
@@ -188,13 +186,13 @@ class TraceWriter {
   // phases and counters among the events.
 
   void write_engine() {
-    constexpr int kQueries = 2;
-    write_engine_name("process_name", kQueries, 0, t_.header.engine + ": queries, in its own time");
+    constexpr std::uint64_t kQueries = 2;
+    write_label("process_name", kQueries, 0, "name", Quoted{t_.header.engine + ": queries, in its own time"});
     std::set<std::uint32_t> threads;
     for (const Step& s : t_.steps)
       if (s.result.engine) threads.insert(s.result.engine->thread);
     for (const std::uint32_t thread : threads)
-      write_engine_name("thread_name", kQueries, thread, "thread " + std::to_string(thread));
+      write_label("thread_name", kQueries, thread, "name", Quoted{"thread " + std::to_string(thread)});
     for (std::size_t i = 0; i < t_.steps.size(); ++i) {
       if (!t_.steps[i].result.engine) continue;
       const EngineReport& r = *t_.steps[i].result.engine;
@@ -202,13 +200,13 @@ class TraceWriter {
       write_ns(r.begin_ns);
       out_.raw(",\"dur\":");
       write_ns(std::max<std::uint64_t>(r.duration_ns, 1));
-      out_.raw(",\"args\":{\"time step\":");
-      out_.number(std::uint64_t{t_.steps[i].index});
+      put(",\"args\":{\"time step\":", t_.steps[i].index);
       write_word("query", name_of(r.query));
       write_word("verdict", name_of(r.verdict));
       write_number("pairs", r.pairs);
       for (std::size_t k = 0; k < r.counts.size(); ++k)
-        if (is_last_of_name(r.counts, k)) write_named(t_.header.names[r.counts[k].name], r.counts[k].value);
+        if (is_last_of_name(r.counts, k))
+          put(",", Quoted{t_.header.names[r.counts[k].name]}, ":", r.counts[k].value);
       out_.raw("}}");
       write_marks(i, r);
     }
@@ -237,62 +235,22 @@ class TraceWriter {
       const std::uint64_t begin = time_of(r.phases[k].at);
       const std::uint64_t end = time_of(k + 1 < r.phases.size() ? r.phases[k + 1].at : stored);
       if (end <= begin) continue;
-      begin_engine_slice(t_.header.names[r.phases[k].name], 1, static_cast<std::uint32_t>(Thread::phases));
+      begin_engine_slice(t_.header.names[r.phases[k].name], 1, static_cast<std::uint64_t>(Thread::phases));
       write_time(begin);
       out_.raw(",\"dur\":");
       write_time(end - begin);
       out_.raw(",\"args\":{}}");
     }
     for (const EngineReport::Mark& mark : r.counts) {
-      out_.raw(",\n{\"name\":");
-      out_.string("engine: " + t_.header.names[mark.name]);
-      out_.raw(",\"cat\":\"counter\",\"ph\":\"C\",\"pid\":1,\"tid\":0,\"ts\":");
+      put(",\n{\"name\":", Quoted{"engine: " + t_.header.names[mark.name]}, kCounter);
       write_time(time_of(mark.at));
-      out_.raw(",\"args\":{\"value\":");
-      out_.number(std::uint64_t{mark.value});
-      out_.raw("}}");
+      put(",\"args\":{\"value\":", mark.value, "}}");
     }
   }
 
-  void begin_engine_slice(std::string_view name, int process, std::uint32_t thread) {
-    out_.raw(",\n{\"name\":");
-    out_.string(name);
-    out_.raw(",\"cat\":\"");
-    out_.raw(kEngineCategory);
-    out_.raw("\",\"ph\":\"X\",\"pid\":");
-    out_.number(static_cast<std::uint64_t>(process));
-    out_.raw(",\"tid\":");
-    out_.number(std::uint64_t{thread});
-    out_.raw(",\"ts\":");
-  }
-
-  void write_engine_name(std::string_view field, int process, std::uint32_t thread, const std::string& name) {
-    out_.raw(",\n{\"name\":\"");
-    out_.raw(field);
-    out_.raw("\",\"cat\":\"__metadata\",\"ph\":\"M\",\"ts\":0,\"pid\":");
-    out_.number(static_cast<std::uint64_t>(process));
-    out_.raw(",\"tid\":");
-    out_.number(std::uint64_t{thread});
-    out_.raw(",\"args\":{\"name\":");
-    out_.string(name);
-    out_.raw("}}");
-  }
-
-  void write_named(const std::string& name, std::uint64_t value) {
-    out_.raw(",");
-    out_.string(name);
-    out_.raw(":");
-    out_.number(value);
-  }
-
-  void write_thread_field(Thread thread, std::string_view name, std::string_view field) {
-    out_.raw(",\n{\"name\":\"");
-    out_.raw(name);
-    out_.raw("\",\"cat\":\"__metadata\",\"ph\":\"M\",\"ts\":0,\"pid\":1,\"tid\":");
-    out_.number(static_cast<std::uint64_t>(thread));
-    out_.raw(",\"args\":{\"");
-    out_.raw(field);
-    out_.raw("\":");
+  void begin_engine_slice(std::string_view name, std::uint64_t process, std::uint64_t thread) {
+    put(",\n{\"name\":", Quoted{name}, ",\"cat\":\"", kEngineCategory, "\",\"ph\":\"X\",\"pid\":", process,
+        ",\"tid\":", thread, ",\"ts\":");
   }
 
   bool wall() const { return t_.header.clock == Clock::wall; }
@@ -339,19 +297,13 @@ class TraceWriter {
     const Parts& parts = parts_[static_cast<std::size_t>(e.kind)];
     out_.raw(",\n{\"name\":\"");
     write_name(e, i);
-    out_.raw(parts.head);
-    out_.number(static_cast<std::uint64_t>(thread_of(e)));
-    out_.raw(",\"ts\":");
+    put(parts.head, thread_of(e), ",\"ts\":");
     write_time(begin_of(i));
     out_.raw(",\"dur\":");
     write_time(duration_of(i));
-    out_.raw(",\"args\":{\"event\":");
-    out_.number(std::uint64_t{i});
+    put(",\"args\":{\"event\":", i);
     write_fields(e, parts);
-    if (wall()) {
-      out_.raw(",\"ns\":");
-      out_.number(t_.wall_ns[i]);
-    }
+    if (wall()) put(",\"ns\":", t_.wall_ns[i]);
     out_.raw("}}");
     // Then the records attached to it: arrows, counters, convergence curves.
     write_flows(i);
@@ -369,29 +321,16 @@ class TraceWriter {
     out_.raw(name_of(e.kind));
     if (e.kind != EventKind::step) return;
     const Step& step = t_.steps[t_.step_of(i)];
-    out_.raw(" ");
-    out_.number(std::uint64_t{step.index});
+    put(" ", step.index);
     if (!step.finished) return;
-    out_.raw(": ");
-    out_.raw(name_of(step.result.relation));
-    if (step.result.pair_count == 0) return;
-    out_.raw(", ");
-    out_.number(step.result.pair_count);
-    out_.raw(step.result.pair_count == 1 ? " pair" : " pairs");
+    put(": ", name_of(step.result.relation));
+    const std::uint64_t pairs = step.result.pair_count;
+    if (pairs > 0) put(", ", pairs, pairs == 1 ? " pair" : " pairs");
   }
 
   void write_pass_name(const PassSummary& p) {
-    out_.raw("pass ");
-    out_.number(std::uint64_t{p.number()});
-    out_.raw(": ");
-    out_.raw(name_of(p.stage));
-    out_.raw(", ");
-    out_.number(std::uint64_t{p.regions});
-    out_.raw(p.regions == 1 ? " region, " : " regions, ");
-    out_.number(std::uint64_t{p.faces_before});
-    out_.raw(" to ");
-    out_.number(std::uint64_t{p.faces_after});
-    out_.raw(" faces");
+    put("pass ", p.number(), ": ", name_of(p.stage), ", ", p.regions,
+        p.regions == 1 ? " region, " : " regions, ", p.faces_before, " to ", p.faces_after, " faces");
   }
 
   void write_fields(const Event& e, const Parts& parts) {
@@ -406,18 +345,13 @@ class TraceWriter {
       else if (e.kind == EventKind::begin || e.kind == EventKind::end)
         out_.string(name_of(e.phase()));
       else
-        out_.number(std::uint64_t{e.a});
+        put(e.a);
     }
-    if (!parts.b.empty()) {
-      out_.raw(parts.b);
-      out_.number(std::uint64_t{e.b});
-    }
+    if (!parts.b.empty()) put(parts.b, e.b);
     if (e.kind == EventKind::face_test) {
       write_meet(e.meet);
-      out_.raw(",\"depth of A\":");
-      out_.number(std::uint64_t{e.face_test().depth_a});
-      out_.raw(",\"depth of B\":");
-      out_.number(std::uint64_t{e.face_test().depth_b});
+      write_number("depth of A", e.face_test().depth_a);
+      write_number("depth of B", e.face_test().depth_b);
       if (e.tested_by() != TestedBy::unreported) write_word("decided by", name_of(e.tested_by()));
     }
     // From here on, fields that depend on the kind of the event and on the detail of the trace.
@@ -435,36 +369,18 @@ class TraceWriter {
       write_number("level of B", e.phase_begin().walked_b);
     }
     // The size of the wrapper after the event; not every event has one.
-    if (e.boundary != kNull) {
-      out_.raw(",\"wrapper faces\":");
-      out_.number(std::uint64_t{e.boundary});
-    }
+    if (e.boundary != kNull) write_number("wrapper faces", e.boundary);
     write_cause(e.cause);
   }
 
-  void write_word(std::string_view name, std::string_view word) {
-    out_.raw(",\"");
-    out_.raw(name);
-    out_.raw("\":");
-    out_.string(word);
-  }
-  void write_number(std::string_view name, std::uint64_t number) {
-    out_.raw(",\"");
-    out_.raw(name);
-    out_.raw("\":");
-    out_.number(number);
-  }
+  void write_word(std::string_view name, std::string_view word) { put(",\"", name, "\":", Quoted{word}); }
+  void write_number(std::string_view name, std::uint64_t number) { put(",\"", name, "\":", number); }
 
   void write_patch(const Event& e) {
     write_number("interior vertices", e.patch().interior);
     if (const std::span<const VertexId> vertices = t_.vertices_of(e); !vertices.empty()) {
-      char before = '[';
-      out_.raw(",\"vertices\":");
-      for (const VertexId v : vertices) {
-        out_.raw({&before, 1});
-        out_.number(std::uint64_t{v});
-        before = ',';
-      }
+      std::string_view before = ",\"vertices\":[";
+      for (const VertexId v : vertices) put(std::exchange(before, ","), v.value());
       out_.raw("]");
     }
     write_cause(e.cause);
@@ -496,7 +412,7 @@ class TraceWriter {
     if (e.kind == EventKind::cap && e.cap().careful) out_.raw(",\"careful\":true");
     if (e.kind == EventKind::pass ? e.off() > 0 : e.boundary != kNull) {
       out_.raw(e.kind == EventKind::pass ? ",\"distance allowed\":" : ",\"distance\":");
-      out_.number(e.off());
+      out_.number(e.off());  // a float
     }
     write_cause(e.cause);
   }
@@ -510,38 +426,23 @@ class TraceWriter {
 
   /// Writes a simplex of the answer; `name` is the name of a real one.
   void write_simplex(Side side, const std::string& name, SimplexId simplex) {
-    if (simplex < t_.header.bodies[static_cast<std::size_t>(side)].real_simplices) {
-      out_.raw(name);
-    } else {
-      out_.raw(",\"");
-      out_.raw(pseudo_simplex(side));
-      out_.raw("\":");
-    }
-    out_.number(std::uint64_t{simplex});
+    if (simplex < t_.header.bodies[static_cast<std::size_t>(side)].real_simplices)
+      put(name, simplex.value());
+    else
+      write_number(pseudo_simplex(side), simplex.value());
   }
 
-  void write_meet(exact::Meet meet) {
-    out_.raw(",\"meet\":\"");
-    out_.raw(name_of(meet));
-    out_.raw('"');
-  }
+  void write_meet(exact::Meet meet) { write_word("meet", name_of(meet)); }
 
   void write_cause(EventId cause) {
-    if (cause == kNull) return;
-    out_.raw(",\"cause\":");
-    out_.number(std::uint64_t{cause});
+    if (cause != kNull) write_number("cause", cause);
   }
 
   /// Writes one end of the arrow to an event from its cause.
-  void write_flow(char phase, EventId effect, EventId at) {
-    out_.raw(",\n{\"name\":\"cause\",\"cat\":\"flow\",\"ph\":\"");
-    out_.raw(phase);
-    out_.raw("\",\"id\":");
-    out_.number(std::uint64_t{effect});
+  void write_flow(std::string_view phase, EventId effect, EventId at) {
     // bp "e": the arrow binds to the slice that encloses its time.
-    out_.raw(",\"bp\":\"e\",\"pid\":1,\"tid\":");
-    out_.number(static_cast<std::uint64_t>(thread_of(t_.events[at])));
-    out_.raw(",\"ts\":");
+    put(",\n{\"name\":\"cause\",\"cat\":\"flow\",\"ph\":\"", phase, "\",\"id\":", effect,
+        ",\"bp\":\"e\",\"pid\":1,\"tid\":", thread_of(t_.events[at]), ",\"ts\":");
     write_time(begin_of(at));
     out_.raw(",\"args\":{}}");
   }
@@ -564,9 +465,9 @@ class TraceWriter {
 
   /// Writes the ends of arrows at an event; times must not decrease.
   void write_flows(EventId i) {
-    if (has_arrow(t_.events[i])) write_flow('f', i, i);
+    if (has_arrow(t_.events[i])) write_flow("f", i, i);
     for (; next_arrow_ < arrows_.size() && arrows_[next_arrow_].first == i; ++next_arrow_)
-      write_flow('s', arrows_[next_arrow_].second, i);
+      write_flow("s", arrows_[next_arrow_].second, i);
   }
 
   void count(const Event& e, EventId i) {
@@ -645,9 +546,7 @@ class TraceWriter {
   }
 
   void begin_counter(std::string_view name, EventId i) {
-    out_.raw(",\n{\"name\":\"");
-    out_.raw(name);
-    out_.raw("\",\"cat\":\"counter\",\"ph\":\"C\",\"pid\":1,\"tid\":0,\"ts\":");
+    put(",\n{\"name\":", Quoted{name}, kCounter);
     write_time(begin_of(i));
     out_.raw(",\"args\":{");
   }
@@ -655,23 +554,18 @@ class TraceWriter {
   /// Begins a counter within an event's slice, at `share` of its duration. An event on the event clock takes
   /// 1.
   void begin_counter_within(std::string_view name, EventId i, double share) {
-    out_.raw(",\n{\"name\":\"");
-    out_.raw(name);
-    out_.raw("\",\"cat\":\"counter\",\"ph\":\"C\",\"pid\":1,\"tid\":0,\"ts\":");
+    put(",\n{\"name\":", Quoted{name}, kCounter);
     if (wall())
       write_time(begin_of(i) + static_cast<std::uint64_t>(share * static_cast<double>(duration_of(i))));
     else
-      out_.number(static_cast<double>(i) + share);
+      put(static_cast<double>(i) + share);
     out_.raw(",\"args\":{");
   }
 
-  void write_ends(double lower, double upper) {
-    out_.raw("\"lower\":");
-    out_.number(lower);
-    if (std::isfinite(upper)) {
-      out_.raw(",\"upper\":");
-      out_.number(upper);
-    }
+  /// Writes both ends of an interval, the upper one if it is finite.
+  void write_ends(std::string_view lower_name, double lower, std::string_view upper_name, double upper) {
+    put("\"", lower_name, "\":", lower);
+    if (std::isfinite(upper)) put(",\"", upper_name, "\":", upper);
     out_.raw("}}");
   }
 
@@ -681,17 +575,13 @@ class TraceWriter {
     for (const Bounds& b : history) {
       const double all = static_cast<double>(history.back().work) + 1;
       begin_counter_within(name, i, begin + 0.5 * static_cast<double>(b.work) / all);
-      write_ends(b.lower, b.upper);
+      write_ends("lower", b.lower, "upper", b.upper);
     }
   }
 
   void write_count(std::string_view name, EventId i, std::string_view unit, std::uint64_t count) {
     begin_counter_within(name, i, 1);
-    out_.raw("\"");
-    out_.raw(unit);
-    out_.raw("\":");
-    out_.number(count);
-    out_.raw("}}");
+    put("\"", unit, "\":", count, "}}");
   }
 
   /// Writes the measurements of a step before its result, which is its last event.
@@ -709,60 +599,37 @@ class TraceWriter {
     for (const ContactBounds& b : m.history) {
       const double share = static_cast<double>(b.work) / (static_cast<double>(m.history.back().work) + 1);
       begin_counter_within("first contact", 0, share);
-      out_.raw("\"t0\":");
-      out_.number(b.t0);
-      if (std::isfinite(b.t1)) {
-        out_.raw(",\"t1\":");
-        out_.number(b.t1);
-      }
-      out_.raw("}}");
+      write_ends("t0", b.t0, "t1", b.t1);
       begin_counter_within("distance at t0", 0, share);
-      write_ends(b.lower, b.upper);
+      write_ends("lower", b.lower, "upper", b.upper);
     }
   }
 
   void write_wrapper_counter(EventId i) {
     begin_counter("wrapper", i);
-    out_.raw("\"faces of A\":");
-    out_.number(std::uint64_t{faces_[0]});
-    if (t_.header.bodies.size() > 1) {
-      out_.raw(",\"faces of B\":");
-      out_.number(std::uint64_t{faces_[1]});
-    }
-    out_.raw(",\"refinements\":");
-    out_.number(std::uint64_t{refinements_});
-    out_.raw("}}");
+    put("\"faces of A\":", faces_[0]);
+    if (t_.header.bodies.size() > 1) put(",\"faces of B\":", faces_[1]);
+    put(",\"refinements\":", refinements_, "}}");
   }
 
   void write_hull_counter(EventId i) {
     begin_counter("hull", i);
-    out_.raw("\"faces\":");
-    out_.number(std::uint64_t{faces_[0]});
-    out_.raw(",\"regions\":");
-    out_.number(std::uint64_t{regions_});
-    out_.raw("}}");
+    put("\"faces\":", faces_[0], ",\"regions\":", regions_, "}}");
   }
 
   void write_work_counter(EventId i) {
     begin_counter("work", i);
-    out_.raw("\"face tests\":");
-    out_.number(std::uint64_t{tests_});
-    out_.raw(",\"contacts\":");
-    out_.number(std::uint64_t{contacts_});
-    out_.raw("}}");
+    put("\"face tests\":", tests_, ",\"contacts\":", contacts_, "}}");
   }
 
   void write_pending_counter(EventId i) {
     begin_counter("pending", i);
-    out_.raw("\"node pairs\":");
-    out_.number(pending_pairs_);
-    out_.raw(",\"face tests\":");
-    out_.number(pending_tests_);
-    out_.raw("}}");
+    put("\"node pairs\":", pending_pairs_, ",\"face tests\":", pending_tests_, "}}");
   }
 
   const Trace& t_;
   JsonOut out_;
+  std::string_view separator_;                       ///< before the next label
   std::unordered_map<EventId, EventId> ends_;        ///< the end of each phase or pass, by its beginning
   std::vector<std::pair<EventId, EventId>> arrows_;  ///< from, to; ascending
   std::size_t next_arrow_ = 0;

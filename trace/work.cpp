@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <utility>
 

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include "engine/exact/pair_distance.hpp"
 #include <lrbscope/contact.hpp>

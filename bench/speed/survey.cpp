@@ -7,6 +7,8 @@
 #include <optional>
 #include <tuple>
 
+#include <nlohmann/json.hpp>
+
 #include "bench/workers/workers.hpp"
 #include "scenarios/io/files.hpp"
 #include <lrbscope/core/file.hpp>

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "scenarios/io/files.hpp"
-#include "trace/json_read.hpp"
+#include "trace/json_records.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 

@@ -107,7 +107,7 @@ std::optional<SimplexPair> deciding_pair(const cases::Case& c, const std::vector
 }
 
 std::vector<std::string> save_case(const cases::Case& c, const std::vector<Replay>& replays,
-                                   const std::string& folder, const Json& minimised) {
+                                   const std::string& folder, const Json* minimised) {
   std::vector<std::string> files;
   const auto write = [&](const LrbRep& rep, const std::string& name) {
     write_mesh(methods::real_mesh(rep), folder + "/" + name);
@@ -118,7 +118,7 @@ std::vector<std::string> save_case(const cases::Case& c, const std::vector<Repla
   Json j = Json::object();
   if (!r.family.empty())
     j = {{"family", r.family}, {"difficulty", r.difficulty}, {"case", r.case_index}, {"seed", r.seed}};
-  if (!minimised.is_null()) j["minimised"] = minimised;
+  if (minimised != nullptr) j["minimised"] = *minimised;
   j["what"] =
       "Do the simplices (triangles; segments in the plane) of A and of B intersect, each pair of them? They are numbered from "
       "0 in file order, polygons as fans. A vertex is at the doubles next to pose * vertex, as in a_world.obj and b_world.obj.";
@@ -426,7 +426,7 @@ std::vector<std::string> save_counterexample(const Counterexample& c, const std:
   render::Rasterizer rasterizer;
   const render::Image picture =
       worst_case_picture(built, m.answer.expected, m.answer.answered, text, rasterizer);
-  std::vector<std::string> files = save_case(built, {m.answer}, folder, facts);
+  std::vector<std::string> files = save_case(built, {m.answer}, folder, &facts);
   render::PngOptions png;
   png.text = {{"Title", text.title}, {"Description", text.answer}};
   render::write_png(picture, folder + "/picture.png", png);

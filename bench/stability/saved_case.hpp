@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "bench/cases/families.hpp"
 #include "bench/stability/case_meshes.hpp"
@@ -29,7 +29,7 @@ std::optional<SimplexPair> deciding_pair(const cases::Case& c, const std::vector
 /// doubles) and case.json. `replays`: of the same case, at least one. `minimised`: how the case was made
 /// from another; null if it was not. Returns the names of the files.
 std::vector<std::string> save_case(const cases::Case& c, const std::vector<Replay>& replays,
-                                   const std::string& folder, const nlohmann::ordered_json& minimised = {});
+                                   const std::string& folder, const nlohmann::ordered_json* minimised = nullptr);
 
 /// A case of such a folder.
 struct SavedCase {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/methods/method.hpp"
-#include "trace/json_read.hpp"
+#include "trace/json_records.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/pose.hpp>

@@ -1,23 +1,16 @@
 #include "scenarios/bodies/body_figures.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <limits>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
-#include <lrbscope/build.hpp>
 #include <lrbscope/validate.hpp>
-#include <lrbscope/wrapper.hpp>
-
 namespace lrb::bodies {
 
 double hull_volume(std::span<const Eigen::Vector3d> points) {

@@ -8,9 +8,6 @@
 #include <system_error>
 
 #include <lrbscope/error.hpp>
-#include <lrbscope/lrb_rep.hpp>
-#include <lrbscope/mesh.hpp>
-
 namespace lrb::bodies {
 namespace {
 

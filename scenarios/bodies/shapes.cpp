@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <numbers>
-#include <random>
+#include <string>
 #include <utility>
-
-#include <lrbscope/core/random.hpp>
 
 namespace lrb::shapes {
 namespace {

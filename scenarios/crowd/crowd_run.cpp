@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <numeric>
 
 #include <lrbscope/core/random.hpp>
 #include <lrbscope/error.hpp>

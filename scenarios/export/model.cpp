@@ -13,10 +13,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/scene.hpp>
-#include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/counters.hpp>
-#include <lrbscope/wrapper.hpp>
-
 namespace lrb::exchange {
 void Part::add_cell(std::span<const std::uint32_t> at, render::Rgba colour, std::span<const double> row) {
   corners.insert(corners.end(), at.begin(), at.end());

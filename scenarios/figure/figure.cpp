@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "render/canvas.hpp"
@@ -11,8 +12,6 @@
 #include "render/paint_list.hpp"
 #include "render/pictures/panel.hpp"
 #include "render/vector_faces.hpp"
-#include "scenarios/figure/figure_layout.hpp"
-#include "scenarios/figure/figure_panels.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/frames/framing.hpp"
 #include <lrbscope/error.hpp>

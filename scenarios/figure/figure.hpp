@@ -1,7 +1,6 @@
 #pragma once
 /// A figure for print: panels of one run, cropped to their content and at one scale, for a width on paper.
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -6,17 +6,12 @@
 #include <cstdio>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string_view>
 #include <utility>
 
-#include "render/canvas.hpp"
 #include "render/pictures/panel.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/render/overlay.hpp>
-#include <lrbscope/render/style.hpp>
-
 namespace lrb::figure {
 
 double parse_length(const std::string& text, const std::string& option, double least, double most) {

@@ -4,8 +4,6 @@
 
 #include "render/pictures/marks.hpp"
 #include <lrbscope/trace/counters.hpp>
-#include <lrbscope/trace/work.hpp>
-
 namespace lrb::run {
 
 std::uint32_t region_of(const LrbRep& rep, FaceId face) {

@@ -1,16 +1,12 @@
 #include "scenarios/frames/frame_state.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
-#include "render/pictures/marks.hpp"
 #include "scenarios/frames/face_colours.hpp"
 #include "scenarios/record/moments.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/render/style.hpp>
-#include <lrbscope/trace/trace.hpp>
-
 namespace lrb::run {
 namespace {
 

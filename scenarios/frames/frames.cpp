@@ -1,15 +1,12 @@
 #include "scenarios/frames/frames.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "render/pictures/answer_picture.hpp"
-#include "render/pictures/panel.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/moments.hpp"
-#include "scenarios/record/recorded_run.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/frame_writer.hpp>

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <optional>
 #include <span>
 #include <unordered_map>
 
 #include "render/flip.hpp"
 #include "render/gl.hpp"
-#include "scenarios/golden/golden.hpp"
-#include "scenarios/golden/golden_run.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/image.hpp>

@@ -2,21 +2,17 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
-#include <optional>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/io/files.hpp"
 #include "scenarios/profile/captured_run.hpp"
-#include "scenarios/spec/scenario.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/mesh.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/trace_json.hpp>

@@ -11,7 +11,6 @@
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/golden/approve.hpp"
-#include "scenarios/golden/golden_run.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"

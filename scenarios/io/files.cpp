@@ -2,8 +2,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <string>
 #include <system_error>
 
 #include "engine/platform/platform.hpp"

@@ -1,18 +1,16 @@
 #include "scenarios/io/poses.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <numeric>
-#include <string_view>
 #include <utility>
 
 #include "scenarios/io/files.hpp"
-#include "trace/json_read.hpp"
+#include "trace/json_sax.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>

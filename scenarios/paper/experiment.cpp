@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "scenarios/record/recorded_run.hpp"
-#include "scenarios/spec/scenario.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/error.hpp>
 

@@ -1,7 +1,6 @@
 #include "scenarios/paper/paper_report.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 
@@ -9,8 +8,6 @@
 #include "scenarios/io/files.hpp"
 #include "scenarios/paper/paper_pictures.hpp"
 #include "scenarios/paper/sweep.hpp"
-#include "scenarios/paper/tables.hpp"
-#include "scenarios/report/document.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>

@@ -14,11 +14,9 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/bodies/generators.hpp"
-#include "scenarios/paper/tables.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/trace.hpp>

@@ -10,14 +10,11 @@
 
 #include "scenarios/io/files.hpp"
 #include "scenarios/paper/experiment.hpp"
-#include "trace/json_read.hpp"
+#include "trace/json_records.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/trace/recorder.hpp>
-#include <lrbscope/trace/trace.hpp>
-#include <lrbscope/workspace.hpp>
-
 namespace lrb::paper {
 namespace {
 

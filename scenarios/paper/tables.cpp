@@ -1,7 +1,5 @@
 #include "scenarios/paper/tables.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -12,7 +10,7 @@
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/report/document.hpp"
-#include "trace/json_read.hpp"
+#include "trace/json_records.hpp"
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb::paper {

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "render/pictures/panel.hpp"

@@ -1,11 +1,9 @@
 #include "scenarios/profile/prices.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include <lrbscope/distance.hpp>
 #include <lrbscope/near_pairs.hpp>

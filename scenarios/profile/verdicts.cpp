@@ -1,7 +1,6 @@
 #include "scenarios/profile/verdicts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 

@@ -4,14 +4,12 @@
 #include <filesystem>
 #include <iomanip>
 #include <numeric>
-#include <optional>
 #include <sstream>
 #include <system_error>
 
 #include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/record/engine_run.hpp"
-#include "scenarios/spec/scenario.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/core/file.hpp>
@@ -21,7 +19,6 @@
 #include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/replay.hpp>
 #include <lrbscope/trace/trace_json.hpp>
-#include <lrbscope/trace/work.hpp>
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::run {

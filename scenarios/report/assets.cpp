@@ -4,7 +4,6 @@
 #include <bit>
 #include <set>
 #include <sstream>
-#include <vector>
 
 #include "scenarios/io/files.hpp"
 #include <lrbscope/ids.hpp>

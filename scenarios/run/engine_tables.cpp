@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/engine_run.hpp"

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <iomanip>
 #include <sstream>
-#include <string>
 
 #include <nlohmann/json.hpp>
 

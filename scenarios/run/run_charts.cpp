@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/record/attempts.hpp"

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
 #include "render/page_palette.hpp"
-#include "scenarios/frames/frames.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/engine_run.hpp"
 #include "scenarios/report/assets.hpp"

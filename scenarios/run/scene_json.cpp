@@ -15,7 +15,6 @@
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"
-#include "scenarios/run/explanations.hpp"
 #include "scenarios/run/run_charts.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/render/overlay.hpp>

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "scenarios/io/poses.hpp"
-#include "scenarios/spec/scenario.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/hash.hpp>

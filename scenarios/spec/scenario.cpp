@@ -1,14 +1,12 @@
 #include "scenarios/spec/scenario.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <numbers>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/io/files.hpp"
 #include "trace/json_read.hpp"
-#include <lrbscope/collide.hpp>
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/json_write.hpp>

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/methods/method.hpp"
 #include "bench/methods/triangles.hpp"

@@ -7,6 +7,7 @@
 #include <set>
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/cases/families.hpp"
 #include "bench/stability/rational_oracles.hpp"

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/cases/families.hpp"
 #include "bench/methods/triangles.hpp"

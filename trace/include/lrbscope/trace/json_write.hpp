@@ -3,11 +3,11 @@
 
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -122,19 +122,27 @@ class JsonWriter {
   JsonWriter& end_array() { return close(']'); }
   JsonWriter& key(std::string_view name);
 
+  /// Writes a boolean, a number, an id, a text, or a list of these.
   template <class T>
   JsonWriter& value(const T& v) {
-    separate();
-    if constexpr (std::is_same_v<T, bool>)
-      out_->raw(v ? "true" : "false");
-    else if constexpr (std::is_floating_point_v<T>)
-      out_->number(v);
-    else if constexpr (std::is_unsigned_v<T>)
-      out_->number(static_cast<std::uint64_t>(v));
-    else
-      out_->string(v);
-    return *this;
+    if constexpr (std::ranges::range<T> && !std::is_convertible_v<T, std::string_view>) {
+      begin_array();
+      for (const auto& x : v) value(x);
+      return end_array();
+    } else {
+      separate();
+      if constexpr (std::is_same_v<T, bool>)
+        out_->raw(v ? "true" : "false");
+      else if constexpr (std::is_floating_point_v<T>)
+        out_->number(v);
+      else if constexpr (std::is_unsigned_v<T>)
+        out_->number(static_cast<std::uint64_t>(v));
+      else
+        out_->string(v);
+      return *this;
+    }
   }
+  JsonWriter& null() { return json("null"); }
   /// Writes text that is already JSON, on one line.
   JsonWriter& json(std::string_view text) {
     separate();
