@@ -8,14 +8,11 @@
 #include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/profile/captured_run.hpp"
 #include "scenarios/report/document.hpp"
-#include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
-#include <lrbscope/trace/capture.hpp>
-
 namespace lrb::cli {
 namespace {
 

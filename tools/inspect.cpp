@@ -172,16 +172,11 @@ int list_self_intersections(const InspectOptions& o, const Globals& globals) {
   std::string lines;
   for (const SelfIntersection& pair : found.pairs) {
     lines += trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
-      w.begin_object().key("faces").begin_array().value(pair.a.value()).value(pair.b.value()).end_array();
+      w.begin_object().member("faces", std::array{pair.a, pair.b});
       w.member("kind", name_of(pair.kind)).member("shared", std::uint64_t{pair.shared});
-      w.member("curve", std::uint64_t{pair.curve}).key("segments").begin_array();
-      for (std::uint32_t i = 0; i < pair.segments; ++i) {
-        w.begin_array();
-        for (const Eigen::Vector3d& x : found.segments[pair.first_segment + i])
-          w.begin_array().value(x.x()).value(x.y()).value(x.z()).end_array();
-        w.end_array();
-      }
-      w.end_array().end_object();
+      w.member("curve", std::uint64_t{pair.curve});
+      w.member("segments", std::span(found.segments).subspan(pair.first_segment, pair.segments));
+      w.end_object();
     });
     constexpr std::size_t kAtOnce = 1 << 20;
     if (lines.size() > kAtOnce) print(std::exchange(lines, {}));

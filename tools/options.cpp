@@ -1,6 +1,5 @@
 #include "tools/options.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <thread>
 #include <type_traits>
@@ -8,9 +7,6 @@
 #include "scenarios/frames/animation.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/poses.hpp"
-#include "scenarios/run/run_scenario.hpp"
-#include "scenarios/spec/scenario.hpp"
-#include <lrbscope/error.hpp>
 #include <lrbscope/trace/record_fields.hpp>
 
 namespace lrb::cli {

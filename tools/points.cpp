@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <span>
 
@@ -29,9 +28,8 @@ std::string line_of(std::size_t point, const PointDistance& d) {
     w.begin_object().member("point", std::uint64_t{point});
     w.member("lower", d.signed_lower()).member("upper", d.signed_upper());
     w.key("side");
-    d.side ? w.value(name_of(*d.side)) : w.value(std::numeric_limits<double>::quiet_NaN());  // null
-    write_vector(w, "closest", d.closest.point);
-    w.member("face", d.closest.face.value());
+    d.side ? w.value(name_of(*d.side)) : w.null();
+    w.member("closest", d.closest.point).member("face", d.closest.face);
     write_feature_of(w, d.closest);
     w.end_object();
   });

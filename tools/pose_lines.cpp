@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
-#include "scenarios/report/chart.hpp"
 #include <lrbscope/collide.hpp>
 
 namespace lrb::cli {

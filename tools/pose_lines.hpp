@@ -6,8 +6,9 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "render/pictures/answer_picture.hpp"
@@ -23,23 +24,15 @@
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/trace/json_write.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::cli {
-
-// Writes points and witnesses in the form used by `distance` and `sweep`.
-
-inline void write_vector(trace::JsonWriter& w, const char* name, const Eigen::Vector3d& x) {
-  w.key(name).begin_array().value(x.x()).value(x.y()).value(x.z()).end_array();
-}
 
 /// Writes the closest feature of a face: its kind, and the vertices that span it.
 inline void write_feature_of(trace::JsonWriter& w, const Witness& witness) {
   static constexpr const char* kNames[] = {"vertex", "edge", "face"};
   w.member("feature", kNames[witness.corner_count - 1]);
-  w.key("vertices").begin_array();
-  for (int k = 0; k < witness.corner_count; ++k)
-    w.value(witness.corners[static_cast<std::size_t>(k)].value());
-  w.end_array();
+  w.member("vertices", std::span(witness.corners).first(static_cast<std::size_t>(witness.corner_count)));
 }
 
 /// Returns the median time in microseconds of `repeat` calls of run_query(); repeat > 0.
@@ -89,19 +82,6 @@ void add_posed_files(App& app, PosedFiles& files);
 std::array<bodies::LoadedBody, 2> load_noted(const std::string& a, const std::string& b,
                                              bodies::Corners corners, const Globals& globals);
 
-/// Loads both bodies, checks them at every pose, and calls visit(bodies, i) for each pose, in order.
-template <class Visit>
-void for_each_pose(const PosedFiles& files, const PoseLines& list, const char* what, const Globals& globals,
-                   const Visit& visit) {
-  const std::array<bodies::LoadedBody, 2> both = load_noted(files.a, files.b, files.corners, globals);
-  list.check(both[0].rep, both[1].rep);
-  Progress progress(what, list.poses.size(), globals.quiet);
-  for (std::size_t i = 0; i < list.poses.size(); ++i) {
-    visit(run::PosedBodies{both[0].rep, Pose{}, both[1].rep, list.poses[i]}, i);
-    progress.set(i + 1);
-  }
-}
-
 /// Returns a picture's file: `path`, or with the number of the pose before its extension if there are several
 /// poses.
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses);
@@ -130,5 +110,70 @@ render::Look look_of(const DrawOptions& options);
 void add_picture_options(App& app, DrawOptions& options, const std::string& picture);
 /// Adds these, --chart and, if `with_history`, --convergence.
 void add_draw_options(App& app, DrawOptions& options, const std::string& picture, bool with_history = true);
+
+// Commands that answer a question for each pose of B, a line of JSON each.
+
+/// The options of such a command. A command Q derives from it, and has
+///   kName, kHelp, add_options(app): its own options;
+///   check() or check(a): throws InputError for an invalid request;
+///   ask(bodies, workspace, watched): the answer. watched: keeps the history of its bounds for the chart;
+///   write(w, answer, bodies, us): writes the members of its line; us(w) writes the time at its place;
+///   picture(answer, bodies, look);
+/// and optionally
+///   chart(): of the history, or nullopt; show(pose, answer): true if its line is not to be printed;
+///   keep(answer): called at the end of a pose; end(): called at the end.
+struct PosedQuestion : PosedFiles {
+  std::uint32_t repeat = 0;
+  DrawOptions draw;
+};
+
+template <class Q>
+int answer_each_pose(Q& q, const Globals& globals) {
+  const PoseLines list(q.poses);
+  if constexpr (requires { q.check(); }) q.check();
+  const render::Look look = look_of(q.draw);
+  const auto both = bodies::load_faces_of_two(q.a, q.b, q.corners);
+  if constexpr (requires { q.check(both[0].rep); }) q.check(both[0].rep);
+  for (const bodies::LoadedBody& body : both) note(globals, body.notes);
+  list.check(both[0].rep, both[1].rep);
+  Workspace workspace;
+  Progress progress(Q::kName, list.poses.size(), globals.quiet);
+  for (std::size_t i = 0; i < list.poses.size(); ++i) {
+    const run::PosedBodies bodies{both[0].rep, Pose{}, both[1].rep, list.poses[i]};
+    auto answer =
+        list.at(i, [&]() -> decltype(auto) { return q.ask(bodies, workspace, q.draw.is_watched()); });
+    const auto us = [&](trace::JsonWriter& w) {
+      if (q.repeat > 0) w.member("us", median_us(q.repeat, [&] { q.ask(bodies, workspace, false); }));
+    };
+    bool is_shown = false;
+    if constexpr (requires { q.show(i, answer); }) is_shown = q.show(i, answer);
+    if (!is_shown)
+      print(trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
+        w.begin_object().member("pose", std::uint64_t{i});
+        q.write(w, answer, bodies, us);
+        w.end_object();
+      }));
+    const auto file = [&](const std::string& name) { return picture_name(name, i, list.poses.size()); };
+    if (!q.draw.picture.empty()) run::write_picture(q.picture(answer, bodies, look), file(q.draw.picture));
+    if constexpr (requires { q.chart(); })
+      if (!q.draw.chart.empty())
+        if (const auto chart = q.chart()) report::draw(*chart, file(q.draw.chart));
+    if constexpr (requires { q.keep(answer); }) q.keep(answer);
+    progress.set(i + 1);
+  }
+  if constexpr (requires { q.end(); }) q.end();
+  return kOk;
+}
+
+template <class Q>
+Command add_question(App& root, const Globals& globals) {
+  App* app = root.add_subcommand(Q::kName, Q::kHelp);
+  const auto q = std::make_shared<Q>();
+  add_posed_files(*app, *q);
+  q->add_options(*app);
+  add_repeat_option(*app, q->repeat, "pose");
+  add_join_option(*app, q->corners);
+  return {app, [q, &globals] { return answer_each_pose(*q, globals); }};
+}
 
 }  // namespace lrb::cli

@@ -56,14 +56,13 @@ void decide_overlap(const LrbRep& a, const LrbRep& b, const Pose& pose, const Co
   describe_contact(a, Pose{}, b, pose, overlap, workspace, result).value();
 }
 
-/// Writes [[number of A, number of B], ...].
+/// Writes [[number of A, number of B], ...]. numbers(pair): an array of two.
 template <class Numbers>
 void write_pairs(trace::JsonWriter& w, const char* name, const std::vector<SimplexPair>& pairs,
                  const Numbers& numbers) {
   w.key(name).begin_array();
   for (const SimplexPair& pair : pairs) {
-    const auto [a, b] = numbers(pair);
-    w.begin_array().value(a).value(b).end_array();
+    w.value(numbers(pair));
   }
   w.end_array();
 }
@@ -92,7 +91,6 @@ ExtraAnswers extra_answers(const LrbRep& a, const LrbRep& b, const Pose& pose, c
 
 std::string line_of(std::size_t pose, const CollideResult& result, const ExtraAnswers& extra,
                     const QueryOptions& o, double us, const LrbRep& a, const LrbRep& b) {
-  using Two = std::pair<std::uint32_t, std::uint32_t>;
   const CollideRequest& request = o.request;
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("pose", std::uint64_t{pose}).member("relation", name_of(result.relation));
@@ -103,10 +101,7 @@ std::string line_of(std::size_t pose, const CollideResult& result, const ExtraAn
     if (extra.kind) w.member("kind", name_of(extra.kind->kind));
     if (extra.kind && extra.kind->reason != ClashReason::none)
       w.member("reason", name_of(extra.kind->reason));
-    if (extra.distance) {
-      w.key("distance").begin_array().value(extra.distance->lower).value(extra.distance->upper);
-      w.end_array();
-    }
+    if (extra.distance) w.member("distance", std::array{extra.distance->lower, extra.distance->upper});
     if (request.recursion != Recursion::complete) w.member("recursion", name_of(request.recursion));
     if (request.predicates != Predicates::exact) w.member("predicates", name_of(request.predicates));
     if (request.is_coarse()) w.member("finished", result.finished).member("error_bound", result.error_bound);
@@ -115,10 +110,11 @@ std::string line_of(std::size_t pose, const CollideResult& result, const ExtraAn
       trace::write_json(w, *result.separation);
     }
     if (o.repeat > 0) w.member("us", us);
-    if (o.pairs) write_pairs(w, "list", result.pairs, [](const SimplexPair& p) { return Two(p.a, p.b); });
+    if (o.pairs)
+      write_pairs(w, "list", result.pairs, [](const SimplexPair& p) { return std::array{p.a, p.b}; });
     if (o.pairs && request.is_coarse())
       write_pairs(w, "pseudo", result.pairs, [&](const SimplexPair& p) {
-        return Two(a.is_real_simplex(p.a) ? 0 : 1, b.is_real_simplex(p.b) ? 0 : 1);
+        return std::array{a.is_real_simplex(p.a) ? 0U : 1U, b.is_real_simplex(p.b) ? 0U : 1U};
       });
     w.end_object();
   });

@@ -24,6 +24,7 @@ namespace lrb::cli {
 namespace {
 
 using namespace lrb::stability;
+using methods::without;
 
 struct StabilityOptions {
   std::string folder, save, saved;
@@ -47,12 +48,6 @@ void print_pairs(std::ostream& out, const char* what, const std::vector<SimplexP
     out << " " << pairs[i].a << "-" << pairs[i].b;
   }
   if (!pairs.empty()) out << "\n";
-}
-
-std::vector<SimplexPair> without(const std::vector<SimplexPair>& a, const std::vector<SimplexPair>& b) {
-  std::vector<SimplexPair> out;
-  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
-  return out;
 }
 
 std::string describe(const Replay& r, Quantity quantity, bool pairs) {

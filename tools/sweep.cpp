@@ -1,4 +1,4 @@
-#include <limits>
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -29,19 +29,16 @@ struct SweepOptions {
 
 void write_feature_and_point(trace::JsonWriter& w, const char* name, const Witness& witness) {
   if (witness.corner_count == 0) return;
-  w.key(name).begin_object().member("face", witness.face.value());
+  w.key(name).begin_object().member("face", witness.face);
   write_feature_of(w, witness);
-  write_vector(w, "point", witness.point);
-  w.end_object();
+  w.member("point", witness.point).end_object();
 }
 
 void write_contact(trace::JsonWriter& w, const FirstContactResult& result, const SweepOptions& o) {
-  w.key("pair").begin_array().value(result.pair.a.value()).value(result.pair.b.value()).end_array();
+  w.member("pair", std::array{result.pair.a, result.pair.b});
   if (result.at_start) w.member("start", true);
-  if (!result.at_start && !result.normal.isZero(0)) {
-    write_vector(w, "normal", result.normal);
-    w.member("speed", result.speed);
-  }
+  if (!result.at_start && !result.normal.isZero(0))
+    w.member("normal", result.normal).member("speed", result.speed);
   if (result.passed) w.member("passed", true);
   if (!o.features) return;
   write_feature_and_point(w, "on_a", result.witness[0]);
@@ -51,7 +48,7 @@ void write_contact(trace::JsonWriter& w, const FirstContactResult& result, const
 void write_history(trace::JsonWriter& w, const FirstContactResult& result) {
   w.key("history").begin_array();
   for (const FirstContactResult::Event& event : result.history) {
-    w.begin_object().key("span").begin_array().value(event.span.begin).value(event.span.end).end_array();
+    w.begin_object().member("span", std::array{event.span.begin, event.span.end});
     w.member("pairs", event.pairs).member("free_until", event.free_until).end_object();
   }
   w.end_array();
@@ -62,10 +59,7 @@ std::string line_of(std::size_t motion, const FirstContactResult& result,
   return trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
     w.begin_object().member("motion", std::uint64_t{motion});
     w.key("contact");
-    if (result.outcome == MotionOutcome::undecided)
-      w.value(std::numeric_limits<double>::quiet_NaN());  // null
-    else
-      w.value(result.is_contact());
+    result.outcome == MotionOutcome::undecided ? w.null() : w.value(result.is_contact());
     if (result.outcome != MotionOutcome::never) w.member("t0", result.t0).member("t1", result.t1);
     if (result.is_contact()) write_contact(w, result, o);
     if (result.grazing) w.member("grazing", true);
