@@ -1,7 +1,5 @@
 // Families of awkward bodies: lattices, nested and defective ones, and cells of one grid, for which the
 // answer is known.
-#include <array>
-#include <cmath>
 #include <numbers>
 
 #include "bench/cases/families.hpp"

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <limits>
 
-#include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/core/random.hpp>
 #include <lrbscope/error.hpp>

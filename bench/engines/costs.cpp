@@ -303,10 +303,8 @@ profile::Triangle corners_of(const LrbRep& rep, SimplexId s, const Pose& pose) {
 
 void judge(Judged& judged, const LrbRep& a, const LrbRep& b, const std::vector<SimplexPair>& exact,
            double unit) {
-  std::vector<SimplexPair> missed, extra;
-  const std::vector<SimplexPair>& found = judged.answer.list;
-  std::set_difference(exact.begin(), exact.end(), found.begin(), found.end(), std::back_inserter(missed));
-  std::set_difference(found.begin(), found.end(), exact.begin(), exact.end(), std::back_inserter(extra));
+  const std::vector<SimplexPair> missed = methods::without(exact, judged.answer.list),
+                                 extra = methods::without(judged.answer.list, exact);
   judged.missed = missed.size();
   judged.extra = extra.size();
   const auto corners = [&](const SimplexPair& p) {

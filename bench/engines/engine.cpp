@@ -66,10 +66,7 @@ class WorkerEngine : public Engine {
  public:
   WorkerEngine(const workers::WorkerMethod& method, const std::string& a, const std::string& b,
                std::chrono::duration<double> limit)
-      : program_(method.program),
-        name_(method.info.name),
-        bodies_{{"bodies", {a, b}}},
-        limit_(std::chrono::duration_cast<Clock::duration>(limit)) {}
+      : program_(method.program), name_(method.info.name), bodies_{{"bodies", {a, b}}}, limit_(limit) {}
 
   std::string name() const override { return name_; }
 
@@ -143,7 +140,7 @@ class WorkerEngine : public Engine {
 
   std::string program_, name_;
   nlohmann::json bodies_;
-  Clock::duration limit_;
+  std::chrono::duration<double> limit_;
   std::optional<workers::Worker> worker_;
 };
 

@@ -3,9 +3,11 @@
 /// force, and other engines. Bodies are built once and queried at many poses; other data that a query needs
 /// are kept between queries.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <initializer_list>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -135,6 +137,14 @@ struct MethodAnswer {
   /// World frame; if it reports the location of the contact but not the intersecting faces.
   std::vector<Eigen::Vector3d> points;
 };
+
+/// Returns the pairs of an ascending list that another one does not have.
+inline std::vector<SimplexPair> without(const std::vector<SimplexPair>& list,
+                                        const std::vector<SimplexPair>& other) {
+  std::vector<SimplexPair> out;
+  std::set_difference(list.begin(), list.end(), other.begin(), other.end(), std::back_inserter(out));
+  return out;
+}
 
 /// Number of tests of a query for all pairs.
 struct TestCounts {

@@ -1,7 +1,6 @@
 #include "bench/methods/triangles.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

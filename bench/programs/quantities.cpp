@@ -2,7 +2,6 @@
 /// intersecting pairs. Without a method, the answer to a query of a data set is lrbscope's at its finest
 /// setting.
 
-#include <algorithm>
 #include <optional>
 
 #include "bench/methods/triangles.hpp"

@@ -1,7 +1,6 @@
 #include "bench/quantities/number_method.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <tuple>
 #include <utility>
@@ -73,16 +72,11 @@ void judge_number(Record& record, const NumberMethod& method, const NumberAnswer
 }
 
 void judge_list(Record& record, const NumberAnswer& answer, const RightAnswer& expected) {
-  std::vector<SimplexPair> missed, extra;
-  std::set_difference(expected.pairs.begin(), expected.pairs.end(), answer.pairs.begin(), answer.pairs.end(),
-                      std::back_inserter(missed));
-  std::set_difference(answer.pairs.begin(), answer.pairs.end(), expected.pairs.begin(), expected.pairs.end(),
-                      std::back_inserter(extra));
-  record.missed = missed.size();
-  record.extra = extra.size();
+  record.missed = methods::without(expected.pairs, answer.pairs).size();
+  record.extra = methods::without(answer.pairs, expected.pairs).size();
   record.relation = std::to_string(answer.pairs.size()) + " pairs";
   record.expected_relation = std::to_string(expected.pairs.size()) + " pairs";
-  record.outcome = missed.empty() && extra.empty() ? Outcome::right : Outcome::wrong;
+  record.outcome = record.missed + record.extra == 0 ? Outcome::right : Outcome::wrong;
 }
 
 std::optional<NumberAnswer> ask_number(const NumberMethod& method, const cases::Case& c,

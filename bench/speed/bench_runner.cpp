@@ -1,9 +1,7 @@
 #include "bench/speed/bench_runner.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <iterator>
-#include <vector>
 
 #include <malloc.h>
 
@@ -14,8 +12,6 @@
 #include "engine/mesh/face_pairs.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/lrb_rep.hpp>
-
 namespace lrb::bench {
 
 void sweep_caches() {
@@ -28,16 +24,6 @@ double heap_bytes() {
   const struct mallinfo2 m = mallinfo2();
   return static_cast<double>(m.uordblks + m.hblkhd);
 }
-
-namespace {
-
-std::size_t difference(const std::vector<SimplexPair>& of, const std::vector<SimplexPair>& without) {
-  std::vector<SimplexPair> out;
-  std::set_difference(of.begin(), of.end(), without.begin(), without.end(), std::back_inserter(out));
-  return out.size();
-}
-
-}  // namespace
 
 BenchRunner::BenchRunner(const methods::MethodEntry& entry, std::optional<double> setting, const DataSet& set,
                          bool judges)
@@ -101,11 +87,11 @@ Reply BenchRunner::ask(const Question& q, Mode mode, Errors* errors) {
   r.face_tests = answer.face_tests;
   r.error_bound = answer.error_bound;
   if (info_.pairs && mode == Mode::all_pairs) {
-    r.missed = difference(q.expected, answer.pairs);
-    r.extra = difference(answer.pairs, q.expected);
+    r.missed = methods::without(q.expected, answer.pairs).size();
+    r.extra = methods::without(answer.pairs, q.expected).size();
   } else if (info_.pairs && !info_.has(methods::Trait::loose)) {
     r.missed = r.contact ? 0 : !q.expected.empty();
-    r.extra = difference(answer.pairs, q.expected);
+    r.extra = methods::without(answer.pairs, q.expected).size();
   } else {
     r.missed = !r.contact && !q.expected.empty();
     r.extra = r.contact && q.expected.empty();

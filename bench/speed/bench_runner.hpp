@@ -2,7 +2,6 @@
 /// Runs one method on the queries of a data set, and measures the time. For worker programs.
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <memory>
 #include <optional>

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -216,15 +214,13 @@ BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport&
         task.question = [&](std::uint64_t) {
           return nlohmann::json{{"build", survey.folder + "/" + body.name + ".lrb"}}.dump();
         };
-        task.limit = std::chrono::duration_cast<workers::Job::Clock::duration>(
-            std::chrono::duration<double>(survey.timeout));
+        task.limit = std::chrono::duration<double>(survey.timeout);
         task.on_line = [&](std::uint64_t, const std::string& line) {
           keep(io::record_from_json<BuildTime>(nlohmann::json::parse(line)));
         };
         task.on_failure = [&](std::uint64_t, const workers::WorkerFailure& failure) {
           BuildTime t;
-          t.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
-          t.message = failure.message;
+          workers::note_failure(t, failure);
           keep(std::move(t));
         };
         workers::run_to_end(workers::Job(std::move(task)));

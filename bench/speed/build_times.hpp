@@ -3,7 +3,6 @@
 /// the time to a first answer.
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 

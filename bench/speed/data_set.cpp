@@ -8,6 +8,7 @@
 #include "bench/workers/worker_json.hpp"
 #include "bench/workers/workers.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/poses.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
@@ -72,22 +73,14 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 Pose pose_from(const json& value) {
-  Pose p;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) p.r(i, j) = value.at(static_cast<std::size_t>(4 * i + j)).get<double>();
-    p.t[i] = value.at(static_cast<std::size_t>(4 * i + 3)).get<double>();
-  }
-  return p;
+  return io::pose_of(value.get<std::array<double, 12>>());
 }
 
-PoseClass pose_class_from(const std::string& word) {
-  if (const auto c = from_name<PoseClass>(word)) return *c;
-  throw InputError("'" + word + "': unknown class of poses");
-}
-
-Quantity quantity_from(const std::string& word) {
-  if (const auto q = from_name<Quantity>(word)) return *q;
-  throw InputError("'" + word + "': unknown quantity");
+template <class Enum>
+Enum named(const json& value, const char* what) {
+  const auto word = value.get<std::string>();
+  if (const auto found = from_name<Enum>(word)) return *found;
+  throw InputError("'" + word + "': unknown " + what);
 }
 
 ordered_json vector_json(const Eigen::Vector3d& v) {
@@ -115,7 +108,7 @@ ordered_json question_json(const Question& q, Quantity quantity) {
 
 Question question_from(const json& value, Quantity quantity) {
   Question q;
-  q.pose_class = pose_class_from(value.at("class").get<std::string>());
+  q.pose_class = named<PoseClass>(value.at("class"), "class of poses");
   value.at("a").get_to(q.a);
   value.at("b").get_to(q.b);
   q.pose_a = pose_from(value.at("pose_a"));
@@ -208,7 +201,7 @@ DataSet read_data_set(const std::string& path) {
     for (const json& b : value.at("bodies"))
       set.bodies.push_back({b.at("file").get<std::string>(), b.at("faces").get<std::uint32_t>(),
                             b.at("build_s").get<double>()});
-    if (value.contains("quantity")) set.quantity = quantity_from(value.at("quantity").get<std::string>());
+    if (value.contains("quantity")) set.quantity = named<Quantity>(value.at("quantity"), "quantity");
     for (const json& q : value.at("questions")) set.questions.push_back(question_from(q, set.quantity));
     return set;
   } catch (const json::exception& e) {

@@ -9,11 +9,9 @@
 
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/chart_page.hpp"
-#include "bench/speed/data_set.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/bodies/shapes.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -21,8 +19,6 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
-#include <lrbscope/mesh.hpp>
-
 namespace lrb::bench {
 
 Approaches::Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::uint64_t seed)

@@ -1,8 +1,6 @@
 #include "bench/speed/metrics.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <map>

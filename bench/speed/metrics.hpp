@@ -3,10 +3,7 @@
 /// class of poses).
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,15 +1,11 @@
 #include "bench/speed/survey.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <tuple>
 
-#include <nlohmann/json.hpp>
-
-#include "bench/workers/workers.hpp"
+#include "bench/workers/worker_json.hpp"
 #include "scenarios/io/files.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
@@ -98,8 +94,7 @@ class Survey {
     };
     task.begin = begin;
     task.end = end;
-    task.limit =
-        std::chrono::duration_cast<workers::Job::Clock::duration>(std::chrono::duration<double>(o_.timeout));
+    task.limit = std::chrono::duration<double>(o_.timeout);
     task.on_line = [&](std::uint64_t, const std::string& line) {
       Record r = record_from(nlohmann::json::parse(line));
       r.round = round;
@@ -114,8 +109,7 @@ class Survey {
       r.question = k;
       r.round = round;
       r.pose_class = set.questions[k].pose_class;
-      r.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
-      r.message = failure.message;
+      workers::note_failure(r, failure);
       keep(std::move(r));
       notify(what);
     };

@@ -1,7 +1,5 @@
 #include "bench/stability/case_meshes.hpp"
 
-#include <chrono>
-
 #include <nlohmann/json.hpp>
 
 #include "bench/methods/triangles.hpp"
@@ -86,8 +84,7 @@ Replay CaseWorker::ask(const CaseMeshes& meshes) {
   file.write(text);
   worker_->ask(nlohmann::json{{"saved", file.path()}}.dump());
   workers::WorkerFailure failure;
-  const auto limit = std::chrono::duration_cast<workers::Worker::Clock::duration>(timeout_);
-  if (const auto line = worker_->answer(limit, failure)) {
+  if (const auto line = worker_->answer(timeout_, failure)) {
     if (const std::string error = workers::error_in(*line); !error.empty())
       throw EnvironmentError(method_.program + ": " + error);
     out.take(*line);
@@ -96,7 +93,7 @@ Replay CaseWorker::ask(const CaseMeshes& meshes) {
   worker_.reset();
   out.record.method = method_.info.name;
   out.record.expected = right.pairs.size();
-  out.record = record_of_failure(std::move(out.record), failure);
+  workers::note_failure(out.record, failure);
   return out;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <set>
+#include <string>
 #include <unordered_set>
 
 #include "bench/methods/triangles.hpp"

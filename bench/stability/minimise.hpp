@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <string>
 
 #include "bench/stability/case_meshes.hpp"
 #include "bench/stability/stability_experiment.hpp"

@@ -51,7 +51,7 @@ Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRo
   return grid;
 }
 
-std::uint64_t Cell::sum(const std::array<std::uint64_t, cases::kDifficulties>& counts) {
+std::uint64_t Cell::sum(const Counts& counts) {
   std::uint64_t n = 0;
   for (const std::uint64_t c : counts) n += c;
   return n;
@@ -159,28 +159,13 @@ std::vector<Record> read_records(const std::string& path) {
 
 namespace {
 
-/// Returns the lowest difficulty with a failure, or -1.
-int first_failure(const Cell& c) {
-  for (int d = 0; d < kDifficulties; ++d)
-    if (c.wrong[d] + c.crashed[d] + c.timed_out[d] > 0) return d;
-  return -1;
-}
-
 std::string cell_text(const workers::MethodColumn& method, const Cell& c) {
   if (!method.present) return "absent";
   if (Cell::sum(c.cases) == 0) return "";
   if (c.answered() == 0) return "refused";
   std::string text = std::to_string(c.failures()) + "/" + std::to_string(c.answered());
-  if (const int from = first_failure(c); from >= 0) text += " @" + std::to_string(from);
+  if (const int from = summarise(c).first_failing; from >= 0) text += " @" + std::to_string(from);
   return text;
-}
-
-using Counts = std::array<std::uint64_t, kDifficulties>;
-
-std::string total(const Grid& grid, std::size_t method, Counts Cell::*counts) {
-  std::uint64_t n = 0;
-  for (std::size_t f = 0; f < grid.families.size(); ++f) n += Cell::sum(grid.at(f, method).*counts);
-  return std::to_string(n);
 }
 
 }  // namespace
@@ -194,15 +179,16 @@ report::Table table_of(const Grid& grid) {
     for (std::size_t m = 0; m < grid.methods.size(); ++m)
       rows.back().push_back(cell_text(grid.methods[m], grid.at(f, m)));
   }
-  const std::pair<const char*, Counts Cell::*> sums[] = {{"all: wrong", &Cell::wrong},
-                                                         {"all: crashed", &Cell::crashed},
-                                                         {"all: timed out", &Cell::timed_out},
-                                                         {"all: refused", &Cell::rejected},
-                                                         {"all: cases", &Cell::cases}};
+  const std::pair<const char*, Cell::Counts Cell::*> sums[] = {{"all: wrong", &Cell::wrong},
+                                                               {"all: crashed", &Cell::crashed},
+                                                               {"all: timed out", &Cell::timed_out},
+                                                               {"all: refused", &Cell::rejected},
+                                                               {"all: cases", &Cell::cases}};
   for (const auto& [name, counts] : sums) {
     rows.push_back({name});
     for (std::size_t m = 0; m < grid.methods.size(); ++m)
-      rows.back().push_back(grid.methods[m].present ? total(grid, m, counts) : "absent");
+      rows.back().push_back(
+          grid.methods[m].present ? std::to_string(Cell::sum(sum_of_column(grid, m).*counts)) : "absent");
   }
   return table;
 }

@@ -5,7 +5,6 @@
 /// The raw records (JSON Lines, one per case and method) are written first. Grid, page and pictures are
 /// computed from them alone.
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -62,10 +61,11 @@ struct Record {
 
 /// The results of one method on one family.
 struct Cell {
-  std::array<std::uint64_t, kDifficulties> cases{}, wrong{}, rejected{}, crashed{}, timed_out{};
+  using Counts = std::array<std::uint64_t, kDifficulties>;
+  Counts cases{}, wrong{}, rejected{}, crashed{}, timed_out{};
   std::optional<Record> worst;  ///< a failure of the lowest difficulty
 
-  static std::uint64_t sum(const std::array<std::uint64_t, kDifficulties>& counts);
+  static std::uint64_t sum(const Counts& counts);
   /// Returns the number of failures. Rejections do not count as failures.
   std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
   /// Returns the number of cases that were not rejected.
@@ -133,16 +133,10 @@ inline constexpr std::array<const char*, 5> kLevelNames = {"none fails", "under 
                                                            "under half", "half or more"};
 
 inline CellSummary summarise(const Cell& cell) {
-  CellSummary s;
-  for (int d = 0; d < kDifficulties; ++d) {
-    const auto i = static_cast<std::size_t>(d);
-    s.cases += cell.cases[i];
-    s.wrong += cell.wrong[i];
-    s.rejected += cell.rejected[i];
-    s.crashed += cell.crashed[i];
-    s.timed_out += cell.timed_out[i];
-    if (s.first_failing < 0 && cell.wrong[i] + cell.crashed[i] + cell.timed_out[i] > 0) s.first_failing = d;
-  }
+  CellSummary s{Cell::sum(cell.cases), Cell::sum(cell.wrong), Cell::sum(cell.rejected),
+                Cell::sum(cell.crashed), Cell::sum(cell.timed_out)};
+  for (std::size_t d = kDifficulties; d-- > 0;)
+    if (cell.wrong[d] + cell.crashed[d] + cell.timed_out[d] > 0) s.first_failing = static_cast<int>(d);
   return s;
 }
 
@@ -151,13 +145,8 @@ inline Cell sum_of_column(const Grid& grid, std::size_t method) {
   Cell sum;
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     const Cell& c = grid.at(f, method);
-    for (std::size_t i = 0; i < kDifficulties; ++i) {
-      sum.cases[i] += c.cases[i];
-      sum.wrong[i] += c.wrong[i];
-      sum.rejected[i] += c.rejected[i];
-      sum.crashed[i] += c.crashed[i];
-      sum.timed_out[i] += c.timed_out[i];
-    }
+    for (const auto counts : {&Cell::cases, &Cell::wrong, &Cell::rejected, &Cell::crashed, &Cell::timed_out})
+      for (std::size_t i = 0; i < kDifficulties; ++i) (sum.*counts)[i] += (c.*counts)[i];
   }
   return sum;
 }

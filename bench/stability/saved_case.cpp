@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <iterator>
 #include <optional>
 #include <sstream>
 
@@ -12,7 +10,6 @@
 
 #include "bench/methods/triangles.hpp"
 #include "bench/stability/case_picture.hpp"
-#include "bench/stability/minimise.hpp"
 #include "bench/stability/rational_oracles.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/io/files.hpp"

@@ -29,7 +29,8 @@ std::optional<SimplexPair> deciding_pair(const cases::Case& c, const std::vector
 /// doubles) and case.json. `replays`: of the same case, at least one. `minimised`: how the case was made
 /// from another; null if it was not. Returns the names of the files.
 std::vector<std::string> save_case(const cases::Case& c, const std::vector<Replay>& replays,
-                                   const std::string& folder, const nlohmann::ordered_json* minimised = nullptr);
+                                   const std::string& folder,
+                                   const nlohmann::ordered_json* minimised = nullptr);
 
 /// A case of such a folder.
 struct SavedCase {

@@ -4,19 +4,14 @@
 #include <deque>
 #include <iterator>
 #include <list>
-#include <map>
-#include <memory>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
 #include <poll.h>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/stability/outcome_grid.hpp"
 #include "bench/workers/worker_json.hpp"
-#include "bench/workers/workers.hpp"
 #include "scenarios/io/files.hpp"
-#include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -49,12 +44,6 @@ std::string why_not(const cases::Case& c) {
 }
 
 }  // namespace
-
-Record record_of_failure(Record r, const workers::WorkerFailure& failure) {
-  r.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
-  r.message = failure.message;
-  return r;
-}
 
 RightAnswer expected_answer(const cases::Case& c) {
   RightAnswer e;
@@ -101,13 +90,8 @@ const char* in_brief(bool contact, bool inside) {
 
 void compare_pairs(Record& record, const std::vector<SimplexPair>& answered,
                    const std::vector<SimplexPair>& expected) {
-  std::vector<SimplexPair> missed, extra;
-  std::set_difference(expected.begin(), expected.end(), answered.begin(), answered.end(),
-                      std::back_inserter(missed));
-  std::set_difference(answered.begin(), answered.end(), expected.begin(), expected.end(),
-                      std::back_inserter(extra));
-  record.missed = missed.size();
-  record.extra = extra.size();
+  record.missed = methods::without(expected, answered).size();
+  record.extra = methods::without(answered, expected).size();
 }
 
 void compare_contact(Record& record, bool answered, bool expected) {
@@ -169,11 +153,8 @@ void judge_swapped(Record& record, const MethodInfo& info, const MethodAnswer& a
 
 namespace {
 
-constexpr double kBruteForceTimeout = 120;  // seconds; brute force is slow, but never hangs
-
-workers::Job::Clock::duration seconds(double s) {
-  return std::chrono::duration_cast<workers::Job::Clock::duration>(std::chrono::duration<double>(s));
-}
+using Seconds = std::chrono::duration<double>;
+constexpr Seconds kBruteForceTimeout(120);  // brute force is slow, but never hangs
 
 Record blank_record(const std::string& family, const std::string& method, int difficulty,
                     std::uint64_t case_index, std::uint64_t seed) {
@@ -299,7 +280,7 @@ class Experiment {
     task.question = [this, &family](std::uint64_t k) { return question(family, k).dump(); };
     task.begin = begin_;
     task.end = end_;
-    task.limit = seconds(kBruteForceTimeout);
+    task.limit = kBruteForceTimeout;
     task.on_line = [this, &family](std::uint64_t, const std::string& line) {
       family.expected.write(line + "\n");
       family.expected_pairs.push_back(expected_from(line).pairs.size());
@@ -336,7 +317,7 @@ class Experiment {
       hand_over_finished();
     };
     if (task.begin == end_) return on_done();
-    task.limit = seconds(o_.timeout);
+    task.limit = Seconds(o_.timeout);
     task.on_line = [this, &family, m](std::uint64_t, const std::string& line) {
       keep(family, m, record_from(nlohmann::json::parse(line)));
     };
@@ -344,7 +325,8 @@ class Experiment {
       Record r = blank_record(family.name, o_.methods[m].column.name, static_cast<int>(k / o_.cases),
                               k % o_.cases, o_.seed);
       r.expected = family.expected_pairs[k - begin_];
-      keep(family, m, record_of_failure(r, failure));
+      workers::note_failure(r, failure);
+      keep(family, m, std::move(r));
     };
     running_.push_back({std::make_unique<workers::Job>(std::move(task)), on_done});
   }
@@ -419,10 +401,10 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
               std::uint64_t case_index, std::uint64_t seed, double timeout, Quantity quantity) {
   nlohmann::ordered_json question = question_of(family, difficulty, case_index, seed);
   Replay result;
-  const auto answer = [&](const std::string& name, double limit, workers::WorkerFailure& failure) {
+  const auto answer = [&](const std::string& name, Seconds limit, workers::WorkerFailure& failure) {
     workers::Worker worker(command_of(method.program, quantity, name));
     worker.ask(question.dump());
-    std::optional<std::string> line = worker.answer(seconds(limit), failure);
+    std::optional<std::string> line = worker.answer(limit, failure);
     if (const std::string error = line ? workers::error_in(*line) : ""; !error.empty())
       throw EnvironmentError(method.program + ": " + error);
     return line;
@@ -436,12 +418,13 @@ Replay replay(const workers::WorkerMethod& method, const std::string& family, in
   question["right"] = file.path();
   question["line"] = 0;
   question["pairs"] = true;
-  if (const auto line = answer(method.column.name, timeout, failure)) {
+  if (const auto line = answer(method.column.name, Seconds(timeout), failure)) {
     result.take(*line);
   } else {
     Record r = blank_record(family, method.column.name, difficulty, case_index, seed);
     r.expected = result.expected.size();
-    result.record = record_of_failure(std::move(r), failure);
+    workers::note_failure(r, failure);
+    result.record = std::move(r);
   }
   return result;
 }

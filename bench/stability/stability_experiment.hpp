@@ -83,9 +83,6 @@ struct Replay {
   void take(const std::string& line);
 };
 
-/// Returns the record with the outcome of a worker that did not answer.
-Record record_of_failure(Record record, const workers::WorkerFailure& failure);
-
 Replay replay(const workers::WorkerMethod& method, const std::string& family, int difficulty,
               std::uint64_t case_index, std::uint64_t seed, double timeout,
               Quantity quantity = Quantity::pairs);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 
-#include "bench/stability/outcome_grid.hpp"
 #include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/assets.hpp"

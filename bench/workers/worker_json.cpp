@@ -1,7 +1,5 @@
 #include "bench/workers/worker_json.hpp"
 
-#include "trace/json_read.hpp"
-
 namespace lrb {
 
 template <>

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/methods/method.hpp"
+#include "bench/workers/workers.hpp"
 #include "trace/json_records.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
@@ -38,6 +39,14 @@ void note_failures(Record& record, Ask ask) {
     record.outcome = Outcome::crashed;
     record.message = std::string("threw an exception: ") + e.what();
   }
+}
+
+/// Records that a worker did not answer.
+template <class Record>
+void note_failure(Record& record, const WorkerFailure& failure) {
+  using Outcome = decltype(record.outcome);
+  record.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
+  record.message = failure.message;
 }
 
 }  // namespace lrb::workers

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
@@ -206,12 +205,12 @@ std::string error_in(const std::string& answer) {
   return value.is_object() ? value.value("error", "") : "";
 }
 
-std::optional<std::string> Worker::answer(Clock::duration limit, WorkerFailure& failure) {
+std::optional<std::string> Worker::answer(std::chrono::duration<double> limit, WorkerFailure& failure) {
   std::string line;
-  const auto next = child_.next_line(Clock::now() + limit, line);
+  const auto next = child_.next_line(Clock::now() + std::chrono::duration_cast<Clock::duration>(limit), line);
   if (next == Child::Next::line) return line;
   if (next == Child::Next::late) {
-    failure = {true, text_of_timeout(std::chrono::duration<double>(limit).count())};
+    failure = {true, text_of_timeout(limit.count())};
     return std::nullopt;
   }
   const int status = child_.wait();
@@ -240,7 +239,7 @@ void Job::start() {
   child_.emplace(task_.command, pipe_->reading_end());
   sent_ = next_;
   ask_ahead();
-  deadline_ = Clock::now() + task_.limit;
+  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(task_.limit);
 }
 
 void Job::ask_ahead() {
@@ -260,7 +259,7 @@ void Job::receive() {
   if (next_ == task_.end) return child_.reset();
   if (!lines.empty()) {
     ask_ahead();
-    deadline_ = Clock::now() + task_.limit;
+    deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(task_.limit);
   }
   if (more) return;
   const int status = child_->wait();
@@ -271,7 +270,7 @@ void Job::receive() {
 
 void Job::expire() {
   child_->kill();
-  go_on({true, text_of_timeout(std::chrono::duration<double>(task_.limit).count())});
+  go_on({true, text_of_timeout(task_.limit.count())});
 }
 
 void Job::go_on(const WorkerFailure& failure) {

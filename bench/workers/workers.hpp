@@ -119,7 +119,7 @@ class Worker {
   void ask(const std::string& question) const { pipe_.write(question + "\n"); }
   /// Returns the next answer, or nullopt and the reason why there is none; the process is then of no more
   /// use. Throws EnvironmentError if the program cannot be started.
-  std::optional<std::string> answer(Clock::duration limit, WorkerFailure& failure);
+  std::optional<std::string> answer(std::chrono::duration<double> limit, WorkerFailure& failure);
 
  private:
   std::vector<std::string> command_;
@@ -138,7 +138,7 @@ class Job {
     std::vector<std::string> command;
     std::uint64_t begin = 0, end = 0;  ///< numbers of the questions
     std::function<std::string(std::uint64_t k)> question;
-    Clock::duration limit{};  ///< per question
+    std::chrono::duration<double> limit{};  ///< per question
     /// Called in order for each question, with its answer or the failure in its place.
     std::function<void(std::uint64_t k, const std::string& line)> on_line;
     std::function<void(std::uint64_t k, const WorkerFailure& failure)> on_failure;
