@@ -38,44 +38,85 @@ std::vector<FaceId> component(const Mesh& mesh, FaceId first) {
   return faces;
 }
 
+using Mark = LegendItem::Mark;
+
+/// The meaning of the two numbers of an affected element.
+enum class About : std::uint8_t { face, two_faces, component_of_face, vertex, two_vertices, edge };
+
+struct FaultRow {
+  MeshFault fault;
+  About about;
+  const char *one, *many, *one_2d, *many_2d;
+  Rgba colour;
+  Mark mark;
+};
+constexpr const char *kFlipped = "pair of inconsistently oriented neighbours",
+                     *kFlippedMany = "pairs of inconsistently oriented neighbours",
+                     *kInsideOut = "inside-out component", *kInsideOutMany = "inside-out components",
+                     *kCoincident = "pair of coincident vertices",
+                     *kCoincidentMany = "pairs of coincident vertices";
+constexpr FaultRow kFaults[] = {
+    {MeshFault::open_edge, About::edge, "open edge", "open edges", "loose end", "loose ends",
+     palette::kVermillion, Mark::line},
+    {MeshFault::non_manifold_edge, About::edge, "edge with more than two faces",
+     "edges with more than two faces", "branching vertex", "branching vertices", palette::kPurple,
+     Mark::line},
+    {MeshFault::non_manifold_vertex, About::vertex, "vertex with several fans", "vertices with several fans",
+     "", "", palette::kPurple, Mark::point},
+    {MeshFault::flipped_face, About::two_faces, kFlipped, kFlippedMany, kFlipped, kFlippedMany,
+     palette::kBlue, Mark::solid},
+    {MeshFault::duplicate_face, About::two_faces, "duplicate face", "duplicate faces", "duplicate segment",
+     "duplicate segments", palette::kGreen, Mark::solid},
+    {MeshFault::self_intersection, About::two_faces, "intersecting pair of faces",
+     "intersecting pairs of faces", "intersecting pair of segments", "intersecting pairs of segments",
+     palette::kOrange, Mark::solid},
+    {MeshFault::non_planar_face, About::face, "non-planar polygon", "non-planar polygons", "", "",
+     palette::kYellow, Mark::solid},
+    {MeshFault::non_convex_face, About::face, "concave polygon", "concave polygons", "", "", palette::kYellow,
+     Mark::solid},
+    {MeshFault::folded_face, About::face, "crossed polygon", "crossed polygons", "", "", palette::kYellow,
+     Mark::solid},
+    {MeshFault::repeated_corner, About::face, "face with a corner twice", "faces with a corner twice", "", "",
+     palette::kYellow, Mark::solid},
+    {MeshFault::zero_area_face, About::face, "face without area", "faces without area",
+     "segment without length", "segments without length", palette::kYellow, Mark::line},
+    {MeshFault::inside_out, About::component_of_face, kInsideOut, kInsideOutMany, kInsideOut, kInsideOutMany,
+     palette::kSkyBlue, Mark::solid},
+    {MeshFault::duplicate_vertex, About::two_vertices, kCoincident, kCoincidentMany, kCoincident,
+     kCoincidentMany, palette::kGreen, Mark::point},
+    {MeshFault::unused_vertex, About::vertex, "unused vertex", "unused vertices", "unused vertex",
+     "unused vertices", palette::kInk, Mark::point}};
+
+const FaultRow& row_of(MeshFault kind) {
+  return *std::find_if(std::begin(kFaults), std::end(kFaults) - 1,
+                       [&](const FaultRow& row) { return row.fault == kind; });
+}
+
 Parts parts_of(const Mesh& mesh, MeshFault kind, const Element& e) {
-  switch (kind) {
-    case MeshFault::open_edge:
-    case MeshFault::non_manifold_edge:
-      if (e[1] == kNull) return {{}, {VertexId(e[0])}, false};
-      return {{}, {VertexId(e[0]), VertexId(e[1])}, true};
-    case MeshFault::non_manifold_vertex:
-    case MeshFault::unused_vertex:
-      return {{}, {VertexId(e[0])}, false};
-    case MeshFault::duplicate_vertex:
-      return {{}, {VertexId(e[0]), VertexId(e[1])}, false};
-    case MeshFault::duplicate_face:
-    case MeshFault::flipped_face:
-    case MeshFault::self_intersection:
-      return {{FaceId(e[0]), FaceId(e[1])}, {}, false};
-    case MeshFault::inside_out:
-      return {component(mesh, FaceId(e[0])), {}, false};
-    default:
+  switch (row_of(kind).about) {
+    case About::face:
       return {{FaceId(e[0])}, {}, false};
+    case About::two_faces:
+      return {{FaceId(e[0]), FaceId(e[1])}, {}, false};
+    case About::component_of_face:
+      return {component(mesh, FaceId(e[0])), {}, false};
+    case About::two_vertices:
+      return {{}, {VertexId(e[0]), VertexId(e[1])}, false};
+    case About::edge:
+      if (e[1] != kNull) return {{}, {VertexId(e[0]), VertexId(e[1])}, true};
+      [[fallthrough]];
+    case About::vertex:
+      break;
   }
+  return {{}, {VertexId(e[0])}, false};
 }
 
 /// Returns the display name of an affected element: "0-42", "3 + 80", "7".
 std::string number_of(MeshFault kind, const Element& e) {
-  std::string a = std::to_string(e[0]);
-  const std::string b = std::to_string(e[1]);
-  switch (kind) {
-    case MeshFault::open_edge:
-    case MeshFault::non_manifold_edge:
-      return e[1] == kNull ? a : a + "-" + b;
-    case MeshFault::duplicate_vertex:
-    case MeshFault::duplicate_face:
-    case MeshFault::flipped_face:
-    case MeshFault::self_intersection:
-      return a + " + " + b;
-    default:
-      return a;
-  }
+  const About about = row_of(kind).about;
+  const bool is_edge = about == About::edge && e[1] != kNull;
+  if (!is_edge && about != About::two_faces && about != About::two_vertices) return std::to_string(e[0]);
+  return std::to_string(e[0]) + (is_edge ? "-" : " + ") + std::to_string(e[1]);
 }
 
 std::vector<Vector3d> corners(const Mesh& mesh, FaceId f) {
@@ -156,82 +197,12 @@ std::vector<Vector3d> cut(const Mesh& mesh, FaceId f, FaceId g) {
   return {one, other};
 }
 
-using Mark = LegendItem::Mark;
-
 /// An unused vertex farther from the faces than this many times their size is omitted from the picture.
 constexpr double kNear = 1.0;
 /// In the close-up of a vertex, faces farther away than this many times their size are omitted.
 constexpr double kFar = 20;
 /// Share of the default direction that is added to a normal, so that a close-up does not look flat.
 constexpr double kTilt = 0.35;
-
-struct FaultStyle {
-  const char *one, *many, *one_2d, *many_2d;
-  Rgba colour;
-  Mark mark;
-};
-
-FaultStyle fault_style(MeshFault kind) {
-  switch (kind) {
-    case MeshFault::open_edge:
-      return {"open edge", "open edges", "loose end", "loose ends", palette::kVermillion, Mark::line};
-    case MeshFault::non_manifold_edge:
-      return {"edge with more than two faces",
-              "edges with more than two faces",
-              "branching vertex",
-              "branching vertices",
-              palette::kPurple,
-              Mark::line};
-    case MeshFault::non_manifold_vertex:
-      return {
-          "vertex with several fans", "vertices with several fans", "", "", palette::kPurple, Mark::point};
-    case MeshFault::flipped_face:
-      return {"pair of inconsistently oriented neighbours",
-              "pairs of inconsistently oriented neighbours",
-              "pair of inconsistently oriented neighbours",
-              "pairs of inconsistently oriented neighbours",
-              palette::kBlue,
-              Mark::solid};
-    case MeshFault::duplicate_face:
-      return {"duplicate face",     "duplicate faces", "duplicate segment",
-              "duplicate segments", palette::kGreen,   Mark::solid};
-    case MeshFault::self_intersection:
-      return {"intersecting pair of faces",
-              "intersecting pairs of faces",
-              "intersecting pair of segments",
-              "intersecting pairs of segments",
-              palette::kOrange,
-              Mark::solid};
-    case MeshFault::non_planar_face:
-      return {"non-planar polygon", "non-planar polygons", "", "", palette::kYellow, Mark::solid};
-    case MeshFault::non_convex_face:
-      return {"concave polygon", "concave polygons", "", "", palette::kYellow, Mark::solid};
-    case MeshFault::folded_face:
-      return {"crossed polygon", "crossed polygons", "", "", palette::kYellow, Mark::solid};
-    case MeshFault::repeated_corner:
-      return {"face with a corner twice", "faces with a corner twice", "", "", palette::kYellow, Mark::solid};
-    case MeshFault::zero_area_face:
-      return {"face without area",       "faces without area", "segment without length",
-              "segments without length", palette::kYellow,     Mark::line};
-    case MeshFault::inside_out:
-      return {"inside-out component",  "inside-out components", "inside-out component",
-              "inside-out components", palette::kSkyBlue,       Mark::solid};
-    case MeshFault::duplicate_vertex:
-      return {"pair of coincident vertices",
-              "pairs of coincident vertices",
-              "pair of coincident vertices",
-              "pairs of coincident vertices",
-              palette::kGreen,
-              Mark::point};
-    default:
-      return {"unused vertex",   "unused vertices", "unused vertex",
-              "unused vertices", palette::kInk,     Mark::point};
-  }
-}
-
-bool is_edge_kind(MeshFault kind) {
-  return kind == MeshFault::open_edge || kind == MeshFault::non_manifold_edge;
-}
 
 /// Returns the faces at an affected element: its own, or those that use its vertices (for an edge, both of
 /// them).
@@ -323,8 +294,8 @@ std::vector<MeshFault> kinds(const MeshReport& report) {
 }
 
 LegendItem key(MeshFault kind, int dim) {
-  const FaultStyle style = fault_style(kind);
-  const bool point = dim == 2 && is_edge_kind(kind);
+  const FaultRow& style = row_of(kind);
+  const bool point = dim == 2 && style.about == About::edge;
   const bool line = dim == 2 && style.mark == Mark::solid;
   return {point  ? Mark::point
           : line ? Mark::line
@@ -334,7 +305,7 @@ LegendItem key(MeshFault kind, int dim) {
 
 std::string caption(MeshFault kind, const MeshFinding& finding, int dim,
                     std::span<const BoundaryLoop> loops) {
-  const FaultStyle style = fault_style(kind);
+  const FaultRow& style = row_of(kind);
   const bool one = finding.count == 1;
   std::string out = group_digits(finding.count) + " " +
                     (dim == 2 ? (one ? style.one_2d : style.many_2d) : (one ? style.one : style.many));
