@@ -4,15 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <vector>
 
 #include <Eigen/Geometry>
-
-#include <lrbscope/render/camera.hpp>
 
 namespace lrb::render {
 

@@ -2,21 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
-#include <memory>
 #include <mutex>
-#include <string>
 #include <string_view>
 #include <thread>
-#include <vector>
-
 // The functions are loaded at run time; no type of a window system is needed.
 #define EGL_NO_PLATFORM_SPECIFIC_TYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <GL/glcorearb.h>
 #include <dlfcn.h>
 #include <sys/mman.h>
 

@@ -1,7 +1,6 @@
 #pragma once
 /// The functions of OpenGL 3.3 core used by render, loaded at run time.
 
-#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>

@@ -3,8 +3,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <numeric>
-#include <string>
 
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>

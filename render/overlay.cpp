@@ -4,8 +4,6 @@
 
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
-#include <lrbscope/render/style.hpp>
-
 namespace lrb::render {
 namespace {
 

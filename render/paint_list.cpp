@@ -9,8 +9,6 @@
 #include <vector>
 
 #include <lrbscope/error.hpp>
-#include <lrbscope/render/rasterize.hpp>
-
 namespace lrb::render {
 namespace {
 

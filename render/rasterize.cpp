@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <string>
 
 #include <glm/gtc/type_ptr.hpp>
 
 #include "render/gl.hpp"
 #include <lrbscope/error.hpp>
-#include <lrbscope/render/image.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/render/rasterize.hpp>
 

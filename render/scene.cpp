@@ -4,8 +4,6 @@
 #include "render/scene_parts.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/scene.hpp>
-#include <lrbscope/render/style.hpp>
-
 namespace lrb::render {
 namespace scene {
 

@@ -2,7 +2,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "render/canvas.hpp"
 #include "render/page_palette.hpp"

@@ -10,7 +10,6 @@
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
-#include "python/src/objects.hpp"
 #include "python/src/properties.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/parallel.hpp>

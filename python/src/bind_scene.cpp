@@ -1,5 +1,4 @@
 #include <mutex>
-#include <optional>
 #include <unordered_map>
 
 #include "python/src/answers.hpp"

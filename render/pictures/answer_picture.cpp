@@ -7,7 +7,6 @@
 
 #include <Eigen/Geometry>
 
-#include "render/pictures/marks.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/wrapper.hpp>
 

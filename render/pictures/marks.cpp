@@ -1,6 +1,5 @@
 #include "render/pictures/marks.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -8,8 +7,6 @@
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/render/overlay.hpp>
-#include <lrbscope/render/style.hpp>
-
 namespace lrb::run {
 
 void add_box(render::DrawList& list, const Eigen::Vector3d& centre,
