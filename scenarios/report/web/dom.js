@@ -4,6 +4,24 @@ export const style = (name) => getComputedStyle(document.documentElement).getPro
 export const digits = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 export const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : many}`;
 
+const SVG = "http://www.w3.org/2000/svg";
+const fill = (node, attributes, content) => {
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...content);
+  return node;
+};
+/** Makes an element with attributes and content: texts and elements. */
+export const element = (tag, attributes = {}, ...content) => fill(document.createElement(tag), attributes, content);
+/** As above, of a picture. */
+export const svgElement = (tag, attributes = {}, ...content) =>
+  fill(document.createElementNS(SVG, tag), attributes, content);
+
+export function textButton(text, action, title = "") {
+  const button = element("button", { type: "button", class: "text", title }, text);
+  button.onclick = action;
+  return button;
+}
+
 /** Makes a row of a table lead somewhere: by a click, or by Enter. */
 export function linkRow(row, follow) {
   row.className = "leads";

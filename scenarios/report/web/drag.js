@@ -1,5 +1,5 @@
 // ---- the live page of a run: B is dragged, and the engine in this page (wasm/engine.cpp) answers every pose
-import { byId, digits, oncePerFrame, plural } from "./dom.js";
+import { byId, digits, element, oncePerFrame, plural } from "./dom.js";
 import { Body, NONE } from "./scene_run.js";
 import { BodiesCanvas, FIELD, webglWorks } from "./scene_view.js";
 
@@ -296,11 +296,9 @@ class LivePage {
     byId("pairs-shown").textContent = pairs[0].length > most ? `the first ${most}` : "";
     byId("pair-rows").replaceChildren(
       ...Array.from({ length: count }, (_, i) => {
-        const row = document.createElement("button"),
-          [a, b] = pairs.map((list, side) => this.bodies[side].faceOfSimplex(list[i]));
-        row.type = "button";
-        row.textContent = `face ${digits(a)} of A, face ${digits(b)} of B`;
-        row.title = "Show this pair";
+        const [a, b] = pairs.map((list, side) => this.bodies[side].faceOfSimplex(list[i])),
+          words = `face ${digits(a)} of A, face ${digits(b)} of B`,
+          row = element("button", { type: "button", title: "Show this pair" }, words);
         row.onclick = () => {
           this.picked = this.picked === i ? -1 : i;
           [...byId("pair-rows").children].forEach((r, k) => r.setAttribute("aria-pressed", k === this.picked));

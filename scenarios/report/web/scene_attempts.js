@@ -1,6 +1,6 @@
 // ---- the attempts of a builder to cover parts of the front with caps, and the places where they were made, as in
 // scenarios/record/attempts.hpp
-import { byId, digits, linkRow } from "./dom.js";
+import { byId, digits, element, linkRow } from "./dom.js";
 import { short } from "./scene_panels.js";
 import { grouped, lastAtMost, NONE, outcomeText, unpack } from "./scene_run.js";
 
@@ -207,13 +207,10 @@ export class AttemptPanel {
 
   row(attempt) {
     const { events, attempts } = this,
-      row = document.createElement("tr"),
+      row = element("tr"),
       pass = events.pass(attempt.cap),
       cell = (content, numeric, title) => {
-        const td = document.createElement("td");
-        if (numeric) td.className = "n";
-        td.title = title;
-        td.append(content);
+        const td = element("td", { class: numeric ? "n" : "", title }, content);
         row.append(td);
         return td;
       };
@@ -221,10 +218,7 @@ export class AttemptPanel {
     cell(pass ? pass.words.split(":")[0].replace("pass ", "") : "", true, pass ? pass.words : "");
     cell(digits(events.b[attempt.patch]), true, "faces of the patch");
     cell(covered ? `${digits(faces)} for ${digits(covered)}` : "none", false, "faces of the cap, for the faces of the front that it replaces");
-    const result = cell(outcomeText(events, attempt.cap), false, ""),
-      reason = document.createElement("small");
-    reason.textContent = attempts.reason(attempt);
-    result.append(reason);
+    cell(outcomeText(events, attempt.cap), false, "").append(element("small", {}, attempts.reason(attempt)));
     linkRow(row, () => this.show(attempt));
     row.attempt = attempt;
     return row;

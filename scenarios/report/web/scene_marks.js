@@ -1,4 +1,4 @@
-import { byId, digits } from "./dom.js";
+import { byId, digits, element } from "./dom.js";
 import { boxEdges, COUNTERS, discard, edgesOf, FaceMesh, mixed, roundPoints, thickLines, thickMaterial, WHITE } from "./scene_bodies.js";
 import { SIDES, unpack } from "./scene_run.js";
 
@@ -336,12 +336,10 @@ export class Legend {
   write() {
     byId("legend").replaceChildren(
       ...[...this.items, ...Object.values(this.more).flat()].map(([colour, text, rim]) => {
-        const item = document.createElement("span"),
-          dot = document.createElement("i");
+        const dot = element("i");
         dot.style.background = colour;
         if (rim) dot.style.outline = `1.5px solid ${rim}`;
-        item.append(dot, text);
-        return item;
+        return element("span", {}, dot, text);
       }),
     );
   }

@@ -1,7 +1,7 @@
 // ---- the parts of the page of a run around its view: tabs, signs of scrolling, the picture of the cost, the address
-import { byId, digits, oncePerFrame } from "./dom.js";
+import { byId, digits, element, oncePerFrame, svgElement, textButton } from "./dom.js";
 import { seek } from "./page.js";
-import { SVG, textButton, WORK_SORTS, workSort } from "./scene_panels.js";
+import { WORK_SORTS, workSort } from "./scene_panels.js";
 import { eventText, lastAtMost, NONE, SIDES } from "./scene_run.js";
 
 const TAB_ORDER = ["Not as expected", "This step", "Answer", "Events", "Work", "Steps", "Queries", "Charts"], // then all others
@@ -40,23 +40,15 @@ export class Tabs {
       .sort((p, q) => place(p) - place(q));
     for (const [name, parts] of groups) if (!this.names.includes(name)) for (const part of parts) part.remove();
     this.listeners = [];
-    this.bar = document.createElement("div");
-    this.bar.className = "tab-bar";
-    this.bar.setAttribute("role", "tablist");
-    this.body = document.createElement("div");
-    this.body.className = "tab-body";
+    this.bar = element("div", { class: "tab-bar", role: "tablist" });
+    this.body = element("div", { class: "tab-body" });
     this.buttons = new Map();
     this.panels = new Map();
     this.names.forEach((name, i) => this.add(name, groups.get(name), i));
-    const section = document.createElement("section"),
-      head = document.createElement("div");
     this.taller = textButton("taller", () => this.toggleHeight(), "Tables and charts higher, view lower (T)");
-    section.className = "tabs";
-    head.className = "tab-head";
     this.taller.classList.add("taller");
-    head.append(this.bar, this.taller);
-    section.append(head, this.body);
-    byId("scene").append(section);
+    const head = element("div", { class: "tab-head" }, this.bar, this.taller);
+    byId("scene").append(element("section", { class: "tabs" }, head, this.body));
     this.panels.get("Run")?.append(document.querySelector("footer"));
     document.documentElement.classList.add("instrument");
     this.bar.addEventListener("keydown", (e) => {
@@ -73,18 +65,10 @@ export class Tabs {
   }
 
   add(name, parts, i) {
-    const button = document.createElement("button"),
-      panel = document.createElement("div");
-    button.type = "button";
-    button.id = `tab-${i}`;
-    button.setAttribute("role", "tab");
-    button.textContent = name;
-    button.title = i < 9 ? `Key ${i + 1}` : "";
+    const id = `tab-${i}`,
+      button = element("button", { type: "button", id, role: "tab", title: i < 9 ? `Key ${i + 1}` : "" }, name),
+      panel = element("div", { class: "tab-panel", role: "tabpanel", "aria-labelledby": id }, ...parts);
     button.onclick = () => this.show(name);
-    panel.className = "tab-panel";
-    panel.setAttribute("role", "tabpanel");
-    panel.setAttribute("aria-labelledby", button.id);
-    panel.append(...parts);
     this.bar.append(button);
     this.body.append(panel);
     this.buttons.set(name, button);
@@ -155,8 +139,7 @@ export class CostStrip {
   constructor({ title, sorts, bars, contactStep = -1 }) {
     Object.assign(this, { title, sorts, bars, contactStep, at: 0 });
     if (!bars.length) return;
-    this.box = document.createElement("div");
-    this.box.className = "strip";
+    this.box = element("div", { class: "strip" });
     document.querySelector("header").append(this.box);
     new ResizeObserver(oncePerFrame(() => this.draw())).observe(this.box);
   }
@@ -169,17 +152,10 @@ export class CostStrip {
     const height = 46,
       sum = (b) => b.values.reduce((n, v) => n + v, 0),
       most = Math.max(1, ...bars.map(sum)),
-      svg = document.createElementNS(SVG, "svg"),
+      label = `${this.title}; a click selects one`,
+      svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label }),
       step = width / bars.length;
-    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    svg.setAttribute("role", "img");
-    svg.setAttribute("aria-label", `${this.title}; a click selects one`);
-    const make = (name, parent, attributes) => {
-      const part = document.createElementNS(SVG, name);
-      for (const [key, value] of Object.entries(attributes)) part.setAttribute(key, value);
-      parent.append(part);
-      return part;
-    };
+    const make = (name, parent, attributes) => parent.appendChild(svgElement(name, attributes));
     bars.forEach((bar, i) => {
       const group = make("g", svg, { class: "bar" }),
         gap = step > 4 ? Math.min(2, step / 5) : 0;
@@ -201,13 +177,10 @@ export class CostStrip {
     if (this.contactStep > 0)
       make("line", svg, { x1: this.contactStep * step, x2: this.contactStep * step, y1: 0, y2: height, class: "contact" });
     this.cursor = make("rect", svg, { y: 1, height: height - 2, width: Math.max(3, step), class: "cursor" });
-    const words = document.createElement("p");
-    words.append(`${this.title}, up to ${digits(most)}: `);
+    const words = element("p", {}, `${this.title}, up to ${digits(most)}: `);
     const addKey = (name) => {
-      const key = document.createElement("span"),
-        dot = document.createElement("i");
-      key.append(dot, name);
-      words.append(key);
+      const dot = element("i");
+      words.append(element("span", {}, dot, name));
       return dot;
     };
     sorts.forEach((s, k) => {

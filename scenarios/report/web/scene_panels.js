@@ -1,18 +1,8 @@
-import { byId, digits, linkRow, oncePerFrame, plural } from "./dom.js";
+import { byId, digits, element, linkRow, oncePerFrame, plural, svgElement, textButton } from "./dom.js";
 import { seek, showEvent } from "./page.js";
 import { eventPlace, eventText, lastAtMost, NONE, outcomeText, SIDES, sizeText, unpack } from "./scene_run.js";
 
 // ---- widgets that several parts of the page use
-export function textButton(text, action, title = "") {
-  const button = document.createElement("button");
-  button.type = "button";
-  button.className = "text";
-  button.textContent = text;
-  button.title = title;
-  button.onclick = action;
-  return button;
-}
-
 /** What the terms of lists count or name; lists give titles of their own to others. */
 const TERMS = {
   kind: "sort of the event",
@@ -40,13 +30,8 @@ const TERMS = {
 export function fillList(list, rows) {
   list.replaceChildren(
     ...rows.flatMap(([term, value, title]) => {
-      const dt = document.createElement("dt"),
-        dd = document.createElement("dd");
-      dt.textContent = term;
-      const meaning = title || TERMS[term];
-      if (meaning) dt.title = dd.title = meaning;
-      dd.append(value);
-      return [dt, dd];
+      const meaning = { title: title || TERMS[term] || "" };
+      return [element("dt", meaning, term), element("dd", meaning, value)];
     }),
   );
 }
@@ -316,12 +301,9 @@ export class EventTable {
   line(row) {
     const i = this.rows[row],
       events = this.events,
-      line = document.createElement("div"),
-      level = events.level(i);
-    line.className = "row";
-    line.setAttribute("role", "row");
-    line.setAttribute("aria-rowindex", row + 1);
-    line.setAttribute("aria-selected", i === this.selection.event);
+      level = events.level(i),
+      selected = i === this.selection.event,
+      line = element("div", { class: "row", role: "row", "aria-rowindex": row + 1, "aria-selected": selected });
     line.classList.toggle("concerned", concernsPicked(events, i, this.selection.picked));
     line.dataset.event = i;
     const cause = events.cause[i];
@@ -335,10 +317,7 @@ export class EventTable {
       cause === NONE ? "" : digits(cause),
     ];
     cells.forEach((text, column) => {
-      const cell = document.createElement("span");
-      cell.setAttribute("role", "cell");
-      cell.textContent = text;
-      cell.title = text; // which may be too long
+      const cell = element("span", { role: "cell", title: text }, String(text)); // which may be too long
       if (column === 2) cell.style.setProperty("--kind", events.kindOf(i).colour);
       line.append(cell);
     });
@@ -706,7 +685,7 @@ export class WhyPanel {
   showRegions(simplices) {
     const lines = simplices.map((s, side) => {
       const body = this.events.bodies[side],
-        line = document.createElement("p");
+        line = element("p");
       if (!body.complete) return line;
       const regions = [];
       for (let r = body.outer[body.faceOfSimplex(s)]; r !== NONE; r = body.parent[r]) regions.unshift(r);
@@ -783,13 +762,8 @@ export class WhyPanel {
     byId("why-table").hidden = !rows.length;
     byId("why-way").replaceChildren(
       ...rows.map((row, k) => {
-        const line = document.createElement("tr"),
-          cell = (content, numeric) => {
-            const td = document.createElement("td");
-            if (numeric) td.className = "n";
-            td.append(content);
-            line.append(td);
-          };
+        const line = element("tr"),
+          cell = (content, numeric) => line.append(element("td", { class: numeric ? "n" : "" }, content));
         const button = textButton(row.nodes.map(digits).join(", "), null, "Show the two boxes");
         button.dataset.row = k;
         button.setAttribute("aria-pressed", false);
@@ -841,8 +815,6 @@ export const workSort = ({ phase, outcome }) => WORK_SORTS.find((s) => s.of.test
 
 // ---- the distribution of the work, as an icicle: the query on top, its phases, and beneath each the
 // deciding tests
-export const SVG = document.querySelector("svg").namespaceURI;
-
 export class WorkIcicle {
   /** `work`: {outcomes: [{phase, outcome, events, operations, micros}], timed}; null: not recorded. */
   constructor(work, events, filter, form, selection) {
@@ -932,10 +904,11 @@ export class WorkIcicle {
       { zoom } = this,
       rows = this.rows((o) => (zoom === null || o.phase === zoom ? o[measure] : 0)),
       shown = rows[0].length ? rows[0][0].value : 0,
-      svg = document.createElementNS(SVG, "svg");
-    svg.setAttribute("viewBox", `0 0 ${width} ${rows.length * (height + gap)}`);
-    svg.setAttribute("role", "group");
-    svg.setAttribute("aria-label", "Parts of the query by their work");
+      svg = svgElement("svg", {
+        viewBox: `0 0 ${width} ${rows.length * (height + gap)}`,
+        role: "group",
+        "aria-label": "Parts of the query by their work",
+      });
     const all = this.outcomes.reduce((n, o) => n + o[measure], 0);
     rows.forEach((row, depth) => {
       for (const part of row) {
@@ -953,28 +926,23 @@ export class WorkIcicle {
 
   /** Makes a rectangle that is a button for the filter, with its name if that fits. */
   part(part, all, { x, y, w, height, colour, depth }) {
-    const group = document.createElementNS(SVG, "g"),
-      rect = document.createElementNS(SVG, "rect"),
-      title = document.createElementNS(SVG, "title"),
-      text = document.createElementNS(SVG, "text");
     const share = `${short((100 * part.value) / all)} %`,
       events = part.parts.reduce((n, i) => n + this.outcomes[i].events, 0),
       micros = byId("work-measure").value === "micros",
       amount = micros ? `${short(part.value)} \u00b5s` : plural(part.value, "operation");
     const recorded = events ? plural(events, "event") : "no events: record the run with --events nodes";
-    title.textContent = `${part.name}: ${amount}, ${share}; ${recorded}`;
-    for (const [name, value] of Object.entries({ x, y, width: w, height, rx: 3 }))
-      rect.setAttribute(name, value);
+    const title = `${part.name}: ${amount}, ${share}; ${recorded}`,
+      fits = (words) => 7.2 * words.length + 14 <= w,
+      rect = svgElement("rect", { x, y, width: w, height, rx: 3 });
     if (colour) rect.style.fill = colour;
     rect.style.fillOpacity = colour ? 0.5 : 0.25;
-    text.setAttribute("x", x + 7);
-    text.setAttribute("y", y + height / 2);
-    const fits = (words) => 7.2 * words.length + 14 <= w;
-    text.textContent = [`${part.name}  ${share}`, part.name].find(fits) || "";
-    group.append(title, rect, text);
-    group.setAttribute("tabindex", 0);
-    group.setAttribute("role", "button");
-    group.setAttribute("aria-label", title.textContent);
+    const group = svgElement(
+      "g",
+      { tabindex: 0, role: "button", "aria-label": title },
+      svgElement("title", {}, title),
+      rect,
+      svgElement("text", { x: x + 7, y: y + height / 2 }, [`${part.name}  ${share}`, part.name].find(fits) || ""),
+    );
     group.dataset.parts = part.parts.join(" ");
     const phase = depth === 1 ? part.name : this.zoom;
     const choose = () => this.choose(depth === 0 ? null : { ...part, phase });

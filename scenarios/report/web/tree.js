@@ -1,5 +1,5 @@
 // ---- the page of a tree: the volume and the triangles of one node, selected in the view, the icicle or a table
-import { byId, digits, linkRow, plural } from "./dom.js";
+import { byId, digits, linkRow, plural, textButton } from "./dom.js";
 import { boxEdges, mixed, WHITE } from "./scene_bodies.js";
 import { Body, grouped, NONE, unpack } from "./scene_run.js";
 import { BodiesCanvas, onClick, webglWorks } from "./scene_view.js";
@@ -191,11 +191,8 @@ class TreePage {
     put("node-epo", rounded(nodes.epo[node]) + share);
     put("view-caption", `node ${nodes.ids[node]}, depth ${nodes.depth[node]}: ${faces(triangles)}, and ${faces(this.others)} of other nodes in its volume`);
     const link = (other, text) => {
-      const button = document.createElement("button");
-      Object.assign(button, { type: "button", className: "text", textContent: text });
-      button.title = `Depth ${nodes.depth[other]}, ${faces(nodes.last[other] - nodes.first[other])}`;
-      button.onclick = () => this.select(other);
-      return button;
+      const title = `Depth ${nodes.depth[other]}, ${faces(nodes.last[other] - nodes.first[other])}`;
+      return textButton(text, () => this.select(other), title);
     };
     const parent = nodes.parent[node],
       children = [...nodes.children(node)],
