@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# docs/counterexamples.sh [LRBSCOPE]: makes counterexamples.md from the cases below, and the pictures counterexample_N.png. Needs FCL
+# docs/counterexamples.sh [LRBSCOPE]: makes the table and the sections of counterexamples.md from the cases below, and the pictures counterexample_N.png. Needs FCL
 # (libfcl-dev) and the workers; other versions of FCL may not fail on these cases.
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -43,38 +43,23 @@ while read -r method family difficulty case; do
   fi
   echo "| [$n](#counterexample-$n) | $title | $(number vertices) | $(number bits) |" >>table.md
   {
-    printf '\n## Counterexample %s\n\n%s.\n\n![%s](counterexample_%s.png)\n\n' "$n" "$title" "$title" "$n"
+    printf '\n## Counterexample %s\n\n![%s](counterexample_%s.png)\n\n' "$n" "$title" "$n"
     echo '```'
-    section Meshes | awk '/^A:/ { print "# A" } /^B:/ { print "# B" } /^[vfl] /'
+    section Meshes | awk '/^[AB]:/ { printf "%s%s", (n++ ? "\n" : ""), substr($0, 1, 2); v = 0 }
+      /^v / { printf "%s(%s %s %s)", (v++ ? ", " : " "), $2, $3, $4 } END { print "" }'
     echo '```'
-    printf '\n%s\n' "$(section Expected)"
-    printf '\nFound: %s\n\n' "$(section Found | head -1)"
+    printf '\n%s Found: %s\n\n' "$(section Expected)" "$(section Found | head -1 | sed 's/^./\L&/')"
     # shellcheck disable=SC2016
     printf '```sh\nlrbscope %s\n```\n' "$line"
   } >>sections.md
 done <<<"$cases"
 
 {
-  cat <<'P'
-# Ten counterexamples
-
-The smallest failure of each kind that [`stability --minimise`](stability.md#minimise-a-case) found in two other methods: FCL 0.7.0 (Debian 12's
-package, `BVHModel<OBBRSS>`, `collide()` for all pairs) in double and in float, and brute force with Moeller's triangle test in double, with its usual
-epsilon of 1e-6. [counterexamples.sh](counterexamples.sh) writes this page, and compiles and runs a program without lrbscope for each case of FCL.
-
-No triangle or segment is degenerate. Degenerate ones would give smaller cases, but many engines do not accept them.
-
-**Which of these are faults?** Missing a pair that crosses (1 to 3) is wrong by any definition. Whether touching pairs intersect (4 to 6) is a
-convention. FCL's documentation does not state one, but its triangle test (`project6()`) rejects only strictly disjoint intervals, and finds most
-touching pairs. Moeller's test is meant to find them. Some returned pairs do not intersect (7 to 10). FCL's triangle test has no tolerance, so its
-false pairs are due to rounding, even at large distances. Those of brute force are due to its epsilon, which is compared with areas and products, not
-with distances. Neither FCL nor Moeller's test promises exact answers, and most of these cases are extreme: a needle thousands of times as long as
-wide, or a gap near the resolution of the numbers. Cases 5 and 6 are not extreme.
-
-| case | failure | vertices | bits |
-| --- | --- | --- | --- |
-P
+  sed '/^| case /,$d' "$docs/counterexamples.md"  # the text above the table stays
+  echo '| case | failure | vertices | bits |'
+  echo '| --- | --- | --- | --- |'
   cat table.md
-  printf '\nBits are the binary digits of all coordinates. Coordinates are exact, also where a decimal fraction is long.\n'
+  printf '\nBits are the binary digits of all coordinates. Coordinates are exact, also where a decimal fraction is long. Each body is one triangle (10: one\nsegment), given by its corners.\n'
   cat sections.md
-} >"$docs/counterexamples.md"
+} >new.md
+mv new.md "$docs/counterexamples.md"
