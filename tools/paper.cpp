@@ -293,6 +293,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
     for (const paper::PaperProtocol& p : settings) {
       paper::SweepOptions other = sweep;
       other.protocol = p;
+      other.scalable_only = true;
       for (paper::ContactStep& s : paper::run_sweep(objects, other)) steps.settings.push_back(std::move(s));
     }
     if (!meshes.empty() && o.shard.empty()) {  // so that an interruption of the rest leaves these results

@@ -171,10 +171,6 @@ void check_records(const PaperReport& r) {
 
 namespace {
 
-constexpr std::array<const char*, 3> kTitles = {"the paper's recursion, each pair of regions once",
-                                                "the paper's recursion, each region once (strict)",
-                                                "complete"};
-
 report::Table table1(const PaperReport& r) {
   report::Table t{
       "Table 1: object sizes", {"object", "real faces", "total faces", "outermost wrapper"}, {}, {}};
@@ -211,7 +207,7 @@ report::Table table2(std::span<const ObjectRow> rows) {
 /// All counters of one recursion.
 report::Table counters(std::span<const ObjectRow> rows, std::size_t recursion) {
   const bool complete = kRecursions[recursion] == Recursion::complete;
-  report::Table t{std::string("Counters, ") + kTitles[recursion],
+  report::Table t{std::string("Counters, ") + kRecursionTitles[recursion],
                   {"object", "steps", "minimum", "average", "maximum", "refinements (avg)", "pairs missed"}};
   if (complete) t.columns.push_back("bound tests (avg)");
   for (const ObjectRow& row : rows) {

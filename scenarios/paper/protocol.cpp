@@ -39,12 +39,15 @@ CollideResult timed(const Query& query, std::uint64_t& nanoseconds) {
 }
 
 ContactStep count_step(const LrbRep& a, const Pose& pose_a, const LrbRep& x, const Pose& pose_x,
-                       const CollideResult& complete, std::uint64_t nanoseconds, Workspace& workspace) {
+                       const CollideResult& complete, std::uint64_t nanoseconds, bool scalable_only,
+                       Workspace& workspace) {
   ContactStep step;
   step.relation = complete.relation;
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
     CollideRequest request;
     request.recursion = kRecursions[i];
+    if (scalable_only && std::find(std::begin(kScalable), std::end(kScalable), i) == std::end(kScalable))
+      continue;
     if (kRecursions[i] != Recursion::complete) {
       std::uint64_t taken = 0;
       const CollideResult found = timed([&] { return ask(a, pose_a, x, pose_x, request, workspace); }, taken);
@@ -72,7 +75,7 @@ LrbRep scaled(const LrbRep& rep, double by) {
 
 std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
                                        std::uint32_t collision, const PaperProtocol& protocol,
-                                       Workspace& workspace) {
+                                       Workspace& workspace, bool scalable_only) {
   Fnv64 seed;
   seed.add_value(protocol.seed);
   seed.add_bytes(object.data(), object.size());
@@ -97,7 +100,7 @@ std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const s
     const CollideResult result = timed([&] { return ask(a, pose_a, x, pose_x, {}, workspace); }, nanoseconds);
     met |= !result.pairs.empty();
     if (!result.pairs.empty()) {
-      ContactStep step = count_step(a, pose_a, x, pose_x, result, nanoseconds, workspace);
+      ContactStep step = count_step(a, pose_a, x, pose_x, result, nanoseconds, scalable_only, workspace);
       step.seed = protocol.seed;
       step.time_step = protocol.step;
       step.object = object;

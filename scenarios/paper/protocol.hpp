@@ -29,9 +29,15 @@ struct PaperProtocol {
 inline constexpr std::uint32_t kMaxCollisions = 100'000, kMaxStepsAfter = 1000, kMaxSeeds = 1000;
 inline constexpr double kMinStep = 1e-5, kMaxStep = 0.5;
 
-inline constexpr std::array<Recursion, 3> kRecursions = {Recursion::paper, Recursion::paper_strict,
-                                                         Recursion::complete};
+inline constexpr std::array kRecursions = {Recursion::paper, Recursion::paper_strict,
+                                           Recursion::paper_wrapper, Recursion::complete};
+/// A value for each recursion, in the order of kRecursions.
+template <class T>
+using PerRecursion = std::array<T, kRecursions.size()>;
 inline constexpr std::size_t kPaper = 0;  ///< the paper's own; index into kRecursions
+/// Indices of the recursions whose cost allows large bodies: not paper_wrapper, which compares each new face
+/// with a whole wrapper.
+inline constexpr std::size_t kScalable[] = {0, 1, 3};
 
 /// The counters of one recursion at one time step.
 struct RecursionCount {
@@ -54,15 +60,16 @@ struct ContactStep {
   std::uint32_t collision = 0;  ///< 0 .. collisions - 1
   std::uint32_t step = 0;       ///< number of steps since the first contact
   Relation relation = Relation::separate;
-  std::array<RecursionCount, 3> counts;  ///< in the order of kRecursions
-  Pose pose_a, pose_x;                   ///< not in the record
+  PerRecursion<RecursionCount> counts;
+  Pose pose_a, pose_x;  ///< not in the record
 };
 
 /// Returns the counted steps of one collision. The random numbers depend only on protocol.seed, the object's
-/// name and the collision's number. Reuses the memory of `workspace`.
+/// name and the collision's number. Reuses the memory of `workspace`. `scalable_only` leaves all recursions
+/// but kScalable at 0.
 std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
                                        std::uint32_t collision, const PaperProtocol& protocol,
-                                       Workspace& workspace);
+                                       Workspace& workspace, bool scalable_only = false);
 
 /// Returns the body with its coordinates multiplied by `by`.
 LrbRep scaled(const LrbRep& rep, double by);

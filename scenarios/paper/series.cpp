@@ -136,11 +136,13 @@ std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
 std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
                                     const SweepOptions& options) {
   std::vector<ContactStep> steps;
+  SweepOptions scalable = options;
+  scalable.scalable_only = true;
   for (const SeriesPartner partner : kSeriesPartners)
     for (const SeriesObject& object : objects) {
       const PaperObject pair[] = {{"", partner == SeriesPartner::a ? a : object.rep},
                                   {series_name(object, partner), object.rep, object.body}};
-      for (ContactStep& s : run_sweep(pair, options)) steps.push_back(std::move(s));
+      for (ContactStep& s : run_sweep(pair, scalable)) steps.push_back(std::move(s));
     }
   return merged(std::move(steps));
 }
@@ -148,11 +150,8 @@ std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObjec
 std::string times_to_json_lines(std::span<const ContactStep> steps) {
   std::string out;
   for (const ContactStep& s : steps) {
-    const nlohmann::ordered_json line = {
-        {"object", s.object},
-        {"collision", s.collision},
-        {"step", s.step},
-        {"nanoseconds", {s.counts[0].nanoseconds, s.counts[1].nanoseconds, s.counts[2].nanoseconds}}};
+    nlohmann::ordered_json line = {{"object", s.object}, {"collision", s.collision}, {"step", s.step}};
+    for (const RecursionCount& count : s.counts) line["nanoseconds"].push_back(count.nanoseconds);
     out += line.dump() + "\n";
   }
   return out;
@@ -173,7 +172,7 @@ void read_times(const std::string& text, const std::string& file, std::vector<Co
       const auto found =
           by_key.find({j.at("object").get<std::string>(), j.at("collision").get<std::uint32_t>(),
                        j.at("step").get<std::uint32_t>()});
-      const auto ns = j.at("nanoseconds").get<std::array<std::uint64_t, 3>>();
+      const auto ns = j.at("nanoseconds").get<PerRecursion<std::uint64_t>>();
       if (found == by_key.end()) reject(number, "a time for a step without a record");
       for (std::size_t i = 0; i < ns.size(); ++i) found->second->counts[i].nanoseconds = ns[i];
     } catch (const nlohmann::json::exception& e) {
@@ -195,7 +194,7 @@ std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject
       by_object.erase(name);
       const PaperObject pair[] = {{"", partner == SeriesPartner::a ? a : object.rep}, {name, object.rep}};
       SeriesRow row{object.body, partner, object.rep.outermost_faces().size(), make_table(pair, own)[0], {}};
-      for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+      for (const std::size_t i : kScalable) {
         std::vector<double> microseconds;
         for (const ContactStep& s : own)
           microseconds.push_back(static_cast<double>(s.counts[i].nanoseconds) / 1000);
@@ -214,9 +213,6 @@ std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject
 
 namespace {
 
-constexpr std::array<const char*, 3> kRecursionNames = {"the paper's recursion",
-                                                        "the paper's recursion, strict", "complete"};
-
 const char* against(SeriesPartner p) {
   return p == SeriesPartner::a ? "A" : "itself";
 }
@@ -225,7 +221,7 @@ const char* against(SeriesPartner p) {
 report::Chart chart(std::span<const SeriesRow> rows, std::span<const SeriesFit> fits, SeriesPartner partner,
                     std::size_t recursion, bool time) {
   report::Chart c{std::string(time ? "Time" : "Comparisons") + " against " + against(partner) + ", " +
-                      kRecursionNames[recursion],
+                      kRecursionTitles[recursion],
                   {"real and pseudo faces", true},
                   {time ? "median of a query, µs" : "face comparisons", true}};
   std::vector<report::Series> powers;
@@ -263,7 +259,7 @@ report::Chart chart(std::span<const SeriesRow> rows, std::span<const SeriesFit> 
 /// Reserves space for each panel's key above its points.
 report::Gnuplot panels(std::vector<report::Chart> charts) {
   constexpr double kHeight = 40, kKeyLine = 3.4;  // millimetres
-  const report::PrintLayout layout{static_cast<int>(kRecursions.size()), 55, kHeight, 7, "top left"};
+  const report::PrintLayout layout{static_cast<int>(std::size(kScalable)), 55, kHeight, 7, "top left"};
   for (report::Chart& c : charts) {
     double lowest = std::numeric_limits<double>::infinity(), highest = 0, lines = 1;
     for (const report::Series& s : c.series) {
@@ -297,7 +293,7 @@ std::string text_of(const std::optional<resolutions::PowerFit>& fit) {
 }
 
 report::Table table(std::span<const SeriesRow> rows, SeriesPartner partner, std::size_t recursion) {
-  report::Table t{std::string("Resolutions against ") + against(partner) + ", " + kRecursionNames[recursion],
+  report::Table t{std::string("Resolutions against ") + against(partner) + ", " + kRecursionTitles[recursion],
                   {"body", "real faces", "total faces", "outermost", "steps", "minimum", "average", "maximum",
                    "refinements (avg)", "pairs missed", "time (median, µs)"}};
   const bool complete = kRecursions[recursion] == Recursion::complete;
@@ -329,7 +325,7 @@ report::Table fit_table(std::span<const SeriesFit> fits, std::uint32_t jobs) {
       "would be above 1. Times are of one query each, on this machine" +
           (jobs > 1 ? ", while " + std::to_string(jobs) + " threads worked" : std::string()) + "."};
   for (const SeriesFit& f : fits)
-    t.rows.push_back({f.body, against(f.partner), kRecursionNames[f.recursion], text_of(f.comparisons),
+    t.rows.push_back({f.body, against(f.partner), kRecursionTitles[f.recursion], text_of(f.comparisons),
                       text_of(f.refinements), text_of(f.microseconds)});
   return t;
 }
@@ -349,7 +345,7 @@ std::string series_json(std::span<const SeriesRow> rows, std::span<const SeriesF
                                 {"total_faces", row.counts.total_faces},
                                 {"outer_faces", row.outer_faces},
                                 {"steps", row.counts.steps}};
-    for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+    for (const std::size_t i : kScalable) {
       const RecursionRow& x = row.counts.recursions[i];
       r[std::string(trace::name_of(kRecursions[i]))] = {{"comparisons_min", x.comparisons.min},
                                                         {"comparisons_avg", x.comparisons.average},
@@ -392,7 +388,7 @@ std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows) {
   std::vector<SeriesFit> fits;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (r > 0 && rows[r].body == rows[r - 1].body && rows[r].partner == rows[r - 1].partner) continue;
-    for (std::size_t i = 0; i < kRecursions.size(); ++i) {
+    for (const std::size_t i : kScalable) {
       SeriesFit f{rows[r].body, rows[r].partner, i, {}, {}, {}};
       f.comparisons =
           fit(rows, f, [&](const SeriesRow& x) { return x.counts.recursions[i].comparisons.average; });
@@ -435,8 +431,7 @@ std::vector<report::Table> add_series(const SeriesReport& report, report::Docume
   for (const bool time : {false, true}) {
     std::vector<report::Chart> charts;
     for (const SeriesPartner partner : kSeriesPartners)
-      for (std::size_t i = 0; i < kRecursions.size(); ++i)
-        charts.push_back(chart(rows, fits, partner, i, time));
+      for (const std::size_t i : kScalable) charts.push_back(chart(rows, fits, partner, i, time));
     std::erase_if(charts, [](const report::Chart& c) { return c.series.empty(); });
     doc.each(charts, &report::Document::chart);
     if (!charts.empty())
@@ -448,7 +443,7 @@ std::vector<report::Table> add_series(const SeriesReport& report, report::Docume
   doc.file("series.json", series_json(rows, fits), "tables and fitted exponents as data");
   std::vector<report::Table> tables = {fit_table(fits, report.jobs)};
   for (const SeriesPartner partner : kSeriesPartners)
-    for (std::size_t i = 0; i < kRecursions.size(); ++i) tables.push_back(table(rows, partner, i));
+    for (const std::size_t i : kScalable) tables.push_back(table(rows, partner, i));
   return tables;
 }
 

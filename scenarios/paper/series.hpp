@@ -78,7 +78,7 @@ struct SeriesRow {
   SeriesPartner partner;
   std::size_t outer_faces;
   ObjectRow counts;
-  std::array<double, 3> microseconds;  ///< median of a query's duration, in the order of kRecursions
+  PerRecursion<double> microseconds;  ///< median of a query's duration
 };
 /// Returns the rows, by partner, then by object. Throws InputError for steps of other objects.
 std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject> objects,

@@ -160,7 +160,10 @@ ContactStep from_json(const json& j) {
   s.step = j.at("step").get<std::uint32_t>();
   s.relation = io::JsonOf<Relation>::read(j.at("relation"));
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
-    s.counts[i] = io::record_from_json<RecursionCount>(j.at(std::string(name_of(kRecursions[i]))));
+    const std::string name(name_of(kRecursions[i]));
+    if (kRecursions[i] == Recursion::paper_wrapper && !j.contains(name))
+      continue;  // records of version 2.0.0
+    s.counts[i] = io::record_from_json<RecursionCount>(j.at(name));
   }
   return s;
 }
@@ -169,8 +172,9 @@ ContactStep from_json(const json& j) {
 
 std::vector<ContactStep> run(const CollisionTask& task, Workspace& workspace) {
   const PaperObject& x = task.x;
-  std::vector<ContactStep> steps = run_collision(task.a.rep, x.rep, x.draws.empty() ? x.name : x.draws,
-                                                 task.collision, task.protocol, workspace);
+  std::vector<ContactStep> steps =
+      run_collision(task.a.rep, x.rep, x.draws.empty() ? x.name : x.draws, task.collision, task.protocol,
+                    workspace, task.scalable_only);
   for (ContactStep& s : steps) s.object = x.name;
   return steps;
 }
@@ -186,8 +190,9 @@ std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const S
   Workers workers(options.jobs);
   std::vector<Workspace> workspaces(workers.count());
   workers.for_each(tasks.size(), [&](std::size_t i, unsigned worker) {
-    found[i] = options.runner({objects[0], objects[tasks[i].first], options.protocol, tasks[i].second},
-                              workspaces[worker]);
+    found[i] = options.runner(
+        {objects[0], objects[tasks[i].first], options.protocol, tasks[i].second, options.scalable_only},
+        workspaces[worker]);
   });
   std::vector<ContactStep> steps;
   for (auto& part : found) std::move(part.begin(), part.end(), std::back_inserter(steps));
@@ -197,8 +202,10 @@ std::vector<ContactStep> run_sweep(std::span<const PaperObject> objects, const S
 std::vector<ContactStep> run_seeds(std::span<const PaperObject> objects, const SweepOptions& options) {
   std::vector<ContactStep> steps;
   SweepOptions one = options;
-  for (std::uint32_t i = 0; i < options.protocol.seeds; ++i, ++one.protocol.seed)
+  for (std::uint32_t i = 0; i < options.protocol.seeds; ++i, ++one.protocol.seed) {
+    one.scalable_only = i > 0;  // only table 2 is made of all seeds
     for (ContactStep& s : run_sweep(objects, one)) steps.push_back(std::move(s));
+  }
   return steps;
 }
 

@@ -32,13 +32,15 @@ struct CollisionTask {
   const PaperObject &a, &x;
   const PaperProtocol& protocol;
   std::uint32_t collision;
+  bool scalable_only = false;  ///< only the recursions of kScalable
 };
 std::vector<ContactStep> run(const CollisionTask& task, Workspace& workspace);
 
 struct SweepOptions {
   PaperProtocol protocol;
   Shard shard;
-  std::uint32_t jobs = 1;  ///< number of threads
+  std::uint32_t jobs = 1;      ///< number of threads
+  bool scalable_only = false;  ///< only the recursions of kScalable
   /// Called for each collision, from several threads; run(), or what an earlier run() of it returned.
   std::function<std::vector<ContactStep>(const CollisionTask&, Workspace&)> runner = run;
 };

@@ -30,6 +30,10 @@ inline std::string fixed(double x, int digits) {
   return (x < 0 ? "-" : "") + render::group_digits(std::stoull(text.substr(0, point))) + text.substr(point);
 }
 
+inline constexpr PerRecursion<const char*> kRecursionTitles = {
+    "the paper's recursion, each pair of regions once", "the paper's recursion, each region once (strict)",
+    "the paper's recursion, against the whole wrapper", "complete"};
+
 struct Spread {
   double min = 0, average = 0, max = 0;
 };
@@ -44,8 +48,8 @@ struct RecursionRow {
 struct ObjectRow {
   std::string object;
   std::uint32_t real_faces = 0, total_faces = 0;
-  std::uint64_t steps = 0;                 ///< number of counted time steps
-  std::array<RecursionRow, 3> recursions;  ///< in the order of kRecursions
+  std::uint64_t steps = 0;  ///< number of counted time steps
+  PerRecursion<RecursionRow> recursions;
   double n_log_n = 0, n_squared = 0;  ///< the paper's estimates: total(X) log2(total(A)), total(A) total(X)
 };
 
@@ -99,8 +103,8 @@ std::string table2_csv(std::span<const Run> runs);
 std::string ratios_csv(std::span<const Run> runs);
 
 /// Returns both tables as JSON: "table1_object_sizes", and "table2_face_comparisons_of_object_A_with" by the
-/// paper's recursion with the first seed; for the other recursions the same with the suffixes "_paper_strict"
-/// and "_complete"; for published objects also "ratio_to_published", over the seeds.
+/// paper's recursion with the first seed; for the other recursions the same with their names as suffixes;
+/// for published objects also "ratio_to_published", over the seeds.
 std::string tables_json(std::span<const PaperObject> objects, std::span<const Run> runs,
                         const PaperProtocol& protocol);
 
