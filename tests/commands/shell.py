@@ -40,9 +40,11 @@ bomb() { python3 "$SHELL_PY" bomb "$@"; }
 
 def run(line, program, helpers="", seconds=300, environment=None):
     """Runs a line in the working folder. Returns its exit code, output and errors."""
+    build = os.path.dirname(os.path.dirname(program))  # whose examples and test programs may be called
+    path = os.pathsep.join([os.path.join(build, "examples"), os.path.join(build, "tests"), os.environ["PATH"]])
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", PRELUDE + helpers + line],
-        env={**os.environ, "PROGRAM": program, "SHELL_PY": os.path.abspath(__file__), **(environment or {})},
+        env={**os.environ, "PATH": path, "PROGRAM": program, "SHELL_PY": os.path.abspath(__file__), **(environment or {})},
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,

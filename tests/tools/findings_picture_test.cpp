@@ -75,32 +75,6 @@ TEST_CASE("the picture shows each kind of fault in its colour") {
   }
 }
 
-TEST_CASE("all boundary loops are drawn at the requested size, for any number of open edges") {
-  const Folder folder;
-  // Every hundredth face is missing: 13 holes, of which the first eight open edges show three.
-  const Mesh ball = icosphere(3);
-  std::set<FaceId> gone;
-  for (std::uint32_t f = 0; f < ball.face_count(); f += 100) gone.insert(FaceId(f));
-  write_mesh(without_faces(ball, gone), folder / "m.obj");
-  write_mesh(without_faces(ball, {0}), folder / "one.obj");
-  const auto draw = [&](const std::string& mesh, const std::vector<std::string>& more) {
-    const Outcome o = succeed(folder, {"inspect", mesh, "--json", "--draw", "m.png"}, more);
-    CHECK(json::parse(o.out)["boundary_loops"].size() == (mesh == "one.obj" ? 1 : gone.size()));
-    return render::read_png(folder / "m.png").image;
-  };
-  const render::Image all = draw("m.obj", {"--from", "0,-1,0.2"}),
-                      one = draw("one.obj", {"--from", "0,-1,0.2"});
-  CHECK(all.width() == 1600);
-  const auto whole = [](const render::Image& image) {  // the left half: the first of two panels
-    return count_pixels(image, {0, 0, 0.5, 7.0 / 8},
-                        [](render::Rgba p) { return p == render::palette::kVermillion; });
-  };
-  CHECK(whole(all) > 3 * whole(one));
-  const render::Image small = draw("m.obj", {"--size", "900x500"});
-  CHECK(small.width() == 900);
-  CHECK(small.height() == 500);
-}
-
 TEST_CASE("faults with the same elements are drawn once") {
   const Mesh doubled = with_doubled(icosphere(1), {3, 9});  // they also meet
   CHECK(render::findings::kinds(check_mesh(doubled)) ==

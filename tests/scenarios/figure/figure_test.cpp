@@ -261,23 +261,6 @@ TEST_CASE("the figure of a mesh of 4,480 faces: below 300 kB, without pixels") {
   CHECK(pdf.bytes == draw_figure(s.run, s.scenario.frames, {}, run::kSilent).bytes);
 }
 
-TEST_CASE("a contact sheet: all views in one block, titled with their options") {
-  const test::Folder folder;
-  test::Outcome o = test::run(folder, {"figure", "figure2_mesh", "--try-views", "-o", "views.svg"});
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
-  const std::string sheet = test::slurp(folder / "views.svg");
-  for (const char* up : {"--up z --from ", "--up y --from ", "--up x --from "}) {
-    CAPTURE(std::string(up));
-    CHECK(count(test::slurp(folder / "views.caption.txt"), up) == 2);
-  }
-  CHECK(count(sheet, "aria-label=\"(f)") == 1);
-  CHECK(count(sheet, "aria-label=\"(g)") == 0);
-  o = test::run(folder, {"figure", "figure2_mesh", "--try-views", "--up", "y", "-o", "around.svg"});
-  CHECK(count(test::slurp(folder / "around.caption.txt"), "--up y --from ") == 6);
-  test::check_rejected(folder, {"figure", "figure2", "--try-views", "-o", "flat.svg"});
-}
-
 TEST_CASE("callouts and insets are read, and wrong ones rejected with their option") {
   const Callout callout = parse_callout("c:face:b12=a: tooth = sharp");
   CHECK(callout.panel == "c");
@@ -378,25 +361,6 @@ TEST_CASE("leaders of callouts with close anchors do not cross") {
   }
 }
 
-TEST_CASE("panels whose bodies leave no room for callouts get lines above or below them") {
-  const Shipped s("figure1");
-  FigureSpec spec;
-  spec.format = FigureSpec::Format::svg;
-  spec.choice.panels = 2;
-  const auto height = [&](const std::vector<std::string>& callouts) {
-    spec.callouts.clear();
-    for (const std::string& c : callouts) spec.callouts.push_back(parse_callout(c));
-    const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
-    CHECK(svg.notes.empty());  // no text covers the bodies
-    return std::stod(svg.bytes.substr(svg.bytes.find(" height=\"") + 9));
-  };
-  const double bare = height({}), line = height({"a:face:2=a long text at the face"}) - bare;
-  CHECK(line > 3);  // mm: a text of 8 points
-  CHECK(height({"a:face:2"}) == bare);
-  CHECK(height({"a:face:2=a long text at the face", "a:face:3=a long text at a face"}) ==
-        doctest::Approx(bare + 2 * line).epsilon(0.01));
-}
-
 TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in the panel as well") {
   const Shipped s("stick_through_wall");
   FigureSpec spec;
@@ -466,78 +430,4 @@ TEST_CASE("--occlusion darkens faces in a gap, and leaves those of a convex body
     if (z < 1e-9 || z > 0.3 - 1e-9) CHECK(t.colour == render::Rgba{200, 100, 50, 255});
   }
   CHECK(dark == 4);
-  const test::Folder folder;
-  test::check_rejected(
-      folder, {"-q", "figure", "collision", "--occlusion", "--colour-by", "face_tests", "-o", "no.pdf"});
-}
-
-TEST_CASE("colours of numbers mean the same in all panels") {
-  const Shipped s("collision");
-  FigureSpec spec;
-  spec.format = FigureSpec::Format::svg;
-  spec.dpi = 40;
-  render::FrameSpec frames;
-  frames.colour_by = render::FrameSpec::ColourBy::face_tests;
-  const Figure all = draw_figure(s.run, frames, spec, run::kSilent);
-  CHECK(count(all.bytes, "aria-label=\"face tests\"") == 1);
-}
-
-TEST_CASE("lrbscope figure: files, and errors before it writes anything") {
-  const test::Folder folder;
-  test::Outcome o =
-      test::run(folder, {"figure", "figure1", "-o", "out/fig.pdf", "--width", "60mm", "--caption"});
-  CAPTURE(o.err);
-  CHECK(o.code == 0);
-  CHECK(o.out == "out/fig.pdf\n");
-  CHECK(test::slurp(folder / "out/fig.pdf").starts_with("%PDF"));
-  CHECK(!test::slurp(folder / "out/fig.caption.txt").empty());
-  folder.write("cube.obj", test::kCube);
-  o = test::run(folder, {"figure", "cube.obj", "-o", "cube.svg", "--columns", "1", "--up", "y"});
-  CHECK(o.code == 0);
-  CHECK(o.err.find("high, more than a page") == std::string::npos);
-  o = test::run(folder, {"figure", "figure2", "-o", "high.svg", "--columns", "1", "--panels", "12", "--width",
-                         "120mm"});
-  CHECK(o.code == 0);
-  CHECK(o.err.find("high, more than a page; use fewer panels") != std::string::npos);
-  const std::vector<std::vector<std::string>> bad = {
-      {"figure", "figure1", "-o", "fig.eps"},
-      {"figure", "figure1", "-o", "fig.pdf", "--tex"},
-      {"figure", "figure1", "-o", "fig.pdf", "--width", "85"},
-      {"figure", "figure1", "-o", "fig.pdf", "--width", "2mm"},
-      {"figure", "figure1", "-o", "fig.pdf", "--line-width", "0.1pt"},
-      {"figure", "figure1", "-o", "fig.pdf", "--font-size", "90"},
-      {"figure", "figure2", "-o", "fig.pdf", "--columns", "20", "--panels", "26"},
-      {"figure", "figure2", "-o", "fig.pdf", "--panels", "3", "--faces", "20"},
-      {"figure", "figure2", "-o", "fig.pdf", "--steps", "3"},
-      {"figure", "figure2", "-o", "fig.pdf", "--colour-by", "box_tests"},
-      {"figure", "cube.obj", "-o", "fig.pdf", "--from", "0,0,1"},
-      {"figure", "cube.obj", "-o", "fig.pdf", "--callout", "face:12"},
-      {"figure", "cube.obj", "-o", "fig.pdf", "--callout", "face:b0"},
-      {"figure", "cube.obj", "-o", "fig.pdf", "--inset", "a:contact"},
-      {"figure", "figure2", "-o", "fig.pdf", "--inset", "a:region:9999"},
-      {"figure", "figure2", "-o", "fig.pdf", "--callout", "z:face:0"},
-      {"figure", "no such scenario", "-o", "fig.pdf"},
-      {"figure", ".", "-o", "fig.pdf"},
-      {"figure", "missing.obj", "-o", "fig.pdf"},
-  };
-  for (const auto& arguments : bad) test::check_rejected(folder, arguments);
-}
-
-TEST_CASE("lrbscope figure: wrappers are drawn unless they hide coloured faces") {
-  const test::Folder folder;
-  const auto drawn = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {"figure", "islands", "--steps", "20", "-o", "f.svg"});
-    const test::Outcome o = test::run(folder, options);
-    CAPTURE(o.err);
-    CHECK(o.code == 0);
-    return test::slurp(folder / "f.svg");
-  };
-  const std::string plain = drawn({}), values = drawn({"--colour-by", "face_tests"});
-  CHECK(drawn({"--wrappers"}) == plain);
-  CHECK(drawn({"--no-wrappers"}) != plain);
-  CHECK(drawn({"--no-wrappers", "--colour-by", "face_tests"}) == values);
-  CHECK(drawn({"--wrappers", "--colour-by", "face_tests"}) != values);
-  CHECK(drawn({"--colour-by", "refinements"}) == drawn({"--wrappers", "--colour-by", "refinements"}));
-
-  test::check_rejected(folder, {"figure", "islands", "--wrappers", "--no-wrappers", "-o", "no.svg"});
 }

@@ -2,7 +2,6 @@
 
 #include "scenarios/paper/experiment.hpp"
 
-#include <filesystem>
 #include <memory>
 #include <numeric>
 
@@ -14,10 +13,8 @@
 #include "scenarios/paper/paper_pictures.hpp"
 #include "scenarios/paper/sweep.hpp"
 #include "tests/support/json_schema.hpp"
-#include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
-#include <lrbscope/render/image.hpp>
 #include <lrbscope/trace/counters.hpp>
 
 using namespace lrb;
@@ -198,56 +195,4 @@ TEST_CASE("the icicle chart has a box for each visited region") {
   for (const paper::ContactStep& s : c.steps)
     CHECK(s.counts[0].comparisons <= c.steps[paper::busiest_step(c)].counts[0].comparisons);
   CHECK(count(svg, "<rect") == count(svg, "</rect>") + 5);  // the background and four colours of the legend
-}
-
-TEST_CASE("paper --experiment: only the requested parts, on your own bodies; pictures in report and page") {
-  const test::Folder folder;
-  const auto run = [&](std::vector<std::string> args) { return test::run(folder, std::move(args)); };
-  REQUIRE(run({"paper", "--experiment", "table1", "-o", "one", "--tex"}).code == 0);
-  CHECK(test::slurp(folder / "one/table-1-object-sizes.tex").find("\\begin{tabular}{lrrl}") !=
-        std::string::npos);
-  CHECK_FALSE(std::filesystem::exists(folder / "one/records.jsonl"));
-  CHECK(test::slurp(folder / "one/report.md").find("| H | 34\u202f474 | 43\u202f396 | 6 faces |") !=
-        std::string::npos);
-  const test::Outcome printed = run({"paper", "--experiment", "close_up", "--print"});
-  CHECK(printed.out == paper::shipped_experiment("close_up"));
-
-  folder.write("cube.obj", test::kCube);
-  json mine = good_experiment();
-  mine["objects"].push_back({{"name", "cube"}, {"body", {{"file", "cube.obj"}}}});
-  mine["report"] = {"table2", "heat_maps", "refinement_tree"};
-  mine["close_up"] = "rock";
-  folder.write("mine.json", mine.dump());
-  const test::Outcome o = run({"paper", "--experiment", "mine.json", "-o", "mine"});
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
-  const std::string md = test::slurp(folder / "mine/report.md");
-  CHECK(md.find("3 collisions per object") != std::string::npos);
-  CHECK(md.find("Table 1") == std::string::npos);
-  for (const char* file : {"heat_maps.png", "refinement_tree.svg"}) {
-    CHECK(std::filesystem::exists(folder / (std::string("mine/") + file)));
-    CHECK(md.find(std::string("](") + file + ")") != std::string::npos);
-  }
-  const render::Image heat = render::read_png(folder / "mine/heat_maps.png").image;
-  CHECK(heat.width() > 2000);
-  REQUIRE(run({"paper", "--experiment", "mine.json", "-o", "again", "--jobs", "2"}).code == 0);
-  for (const char* file : {"/heat_maps.png", "/refinement_tree.svg", "/records.jsonl", "/tables.json"})
-    CHECK(test::slurp(folder / (std::string("mine") + file)) ==
-          test::slurp(folder / (std::string("again") + file)));
-  for (const std::vector<std::string>& bad :
-       {std::vector<std::string>{"--experiment", "none.json"},
-        {"--experiment", "tabel1"},
-        {"--experiment", "cube.obj"},
-        {"--experiment", "table1", "--shard", "0/2"},
-        {"--experiment", "mine.json", "--seed", "9", "--merge", "mine/records.jsonl"},
-        {"--collisions", "0"},
-        {"--step", "0"}}) {
-    std::vector<std::string> all = {"paper", "-o", "bad"};
-    all.insert(all.end(), bad.begin(), bad.end());
-    const test::Outcome rejected = run(all);
-    CAPTURE(rejected.err);
-    CHECK(rejected.code == 2);
-    CHECK(rejected.error_lines() == 1);
-    CHECK_FALSE(std::filesystem::exists(folder / "bad"));
-  }
 }

@@ -1,9 +1,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <map>
-#include <numeric>
-#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -123,51 +120,6 @@ TEST_CASE("the paper's experiment: approved counts") {
   CHECK(steps[5].counts[0].comparisons == 994);
   CHECK(steps[5].counts[1].comparisons == 685);
   CHECK(steps[5].counts[2].comparisons == 308);
-}
-
-TEST_CASE("paper: the program's shards make the report of the whole, and bad input is refused") {
-  const test::Folder folder;
-  const auto run = [&](std::vector<std::string> args) {
-    args.insert(args.begin(), "paper");
-    return test::run(folder, args);
-  };
-  const auto shard = [&](const char* collisions, const std::string& i, const std::string& out) {
-    CHECK(run({"--collisions", collisions, "--seeds", "2", "--resolutions", "0", "--shard", i, "-o", out})
-              .code == 0);
-  };
-  CHECK(run({"--collisions", "2", "--seeds", "2", "--resolutions", "0", "-o", "whole", "--jobs", "2"}).code ==
-        0);
-  shard("2", "0/2", "part0");
-  shard("2", "1/2", "part1");
-  shard("3", "1/2", "other");
-  CHECK(run({"--merge", "part1/records.jsonl", "part0/records.jsonl", "-o", "all"}).code == 0);
-  for (const char* file :
-       {"/records.jsonl", "/tables.json", "/ratios.csv", "/settings.csv", "/settings.jsonl"})
-    CHECK(test::slurp(folder / (std::string("all") + file)) ==
-          test::slurp(folder / (std::string("whole") + file)));
-  const auto rejected = [&](std::vector<std::string> args, const char* why) {
-    args.insert(args.end(), {"-o", "none"});
-    const auto o = run(args);
-    CHECK(o.code == 2);
-    CHECK(o.err.find(why) != std::string::npos);
-  };
-  rejected({"--merge", "part1/records.jsonl", "part1/records.jsonl"}, "shard 0/2 is missing");
-  rejected({"--merge", "part0/records.jsonl", "part1/records.jsonl", "part1/records.jsonl"},
-           "1/2 occurs twice");
-  rejected({"--merge", "part1/records.jsonl"}, "shard 0/2 is missing");
-  rejected({"--merge", "part0/records.jsonl", "other/records.jsonl"}, "another experiment");
-  rejected({"--merge", "whole/records.jsonl"}, "whole/shard.json");
-  rejected({"--collisions", "2", "--merge", "part0/records.jsonl"}, "--collisions");
-  rejected({"--lean", "--merge", "part0/records.jsonl"}, "--lean");
-  rejected({"--seeds", "2", "--merge", "part0/records.jsonl"}, "--seeds");
-  rejected({"--seeds", "0"}, "--seeds");
-  rejected({"--seeds", "1001"}, "--seeds");
-  rejected({"--seeds", "2", "--seed", "9223372036854775807"},
-           "--seed 9223372036854775807: expected seeds up to");
-  folder.write("part0/shard.json", "{\"shard\": -1}");
-  rejected({"--merge", "part0/records.jsonl", "part1/records.jsonl"}, "part0/shard.json");
-  for (const char* bad : {"2/2", "x", "1", "0/0", "-1/2", "0/2x"})
-    CHECK(run({"--shard", bad, "-o", "none"}).code == 2);
 }
 
 TEST_CASE("the series: exact powers are recovered, and the errors of others") {
@@ -347,116 +299,4 @@ TEST_CASE(
                            "/tables.json", "/table1.csv", "/table2.csv", "/ratios.csv", "/settings.csv"})
     CHECK(test::slurp(folder / (std::string("out") + file)) ==
           test::slurp(folder / (std::string("whole") + file)));
-}
-
-TEST_CASE("paper: the band over the seeds and the tables of other settings follow from the records") {
-  const test::Folder folder;
-  write_few(folder);
-  REQUIRE(test::run(folder, {"paper", "--experiment", "few.json", "--seed", "7", "-o", "out"}).code == 0);
-  using Key = std::tuple<double, int, std::uint64_t, std::string>;  // time step, steps after, seed, object
-  std::map<Key, std::vector<double>> counts;
-  const auto add = [&](const json& r, const std::vector<int>& steps_after) {
-    for (const int last : steps_after)
-      if (r["step"] <= last)
-        counts[{r["time_step"], last, r["seed"], r["object"]}].push_back(r["paper"]["comparisons"]);
-  };
-  std::set<std::uint64_t> seeds;
-  for (const json& r : lines_of(folder / "out/records.jsonl")) {
-    add(r, {5});
-    seeds.insert(r["seed"].get<std::uint64_t>());
-  }
-  CHECK(seeds == std::set<std::uint64_t>{7, 8, 9, 10});
-  const auto numbers = [](const std::vector<double>& x) {
-    return std::array{*std::min_element(x.begin(), x.end()),
-                      std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size()),
-                      *std::max_element(x.begin(), x.end())};
-  };
-  // The band: of four seeds, the median is the mean of the middle two.
-  const json tables = json::parse(test::slurp(folder / "out/tables.json"));
-  CHECK(tables["ratio_to_published"].size() == 2);
-  const std::string csv = test::slurp(folder / "out/ratios.csv");
-  for (const std::string object : {"B", "C"})
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::array<double, 3> rows[] = {{744, 1229, 1705}, {674, 1162, 1848}};
-      const double published = rows[object == "C"][i];
-      std::vector<double> ratios;
-      for (const std::uint64_t seed : seeds)
-        ratios.push_back(numbers(counts.at({0.005, 5, seed, object}))[i] / published);
-      std::sort(ratios.begin(), ratios.end());
-      const json& band = tables["ratio_to_published"][object][paper::kRatioNames[i]];
-      CHECK(band["lowest"] == ratios[0]);
-      CHECK(band["highest"] == ratios[3]);
-      CHECK(band["median"] == (ratios[1] + ratios[2]) / 2);
-      CHECK(ratios[0] < ratios[3]);
-      CHECK(csv.find(object + "," + paper::kRatioNames[i] + ",4," + band["median"].dump() + "," +
-                     band["lowest"].dump() + "," + band["highest"].dump() + "\n") != std::string::npos);
-    }
-  // Other settings: those of the first seed, and at the run's own setting its own table.
-  counts.clear();
-  for (const json& r : lines_of(folder / "out/settings.jsonl")) add(r, {2, 5, 10});
-  CHECK(counts.size() == 4 * 3 * 2);
-  const std::string settings = test::slurp(folder / "out/settings.csv"),
-                    table2 = test::slurp(folder / "out/table2.csv");
-  for (const auto& entry : counts) {
-    const double step = std::get<0>(entry.first);
-    const int last = std::get<1>(entry.first);
-    CHECK(std::get<2>(entry.first) == 7);
-    const std::vector<double>& values = entry.second;
-    const std::array<double, 3> n = numbers(values);
-    const std::string line = "7," + json(step).dump() + "," + std::to_string(last) + "," +
-                             std::get<3>(entry.first) + ",paper," + std::to_string(values.size()) + "," +
-                             json(n[0]).dump() + "," + json(n[1]).dump() + "," + json(n[2]).dump() + ",";
-    CAPTURE(line);
-    CHECK(settings.find("\n" + line) != std::string::npos);
-    CHECK((table2.find("\n" + line) != std::string::npos) == (step == 0.005 && last == 5));
-  }
-}
-
-TEST_CASE("paper: meshes at several resolutions, in shards and as a whole" * doctest::test_suite("long")) {
-  const test::Folder folder;
-  const auto paper = [&](const std::string& meshes, std::vector<std::string> more) {
-    std::vector<std::string> args = {"paper", "--meshes", meshes};
-    args.insert(args.end(), more.begin(), more.end());
-    return test::run(folder, args);
-  };
-  const auto run = [&](const std::string& meshes, std::vector<std::string> more) {
-    more.insert(more.end(), {"--collisions", "2", "--resolutions", "2", "--subdivide", "1"});
-    return paper(meshes, std::move(more));
-  };
-  std::filesystem::create_directory(folder.path / "meshes");
-  Mesh ball = generators::generate("ball", {{"frequency", 4}});
-  write_mesh(ball, folder / "meshes/ball.ply");
-  write_mesh(generators::generate("knot", {{"segments", 60}, {"sides", 6}}), folder / "meshes/knot.obj");
-  folder.write("meshes/open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const auto whole = run("meshes", {"-o", "whole"});
-  CHECK(whole.code == 0);
-  CHECK(whole.err.find("open.obj: skipped") != std::string::npos);
-  for (const char* i : {"0/3", "1/3", "2/3"})
-    CHECK(run("meshes", {"--shard", i, "-o", std::string("part") + i[0], "--jobs", "2"}).code == 0);
-  CHECK(paper("meshes",
-              {"--merge", "part2/records.jsonl", "part0/records.jsonl", "part1/records.jsonl", "-o", "all"})
-            .code == 0);
-  for (const char* file : {"/records.jsonl", "/tables.json", "/series.jsonl", "/series.json"})
-    CHECK(test::slurp(folder / (std::string("all") + file)) ==
-          test::slurp(folder / (std::string("whole") + file)));
-  const auto j = nlohmann::json::parse(test::slurp(folder / "whole/series.json"));
-  CHECK(j["rows"].size() == 8);
-  CHECK(j["rows"][0]["body"] == "ball");
-  CHECK(j["rows"][0]["real_faces"] == 1280);
-  CHECK(j["powers_of_total_faces"].size() == 12);
-  CHECK(test::slurp(folder / "whole/report.md").find("Growth with the resolution") != std::string::npos);
-  const auto rejected = [&](const std::string& meshes, std::vector<std::string> more, const char* why) {
-    const auto o = paper(meshes, std::move(more));
-    CHECK(o.code == 2);
-    CHECK(o.err.find(why) != std::string::npos);
-  };
-  rejected("meshes/ball.ply",
-           {"--merge", "part0/records.jsonl", "part1/records.jsonl", "part2/records.jsonl", "-o", "x"},
-           "not in the series");
-  rejected("meshes/open.obj", {"-o", "x"}, "no mesh from which an LRB-rep can be built");
-  rejected("none.obj", {"-o", "x"}, "none.obj");
-  std::filesystem::create_directory(folder.path / "other");
-  write_mesh(ball, folder / "other/ball.ply");
-  write_mesh(ball, folder / "other/ball.obj");
-  rejected("other", {"-o", "x"}, "another mesh has the name ball");
 }
