@@ -1,6 +1,6 @@
 /// planted_engine A B POSES: a program of another engine for the tests of `command:PROGRAM`. Its trees are a
 /// root and a leaf for each triangle. If the centres of B and A are less than 0.5 apart it tests all pairs of
-/// leaves, otherwise only the roots. $PLANTED makes it fail.
+/// leaves, otherwise only the roots. $PLANTED makes it fail, or the tree of A faulty.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -24,7 +24,7 @@ struct Body {
   std::uint32_t triangles() const { return static_cast<std::uint32_t>(corners.size() / 3); }
 };
 
-Body read(const char* path) {
+Body read(const char* path, const std::string& planted) {
   Body body;
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
@@ -44,6 +44,7 @@ Body read(const char* path) {
   std::iota(child.begin(), child.end(), 1);
   std::iota(prim.begin(), prim.end(), 0);
   std::iota(first_prim.begin() + 1, first_prim.end(), 0);
+  if (planted == "tree") prim[0] = prim[1];
   std::vector<double> boxes;
   for (std::uint32_t i = 0; i <= n; ++i) boxes.insert(boxes.end(), {-9, -9, -9, 9, 9, 9});
   lrbcap_tree tree{};
@@ -91,7 +92,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   LRBCAP_OPEN("planted engine", NULL);
-  const Body a = read(argv[1]), b = read(argv[2]);
+  const Body a = read(argv[1], planted), b = read(argv[2], "");
   std::ifstream in(argv[3]);
   for (std::string line; std::getline(in, line);) {
     double pose[12];

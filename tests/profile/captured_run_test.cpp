@@ -4,7 +4,6 @@
 #include "scenarios/profile/captured_run.hpp"
 
 #include <array>
-#include <filesystem>
 #include <set>
 #include <string>
 #include <utility>
@@ -15,8 +14,6 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/record/engine_run.hpp"
-#include "tests/support/capture_file.hpp"
-#include "tests/support/folder.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/toy_engine.hpp"
 #include <lrbscope/error.hpp>
@@ -454,151 +451,6 @@ TEST_CASE("trees of an engine survive a file, which is checked when it is read")
   refuses(document.dump());
   document["trees"].erase(1);
   refuses(document.dump());
-}
-
-TEST_CASE("import: a run that other commands open, a line of totals, or one clear error") {
-  const Folder folder;
-  ToyEngine engine = two_balls();
-  engine.query(0, 1, {1.25, 0.5, 0.25});
-  engine.query(0, 1, {3, 0, 0});
-  bool is_first = true;
-  engine.wrong = [&](std::uint32_t, std::uint32_t, bool meets) {
-    if (!meets || !is_first) return meets;
-    return is_first = false;
-  };
-  const std::uint64_t found = engine.query(0, 1, {1.5, 0.25, 0.25});
-  write_capture(engine.capture, folder / "run.lrbcap");
-  Outcome outcome = run(folder, {"--quiet", "import", "run.lrbcap", "-o", "out"});
-  CAPTURE(outcome.err);
-  REQUIRE(outcome.code == 0);
-  std::uint64_t right = found;
-  for (std::size_t i = 0; i < 3; ++i) right += engine.capture.queries[i].pairs;
-  CHECK(outcome.out.find("Toy 1.0: 4 queries, ") == 0);
-  CHECK(outcome.out.find("pairs: " + std::to_string(right) + " right, 1 missed, 0 false\nout/index.html\n") !=
-        std::string::npos);
-  const std::string page = slurp(folder / "out/index.html");
-  CHECK(page.find("wrong in 1 query") != std::string::npos);
-  CHECK(page.find("Every query") != std::string::npos);
-  // What other commands do with the folder.
-  CHECK(run(folder, {"--quiet", "render", "out", "-o", "again", "--colour-by", "box_tests"}).code == 0);
-  CHECK(run(folder, {"--quiet", "compare", "out", "out", "-o", "compared"}).code == 0);
-  CHECK(run(folder, {"why", "--run", "out", "--step", "1"}).code == 0);
-  CHECK(run(folder, {"why", "--run", "out", "--step", "5"}).code == 2);
-  // A part of it, unchecked.
-  outcome = run(folder, {"--quiet", "import", "run.lrbcap", "-o", "part", "--queries", "2-3", "--no-check"});
-  CHECK(outcome.code == 0);
-  CHECK(outcome.out.find("Toy 1.0: 2 queries, ") == 0);
-  CHECK(outcome.out.find("answers not checked") != std::string::npos);
-  // Bad input.
-  folder.write("text.lrbcap", "solid x\n");
-  folder.write("empty.lrbcap", "");
-  for (const std::vector<std::string>& bad :
-       std::vector<std::vector<std::string>>{{"import", "text.lrbcap", "-o", "bad"},
-                                             {"import", "empty.lrbcap", "-o", "bad"},
-                                             {"import", "none.lrbcap", "-o", "bad"},
-                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "9-"},
-                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "3-2"},
-                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "x"},
-                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "0"},
-                                             {"import", "run.lrbcap", "-o", "bad", "--queries", "1-2-3"}}) {
-    CAPTURE(bad.back());
-    check_rejected(folder, bad);
-  }
-}
-
-TEST_CASE("golden: a capture is approved, and a later one of another walk, answer or pose fails") {
-  const Folder folder;
-  const auto record = [&](double x, bool lies) {
-    ToyEngine engine = two_balls();
-    bool is_first = lies;
-    engine.wrong = [&](std::uint32_t, std::uint32_t, bool meets) {
-      return meets && !std::exchange(is_first, false);
-    };
-    engine.query(0, 1, {x, 0.5, 0.25});
-    engine.query(0, 1, {3, 0, 0});
-    write_capture(engine.capture, folder / "run.lrbcap");
-  };
-  const auto golden = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"--quiet", "golden"});
-    return run(folder, words);
-  };
-  record(1.25, false);
-  Outcome outcome = golden({"approve", "--goldens", "g", "run.lrbcap", "--size", "320x240", "--frames", "1"});
-  CAPTURE(outcome.err);
-  REQUIRE(outcome.code == 0);
-  CHECK(outcome.out.find("approved g/run/golden.json") != std::string::npos);
-  CHECK(outcome.out.find("approved g/run/a.ply") != std::string::npos);
-  CHECK(golden({"list", "--goldens", "g"}).out.find("run: ../../run.lrbcap; ") == 0);
-  // The times of a recording are not compared.
-  record(1.25, false);
-  outcome = golden({"test", "--goldens", "g"});
-  CAPTURE(outcome.out);
-  CHECK(outcome.code == 0);
-  CHECK(golden({"test", "--goldens", "g", "run.lrbcap"}).code == 0);
-  record(1.25, true);
-  outcome = golden({"test", "--goldens", "g", "run"});
-  CHECK(outcome.code == 1);
-  CHECK(outcome.out.find("pairs") != std::string::npos);
-  record(1.26, false);
-  outcome = golden({"test", "--goldens", "g"});
-  CHECK(outcome.code == 1);
-  CHECK(outcome.out.find("the bodies or the poses of the capture changed") != std::string::npos);
-  CHECK(outcome.out.find("body B moved") != std::string::npos);
-  CHECK(golden({"approve", "--goldens", "g", "run"}).code == 0);
-  CHECK(golden({"test", "--goldens", "g"}).code == 0);
-  // Bad input.
-  check_rejected(folder, {"golden", "approve", "--goldens", "h", "none.lrbcap"});
-  folder.write("text.lrbcap", "solid x\n");
-  check_rejected(folder, {"golden", "approve", "--goldens", "h", "text.lrbcap"});
-  ToyEngine many;
-  for (const char* name : {"floor", "crate", "ball"}) many.add(captured(shapes::box(), name));
-  many.query(0, 1, {0.5, 0.5, 0.5});
-  many.query(1, 2, {0.5, 0.25, 0.5});
-  write_capture(many.capture, folder / "many.lrbcap");
-  check_rejected(folder, {"golden", "approve", "--goldens", "h", "many.lrbcap"});
-  CHECK_FALSE(std::filesystem::exists(folder / "h"));
-}
-
-TEST_CASE("import: many pairs of trees get a page that lists their runs") {
-  const Folder folder;
-  ToyEngine engine;
-  for (const char* name : {"floor", "meshes/crate.obj", "ball"}) engine.add(captured(shapes::box(), name));
-  engine.query(0, 1, {0.5, 0.5, 0.5});
-  engine.query(1, 2, {0.5, 0.25, 0.5});
-  engine.query(2, 2, {0, 0, 0}, capture::QueryKind::self);
-  engine.query(0, 1, {0.5, 0.5, 0.5});
-  engine.capture.queries[3].trees[0] = kNull;
-  write_capture(engine.capture, folder / "run.lrbcap");
-  const Outcome outcome = run(folder, {"import", "run.lrbcap", "-o", "out", "--size", "640x480"});
-  CAPTURE(outcome.err);
-  REQUIRE(outcome.code == 0);
-  CHECK(outcome.out.find("Toy 1.0: 3 queries, ") == 0);
-  CHECK(
-      outcome.err.find("1 query with a single triangle or shape instead of a tree on one side is left out") !=
-      std::string::npos);
-  const std::string page = slurp(folder / "out/index.html");
-  for (const char* text : {"pair_1/index.html", "pair_3/index.html", "floor-crate, Toy 1.0", "is left out"})
-    CHECK(page.find(text) != std::string::npos);
-  CHECK(slurp(folder / "out/pair_3/index.html").find("of a body with itself") != std::string::npos);
-}
-
-TEST_CASE("import: a tree with a shape is shown, and its answer is not checked") {
-  const Folder folder;
-  ToyEngine engine;
-  for (const char* name : {"body", "shape"}) engine.add(captured(shapes::box(), name));
-  engine.query(0, 1, {0.5, 0.5, 0.5}, capture::QueryKind::shape);
-  engine.query(0, 1, {0.25, 0.25, 0.25}, capture::QueryKind::shape);
-  engine.capture.queries[1].verdict = capture::Verdict::separate;  // would be wrong for two bodies
-  write_capture(engine.capture, folder / "run.lrbcap");
-  Outcome outcome = run(folder, {"--quiet", "import", "run.lrbcap", "-o", "out", "--size", "640x480"});
-  CAPTURE(outcome.err);
-  REQUIRE(outcome.code == 0);
-  CHECK(outcome.out.find("Toy 1.0: 2 queries, ") == 0);
-  CHECK(outcome.out.find("answers not checked") != std::string::npos);
-  CHECK(slurp(folder / "out/index.html").find("2 queries are of A with a shape") != std::string::npos);
-  CHECK(slurp(folder / "out/trace.json").find("\"shape\"") != std::string::npos);
-  outcome = run(folder, {"check", "run.lrbcap"});
-  CHECK(outcome.code == 0);
 }
 
 }  // namespace lrb::test

@@ -3,13 +3,10 @@
 #include "scenarios/profile/check.hpp"
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/profile/captured_run.hpp"
-#include "tests/support/capture_file.hpp"
 #include "tests/support/faulty_engine.hpp"
-#include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/recorder.hpp>
 
@@ -165,52 +162,6 @@ TEST_CASE("Recordings without pairs of nodes are refused, and those that were cu
   const capture::Capture cut = captured(recorded_tori(EventLevel::nodes, Mode::all_pairs, 100));
   CHECK_FALSE(cut.queries.back().complete());
   CHECK_FALSE(check(cut, {}).is_wrong());
-}
-
-TEST_CASE("lrbscope check prints verdicts, prices and advice, and fails for a wrong answer") {
-  Captures c;
-  const Folder folder;
-  write_capture(c.engine.capture, folder / "right.lrbcap");
-  c.lie();
-  write_capture(c.engine.capture, folder / "wrong.lrbcap");
-  test::Outcome o = test::run(folder, {"check", "right.lrbcap"});
-  CAPTURE(o.err);
-  CHECK(o.code == 0);
-  CHECK(o.out.find("1 all pairs") != std::string::npos);
-  CHECK(o.out.find("Most to gain: ") != std::string::npos);
-  o = test::run(folder, {"check", "wrong.lrbcap", "-o", "page"});
-  CHECK(o.code == 1);
-  CHECK(o.out.find("query 2: missed ") != std::string::npos);
-  CHECK(slurp(folder / "page/index.html").find("query 2: missed ") != std::string::npos);
-  // Only the first query is right.
-  CHECK(test::run(folder, {"check", "wrong.lrbcap", "--queries", "1"}).code == 0);
-  CHECK(test::run(folder, {"check", "wrong.lrbcap", "--queries", "2-2"}).code == 1);
-  check_rejected(folder, {"check", "wrong.lrbcap", "--queries", "3-9"});
-  check_rejected(folder, {"check", "wrong.lrbcap", "--queries", "2-1"});
-  check_rejected(folder, {"check", "absent.lrbcap"});
-}
-
-TEST_CASE("lrbscope check --json prints a line for each query and one for the sums") {
-  Captures c;
-  c.lie();
-  const Folder folder;
-  write_capture(c.engine.capture, folder / "wrong.lrbcap");
-  const test::Outcome o = test::run(folder, {"check", "wrong.lrbcap", "--json"});
-  CHECK(o.code == 1);
-  std::istringstream lines(o.out);
-  std::vector<nlohmann::json> all;
-  for (std::string line; std::getline(lines, line);) all.push_back(nlohmann::json::parse(line));
-  REQUIRE(all.size() == 3);
-  CHECK(all[0]["verdict"] == "right");
-  CHECK(all[1]["verdict"] == "wrong");
-  REQUIRE(all[1]["wrong_pairs"].size() == 1);
-  CHECK(all[1]["wrong_pairs"][0]["culprit"] == "triangle_test");
-  CHECK(all[2]["verdicts"]["wrong"] == 1);
-  const nlohmann::json& p = all[2]["prices"];
-  std::uint64_t sum = 0;
-  for (const char* part : {"needed", "proof", "volumes", "order", "unsplit", "unattributed"})
-    sum += p[part].get<std::uint64_t>();
-  CHECK(sum == p["visits"]);
 }
 
 }  // namespace lrb::profile

@@ -1,17 +1,12 @@
 #include "scenarios/profile/prices.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <memory>
-#include <numeric>
 
 #include <doctest/doctest.h>
 
 #include "scenarios/profile/captured_run.hpp"
 #include "scenarios/profile/check.hpp"
 #include "tests/support/faulty_engine.hpp"
-#include "tests/support/simplex_distance.hpp"
-#include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/recorder.hpp>
 
@@ -350,160 +345,6 @@ TEST_CASE("Broken trees, other kinds of queries and sides without a tree are pri
   CHECK(check(c, {}).sum().prices.visits == 0);
 }
 
-namespace {
-
-/// A query of the distance by branch and bound on a FaultyEngine's trees: opens the larger node, and visits
-/// the children in the given order.
-class DistanceEngine {
- public:
-  enum class Children : std::uint8_t { as_stored, nearest_first, farthest_first };
-
-  DistanceEngine(FaultyEngine& engine, std::uint32_t a, const Pose& pose_a, std::uint32_t b,
-                 const Pose& pose_b, Children children, bool wide)
-      : engine_(engine),
-        a_(engine.capture.trees[a]),
-        b_(engine.capture.trees[b]),
-        of_a_(a_),
-        of_b_(b_),
-        children_(children),
-        wide_(wide) {
-    query_.number = static_cast<std::uint32_t>(engine.capture.queries.size() + 1);
-    query_.kind = QueryKind::distance;
-    query_.trees = {a, b};
-    query_.poses = {pose_a, pose_b};
-    query_.ended = true;
-    query_.verdict = capture::Verdict::separate;
-  }
-
-  /// Captures the query. `known`: a bound of the distance from the start. Returns the distance.
-  double run(double known = std::numeric_limits<double>::infinity()) {
-    best_ = known;
-    visit(0, 0);
-    FaultyEngine::close(query_);
-    engine_.capture.queries.push_back(query_);
-    return best_;
-  }
-
-  /// Returns the number of pairs of triangles at most this far apart.
-  int pairs_within(double distance) const {
-    int out = 0;
-    for (std::uint32_t f = 0; f < engine_.capture.meshes[a_.mesh].triangles.size(); ++f)
-      for (std::uint32_t g = 0; g < engine_.capture.meshes[b_.mesh].triangles.size(); ++g)
-        out += simplex_distance(corners(a_, f, query_.poses[0]), corners(b_, g, query_.poses[1])) <= distance;
-    return out;
-  }
-
- private:
-  double gap_of(std::uint32_t i, std::uint32_t j) const {
-    return gap(of_a_, i, query_.poses[0], of_b_, j, query_.poses[1]);
-  }
-  double size(const capture::Tree& t, std::uint32_t node) const {
-    const auto n = t.volume_of(node);
-    return n[3] - n[0] + n[4] - n[1] + n[5] - n[2];
-  }
-  Points corners(const capture::Tree& t, std::uint32_t triangle, const Pose& pose) const {
-    const capture::Mesh& mesh = engine_.capture.meshes[t.mesh];
-    Points out;
-    for (const std::uint32_t v : mesh.triangles[triangle]) out.push_back(pose.apply(mesh.vertices[v]));
-    return out;
-  }
-
-  void visit(std::uint32_t i, std::uint32_t j) {
-    const std::size_t event = query_.events.size();
-    query_.events.push_back({.a = i, .b = j});
-    if (!wide_) {
-      query_.events[event].met = gap_of(i, j) < best_;
-      if (query_.events[event].met == 0) return;
-    }
-    if (a_.is_leaf(i) && b_.is_leaf(j)) {
-      query_.events[event].met = 1;
-      for (const std::uint32_t f : a_.triangles(i))
-        for (const std::uint32_t g : b_.triangles(j)) {
-          const double d = simplex_distance(corners(a_, f, query_.poses[0]), corners(b_, g, query_.poses[1]));
-          query_.events.push_back({.a = f,
-                                   .b = g,
-                                   .kind = capture::EventKind::triangles,
-                                   .met = static_cast<std::uint8_t>(d == 0)});
-          best_ = std::min(best_, d);
-        }
-      return;
-    }
-    const bool opens_a = b_.is_leaf(j) || (!a_.is_leaf(i) && size(a_, i) >= size(b_, j));
-    std::vector<std::array<std::uint32_t, 2>> next;
-    for (const std::uint32_t c : opens_a ? a_.children(i) : b_.children(j))
-      next.push_back(opens_a ? std::array{c, j} : std::array{i, c});
-    const auto nearer = [&](const auto& x, const auto& y) { return gap_of(x[0], x[1]) < gap_of(y[0], y[1]); };
-    if (children_ != Children::as_stored) std::stable_sort(next.begin(), next.end(), nearer);
-    if (children_ == Children::farthest_first) std::reverse(next.begin(), next.end());
-    if (wide_) query_.events[event].tests = static_cast<std::uint8_t>(next.size());
-    for (const auto& [x, y] : next) {
-      if (wide_ && !(gap_of(x, y) < best_)) continue;
-      query_.events[event].met += wide_;
-      visit(x, y);
-    }
-  }
-
-  FaultyEngine& engine_;
-  capture::Tree a_, b_;
-  Volumes of_a_, of_b_;
-  capture::Query query_;
-  Children children_;
-  bool wide_;
-  double best_ = 0;
-};
-
-}  // namespace
-
-TEST_CASE("Prices of distances: an engine that knows the distance wastes nothing by order") {
-  using Children = DistanceEngine::Children;
-  std::mt19937_64 random(13);
-  std::uint64_t order[3] = {0, 0, 0}, volumes = 0;
-  int with_one_pair = 0;
-  for (int round = 0; round < 60; ++round) {
-    CAPTURE(round);
-    FaultyEngine engine;
-    const bool wide = round % 2 == 1;
-    const auto grow = [&] {
-      return engine.grow(engine.add(soup_mesh(random, 30, 0.2)), random, 1 + round % 3, wide ? 4 : 2);
-    };
-    const std::uint32_t a = grow(), b = grow();
-    const Pose pose_a = Pose::rotation({1, 2, 3}, round),
-               pose_b = Pose::translation({1.5 + 0.1 * (round % 7), 0.2, 0});
-    double distance = 0;
-    for (const Children children : {Children::as_stored, Children::nearest_first, Children::farthest_first})
-      distance = DistanceEngine(engine, a, pose_a, b, pose_b, children, wide).run();
-    REQUIRE(distance > 0);
-    DistanceEngine knowing(engine, a, pose_a, b, pose_b, Children::as_stored, wide);
-    knowing.run(distance * (1 + 1e-12));
-    const bool unique = knowing.pairs_within(distance * (1 + 1e-12)) == 1;
-    with_one_pair += unique;
-    const Prices oracle = Priced(engine.capture, 3).prices;
-    CHECK(sum_of(oracle) == oracle.visits);
-    CHECK(oracle.order + oracle.unsplit + oracle.unattributed == 0);
-    CHECK(oracle.needed > 0);
-    for (std::size_t i = 0; i < 3; ++i) {
-      CAPTURE(i);
-      const Prices p = Priced(engine.capture, i).prices;
-      CHECK(sum_of(p) == p.visits);
-      order[i] += p.order;
-      if (!unique) continue;  // engines may come to different closest pairs
-      CHECK(p.needed == oracle.needed);
-      CHECK(p.volumes == oracle.volumes);
-      // Wide nodes: children whose volumes are no closer than the distance are visited only by mistake.
-      if (!wide) CHECK(p.proof == oracle.proof);
-      CHECK(p.visits - oracle.visits == p.order + p.proof - oracle.proof);
-      CHECK(p.triangle_tests_for_nothing == p.triangle_tests - 1);
-    }
-    volumes += oracle.volumes;
-    const Prices whole = Priced(engine.capture, 0, false).prices;
-    CHECK(whole.unsplit == whole.wasted());
-  }
-  CHECK(with_one_pair > 30);
-  CHECK(volumes > 100);
-  CHECK(order[1] < order[0]);
-  CHECK(order[0] < order[2]);
-}
-
 TEST_CASE("The descent of a self query is priced, but not split") {
   std::mt19937_64 random(12);
   FaultyEngine engine;
@@ -515,34 +356,6 @@ TEST_CASE("The descent of a self query is priced, but not split") {
   CHECK(p.needed > 0);
   CHECK(p.volumes + p.order == 0);
   CHECK(sum_of(p) == p.visits);
-}
-
-TEST_CASE("Trees too deep to search are not split") {
-  FaultyEngine engine;
-  std::mt19937_64 random(1);
-  const std::uint32_t sheet = engine.add(sheet_mesh(60));
-  // A chain: each node has a leaf and the next node.
-  capture::Tree chain;
-  chain.mesh = sheet;
-  chain.first_child = chain.first_triangle = {0};
-  const std::uint32_t n = 7200;
-  for (std::uint32_t i = 0; i + 1 < n; ++i) {
-    for (const bool leaf : {false, true}) {
-      if (!leaf && i + 2 < n) chain.child.insert(chain.child.end(), {2 * i + 1, 2 * i + 2});
-      if (leaf || i + 2 == n) chain.triangle.push_back(i);
-      chain.first_child.push_back(static_cast<std::uint32_t>(chain.child.size()));
-      chain.first_triangle.push_back(static_cast<std::uint32_t>(chain.triangle.size()));
-      chain.volumes.insert(chain.volumes.end(), {0, 0, 0, 1, 1, 0});
-    }
-  }
-  engine.capture.trees.push_back(chain);
-  const std::uint32_t one =
-      engine.grow(engine.add(triangle_mesh({Eigen::Vector3d(2, 0, 0), {3, 0, 0}, {2, 1, 0}})), random);
-  capture::Query& q = engine.ask(0, {}, one, {});
-  // It goes down a little.
-  q.events = {{.a = 0, .b = 0, .met = 1}, {.a = 1, .b = 0}, {.a = 2, .b = 0}};
-  FaultyEngine::close(q);
-  CHECK(Priced(engine.capture).prices.unsplit == 2);
 }
 
 TEST_CASE("The advice names the change with most to gain, and the next") {

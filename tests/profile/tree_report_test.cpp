@@ -403,32 +403,6 @@ TEST_CASE("EPO of spheres and rounded rectangles is sampled, and equal for an eq
   }
 }
 
-TEST_CASE("looseness is 1 for the tightest boxes, and the factor for larger ones") {
-  const capture::Mesh mesh = captured(shapes::bumpy_sphere(2, 4));
-  capture::Tree tree = test::halving_tree(mesh, VolumeKind::obb, 4);
-  auto looseness = profile::report_tree(tree, mesh).figures.looseness;
-  REQUIRE(looseness);
-  CHECK(looseness->median == doctest::Approx(1));
-  CHECK(looseness->largest == doctest::Approx(1));
-  for (int k = 3; k < 12; ++k) tree.volumes[12 * 5 + static_cast<std::size_t>(k)] *= 2;
-  looseness = profile::report_tree(tree, mesh).figures.looseness;
-  CHECK(looseness->largest == doctest::Approx(8));
-  CHECK(looseness->node == 5);
-  CHECK(looseness->median == doctest::Approx(1));
-}
-
-TEST_CASE("siblings that overlap are counted, with the share of the smaller volume") {
-  capture::Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {2, 0, 1}, {0, 2, 2}, {1, 0, 0}, {3, 0, 1}, {1, 2, 2}};
-  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-  const auto siblings =
-      profile::report_tree(test::halving_tree(mesh, VolumeKind::aabb), mesh).figures.siblings;
-  CHECK(siblings.pairs == 1);
-  CHECK(siblings.overlapping == 1);
-  REQUIRE(siblings.shared);
-  CHECK(*siblings.shared == doctest::Approx(0.5));
-}
-
 TEST_CASE("lrbscope's own trees have no faults") {
   std::vector<Mesh> meshes = {shapes::tetrahedron(),
                               shapes::box(),
