@@ -1,9 +1,8 @@
-/// Goldens catch what they are there for, and say what it is.
+/// Goldens catch what they are there for, and say what it is. The command: tests/commands/golden.txt.
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -45,12 +44,6 @@ void check_has(const std::string& text, const std::vector<std::string>& words) {
   }
 }
 
-std::size_t files_ending(const Folder& folder, const std::string& ending) {
-  const std::vector<std::string> tree = folder.tree();
-  return static_cast<std::size_t>(
-      std::count_if(tree.begin(), tree.end(), [&](const std::string& f) { return f.ends_with(ending); }));
-}
-
 /// A folder with goldens.
 struct Suite : Folder {
   Outcome call(const std::string& part, std::vector<std::string> options) const {
@@ -67,17 +60,6 @@ struct Approved : Suite {
     write("balls.scenario.json", two_balls());
     const Outcome o = approve({"--frames", "2", "balls.scenario.json"});
     REQUIRE_MESSAGE(o.code == 0, o.err);
-  }
-  /// Approves scenarios like the first one, with these names.
-  void add(const std::vector<std::string>& names) const {
-    for (const std::string& name : names) {
-      write(name + ".scenario.json", two_balls().replace(10, 5, name));
-      REQUIRE(approve({"--frames", "1", name + ".scenario.json"}).code == 0);
-    }
-  }
-  /// Moves the start of the second ball.
-  void change() const {
-    write("balls.scenario.json", std::regex_replace(two_balls(), std::regex("3, 0.2"), "3, 0.3"));
   }
 };
 
@@ -128,115 +110,6 @@ trace::EventId first_of(const trace::Trace& t, EventKind kind) {
 }
 
 }  // namespace
-
-TEST_CASE("goldens: approved runs pass and leave no files; approving again changes nothing") {
-  const Approved folder;
-  const std::vector<std::string> before = folder.tree();
-  CHECK(before == std::vector<std::string>{"balls.scenario.json", "goldens", "goldens/balls",
-                                           "goldens/balls/frame_1.png", "goldens/balls/frame_2.png",
-                                           "goldens/balls/golden.json", "goldens/balls/trace.json.gz"});
-  const auto spec = nlohmann::json::parse(slurp(folder / "goldens/balls/golden.json"));
-  CHECK(spec["scenario"] == "../../balls.scenario.json");
-  CHECK(spec["size"] == nlohmann::json({480, 320}));
-  CHECK(spec["frames"] == 2);
-  CHECK(spec["meshes"].size() == 2);
-  CHECK(spec["contact_lengths"].size() == 5);
-  CHECK_FALSE(spec.contains("compare"));
-  const Outcome o = folder.test();
-  CHECK(o.code == 0);
-  CHECK(o.out.starts_with("ok    balls: "));
-  CHECK(folder.tree() == before);
-  CHECK(folder.approve().out == "unchanged balls\n");
-  CHECK(folder.test({"balls.scenario.json"}).code == 0);
-  const Approved again;
-  for (const char* file : {"frame_1.png", "frame_2.png", "trace.json.gz"})  // the same bytes
-    CHECK(slurp(folder / (std::string("goldens/balls/") + file)) ==
-          slurp(again / (std::string("goldens/balls/") + file)));
-}
-
-TEST_CASE("goldens: a dry run changes nothing, and names what approving changes") {
-  const Approved folder;
-  folder.change();
-  const auto contents = [&] {
-    std::vector<std::string> out;
-    for (const std::string& file : folder.tree())
-      if (file.find('.') != std::string::npos) out.push_back(file + slurp(folder / file));
-    return out;
-  };
-  const std::vector<std::string> before = contents();
-  const Outcome dry = folder.approve({"--dry-run"});
-  CHECK(dry.code == 0);
-  CHECK(contents() == before);
-  const Outcome done = folder.approve();
-  CHECK(contents() != before);
-  CHECK(dry.out ==
-        std::regex_replace(done.out, std::regex("(^|\n)(approved|removed|replaced)"), "$1would be $2"));
-  // A golden that does not exist yet is not begun.
-  CHECK(folder.approve({"--dry-run", "--goldens", "others", "balls.scenario.json"})
-            .out.find("would be approved others/balls/golden.json\n") != std::string::npos);
-  CHECK_FALSE(std::filesystem::exists(folder.path / "others"));
-}
-
-TEST_CASE("goldens: remove deletes what approving wrote, and list names goldens without a scenario") {
-  const Approved folder;
-  const Outcome none = folder.call("remove", {"balls", "bells"});
-  CHECK(none.code == 2);
-  CHECK(none.err.find("bells: no golden of this name in goldens; nothing was removed") != std::string::npos);
-  std::filesystem::rename(folder.path / "balls.scenario.json", folder.path / "other.scenario.json");
-  CHECK(folder.call("list", {}).out.find("its scenario cannot be opened: ") != std::string::npos);
-  folder.write("goldens/balls/notes.txt", "kept");
-  CHECK(folder.call("remove", {"balls"}).out == "removed balls\n");
-  CHECK(folder.tree() == std::vector<std::string>{"goldens", "goldens/balls", "goldens/balls/notes.txt",
-                                                  "other.scenario.json"});
-}
-
-TEST_CASE("goldens: a table for CI has failures first; a repeated failure is changed, not flaky") {
-  const Approved folder;
-  CHECK(folder.test({"--markdown", "summary.md", "--repeat", "2"}).code == 0);
-  CHECK(slurp(folder / "summary.md").starts_with("### Goldens: 0 of 1 failed\n"));
-  folder.change();
-  const Outcome failed = folder.test({"--markdown", "summary.md", "--repeat", "2"});
-  CHECK(failed.code == 1);
-  // The cause is the line after the verdict and the repeats.
-  CHECK(std::regex_search(failed.out,
-                          std::regex("^FAIL  balls: [^\n]*\n      cause: the scenario changed: motion.from: "
-                                     "\\[3,0.2,0.1\\] -> \\[3,0.3,0.1\\]\n(      cause: [^\n]*\n)*"
-                                     "      changed: none of 2 repeats passed\n")));
-  const std::string table = slurp(folder / "summary.md");
-  check_has(table, {"### Goldens: 1 of 1 failed\n", "| balls | **failed** | ",
-                    " events differ | 2 of 2 differ | ", "the scenario changed: motion.from: ",
-                    "src=\"out/golden/balls/frame_1.expected.png\""});  // thumbnails, from beside the table
-  CHECK(fs::exists(folder / "out/golden/balls/frame_1.expected.png"));
-  CHECK(folder.test({"--markdown", "sub/summary.md", "--picture-url", "https://ci/7"}).code == 1);
-  CHECK(has(slurp(folder / "sub/summary.md"), "src=\"https://ci/7/balls/frame_1.actual.png\""));
-}
-
-TEST_CASE("goldens: a moved camera is reported as such") {
-  const Approved folder;
-  folder.write("balls.scenario.json", two_balls(R"(, "views": [{"from": [0.62, -0.6, 0.42]}])"));
-  const Outcome o = folder.test();
-  CHECK(o.code == 1);
-  check_has(o.out,
-            {"frame_1.png: too many pixels differ strongly", "the camera moved: expected eye (",
-             "events equal; images: 2 of 2 differ",
-             "\n      cause: the scenario changed: frames.views: absent -> [{\"from\":[0.62,-0.6,0.42]}]",
-             "mean FLIP 0.", "pictures: approved and drawn with ", "Mesa",
-             "lrbscope golden approve --goldens goldens balls\n"});
-  for (const char* kind : {".expected.png", ".actual.png", ".difference.png"})
-    CHECK(files_ending(folder, kind) == 2);
-  const std::string page = slurp(folder / "out/golden/index.html");
-  check_has(page,
-            {"Side by side", "Swipe", "Difference", "the camera moved", "id=\"balls\"",
-             "lrbscope golden approve --goldens goldens balls", "<td><a href=\"#balls\">balls</a></td>"});
-  CHECK(page.find("frames.views: absent") < page.find("class=\"numbers\""));  // the cause is first
-  for (const char* address : {"http:", "https:"}) CHECK_FALSE(has(page, address));
-
-  // The command that was printed makes it pass, and the test cleans up.
-  CHECK(folder.approve({"--goldens", "goldens", "balls"}).code == 0);
-  CHECK(folder.test().code == 0);
-  CHECK(files_ending(folder, ".expected.png") == 0);
-  CHECK(files_ending(folder, "index.html") == 0);
-}
 
 TEST_CASE("goldens: a changed colour fails, and is no moved camera; noise of processors passes") {
   const auto test_changed = [](void (*change)(render::Image&)) {
@@ -363,94 +236,6 @@ TEST_CASE("goldens: inputs and counters are part of the run; a changed input is 
   const golden::GoldenResult body = golden::test_golden(golden, run, "approve", false);
   REQUIRE(body.comparisons.size() == 1);
   CHECK(has(body.comparisons[0].text, "cannot be replayed"));
-}
-
-TEST_CASE("goldens: missing and additional frames are failures") {
-  const Approved folder;
-  fs::remove(folder / "goldens/balls/frame_2.png");
-  CHECK(has(folder.test().out, "frame_2.png: not approved yet"));
-  fs::copy_file(folder / "goldens/balls/frame_1.png", folder / "goldens/balls/frame_2.png");
-  fs::copy_file(folder / "goldens/balls/frame_1.png", folder / "goldens/balls/frame_3.png");
-  CHECK(has(folder.test().out, "frame_3.png: approved, but the run has only 2 frames"));
-  CHECK(folder.approve().code == 0);
-  CHECK_FALSE(fs::exists(folder / "goldens/balls/frame_3.png"));
-  CHECK(folder.test().code == 0);
-}
-
-TEST_CASE("goldens: a report shows every picture, passed or not") {
-  const Approved folder;
-  const Outcome o = folder.call("report", {"-o", "pages"});
-  CHECK(o.code == 0);
-  CHECK(has(o.out, "pages/index.html\n"));
-  check_has(slurp(folder / "pages/index.html"), {"balls: frame_1.png", "balls: frame_2.png"});
-  CHECK(files_ending(folder, ".actual.png") == 0);
-}
-
-TEST_CASE("goldens: invalid goldens end with code 2 and one line") {
-  const Approved folder;
-  folder.write("other.scenario.json", two_balls().replace(10, 5, "other"));
-  const std::vector<std::vector<std::string>> bad = {
-      {"golden"},
-      {"golden", "test", "nonsense"},
-      {"golden", "test", "other.scenario.json"},
-      {"golden", "test", "--goldens", "missing"},
-      {"golden", "approve", "--size", "3x3"},
-      {"golden", "approve", "--variant", "a/b"},
-      {"golden", "approve", "--variant", "x", "other.scenario.json"},
-  };
-  for (const auto& arguments : bad) {
-    const Outcome o = test::run(folder, arguments);
-    CAPTURE(arguments.back());
-    CAPTURE(o.err);
-    CHECK(o.code == 2);
-    CHECK(o.error_lines() == 1);
-  }
-  CHECK(has(folder.test({"other.scenario.json"}).err, "lrbscope golden approve"));
-}
-
-TEST_CASE("goldens: a damaged golden fails, and the others are tested") {
-  const Approved folder;
-  folder.add({"other"});
-  const auto check_fails = [&](const char* what) {
-    const Outcome o = folder.test();
-    CAPTURE(o.out);
-    CAPTURE(o.err);
-    CHECK(o.code == 1);
-    CHECK(has(o.out, "FAIL  balls: "));
-    CHECK(has(o.out, what));
-    CHECK(has(o.out, "ok    other: "));
-    CHECK(has(slurp(folder / "out/golden/index.html"), what));
-  };
-  const std::string sound = slurp(folder / "goldens/balls/trace.json.gz");
-  folder.write("goldens/balls/frame_1.png", "no picture");
-  check_fails("frame_1.png: not a readable PNG");
-  CHECK(has(folder.test().out, "events equal; images: 1 of 2 differ"));
-  CHECK(folder.approve({"balls"}).code == 0);  // which puts a sound one in its place
-  CHECK(folder.test().code == 0);
-  folder.write("goldens/balls/trace.json.gz", sound.substr(0, sound.size() / 2));
-  check_fails("is truncated");
-  const auto answer = nlohmann::json::parse(folder.test({"--json", "balls"}).out);
-  CHECK(answer["passed"] == false);
-  CHECK(has(answer["refusal"].get<std::string>(), "is truncated"));
-  folder.write("goldens/balls/trace.json.gz", sound);
-  folder.write("goldens/balls/golden.json", "{\"scenario\": \"balls\", \"size\": [1]}");
-  check_fails("golden.json:1:");
-}
-
-TEST_CASE("goldens: two scenarios of one name are rejected; a moved one is not") {
-  const Approved folder;
-  const std::string approved = slurp(folder / "goldens/balls/trace.json.gz");
-  fs::create_directory(folder / "more");
-  folder.write("more/balls.scenario.json", two_balls(", \"most\": 1"));
-  const auto approve = [&](const std::string& file) { return folder.approve({"--frames", "2", file}); };
-  const Outcome rejected = approve("more/balls.scenario.json");
-  CHECK(rejected.code == 2);
-  CHECK(has(rejected.err, "more/balls.scenario.json: has the same name as another scenario"));
-  CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
-  CHECK(approve("./balls.scenario.json").code == 0);
-  std::filesystem::rename(folder / "balls.scenario.json", folder / "more/moved.scenario.json");
-  CHECK(approve("more/moved.scenario.json").code == 0);
-  CHECK(folder.test().code == 0);
 }
 
 namespace {
@@ -610,79 +395,6 @@ TEST_CASE("goldens: ignored and selected rectangles, and FLIP, decide which pict
     CHECK(folder.approve({std::string("--ignore=") + bad, "balls"}).code == 2);
 }
 
-TEST_CASE("goldens: approved from the results of a test, without running") {
-  const Approved folder;
-  const std::string approved = slurp(folder / "goldens/balls/trace.json.gz");
-  folder.change();
-  REQUIRE(folder.test().code == 1);
-  fs::remove(folder / "balls.scenario.json");  // nothing runs
-  const auto approve = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {"golden", "approve", "--from"});
-    return test::run(folder, words);
-  };
-  const Outcome dry = approve({"out/golden", "--dry-run"});
-  CHECK(dry.code == 0);
-  CHECK(has(dry.out, "would be approved goldens/balls/trace.json.gz\n"));
-  CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
-
-  // Nothing is approved from what is damaged or something else.
-  fs::copy(folder / "out/golden", folder / "damaged", fs::copy_options::recursive);
-  const std::string png = slurp(folder / "damaged/approve/balls/frame_1.png");
-  folder.write("damaged/approve/balls/frame_1.png", png.substr(0, png.size() / 2));
-  folder.write("results.zip", "PK");
-  for (const auto& [words, why] : {std::pair{std::vector<std::string>{"damaged"}, "nothing was approved"},
-                                   {{"results.zip"}, "unpack an archive first"},
-                                   {{"."}, "has no failures of goldens"},
-                                   {{"out/golden", "others"}, "has no failure of a golden others"},
-                                   {{"out/golden", "--frames", "1"}, "--frames"}}) {
-    const Outcome o = approve(words);
-    CAPTURE(o.err);
-    CHECK(o.code == 2);
-    CHECK(o.error_lines() == 1);
-    CHECK(has(o.err, why));
-    CHECK(slurp(folder / "goldens/balls/trace.json.gz") == approved);
-  }
-
-  CHECK(approve({"out/golden", "balls"}).code == 0);
-  CHECK(slurp(folder / "goldens/balls/trace.json.gz") != approved);
-  folder.change();  // the scenario that was approved
-  CHECK(folder.test().code == 0);
-  CHECK(folder.approve().out == "unchanged balls\n");
-  CHECK(approve({"out/golden"}).code == 2);  // passed: nothing is left to approve
-}
-
-TEST_CASE("goldens: approving all approves no broken golden, and none without a scenario") {
-  const Approved folder;
-  folder.add({"gone", "other"});
-  fs::remove(folder / "gone.scenario.json");
-  const std::string png = slurp(folder / "goldens/balls/frame_1.png");
-  const std::string truncated = png.substr(0, png.size() / 2);
-  folder.write("goldens/balls/frame_1.png", truncated);
-  const Outcome all = folder.approve();
-  CHECK(all.code == 1);
-  check_has(all.out,
-            {"not approved: balls: ", "to replace it: lrbscope golden approve --goldens goldens balls\n",
-             "not approved: gone: ", "to remove the golden: lrbscope golden remove --goldens goldens gone\n",
-             "unchanged other\n"});
-  CHECK(slurp(folder / "goldens/balls/frame_1.png") == truncated);
-  CHECK(folder.approve({"balls"}).code == 0);
-  CHECK(slurp(folder / "goldens/balls/frame_1.png") == png);
-}
-
-TEST_CASE("goldens: one cause of several failures is reported once") {
-  const Approved folder;
-  folder.add({"other"});
-  CHECK_FALSE(has(folder.test().out, "one cause in"));
-  folder.change();
-  folder.write("other.scenario.json",
-               std::regex_replace(two_balls().replace(10, 5, "other"), std::regex("3, 0.2"), "3, 0.3"));
-  const Outcome o = folder.test({"--markdown", "summary.md"});
-  const std::string line = "one cause in 2 goldens (balls, other): the scenario changed: motion.from: ";
-  CHECK(has(o.out, line));
-  CHECK(has(slurp(folder / "summary.md"), line));
-  CHECK(has(slurp(folder / "out/golden/index.html"), "balls, other: the scenario changed: motion.from: "));
-}
-
 TEST_CASE("goldens: pictures have the scenario's shape") {
   const auto size_of = [](int width, int height) {
     golden::GoldenSpec spec;
@@ -709,43 +421,4 @@ TEST_CASE("goldens: differences of scenarios are named by key") {
   CHECK(difference(R"({"v": [{"x": 1}]})", R"({"v": []})") == "v: [{\"x\":1}] -> []");
   CHECK(difference(R"({"a":1,"b":1,"c":1,"d":1})", R"({"a":2,"b":2,"c":2,"d":2})") ==
         "a: 1 -> 2; b: 1 -> 2; c: 1 -> 2; and 1 more");
-}
-
-TEST_CASE("goldens: jobs change only the time; one that cannot run fails alone; list shows all") {
-  Approved folder;
-  folder.add({"other", "third", "gone"});
-  fs::remove(folder / "gone.scenario.json");
-  const auto tested = [&](const char* jobs) {
-    const Outcome o = folder.test({"--jobs", jobs, "--junit", "j.xml"});
-    CHECK(o.code == 1);
-    CHECK(has(slurp(folder / "j.xml"), "tests=\"4\" failures=\"0\" errors=\"1\""));
-    return o.out;
-  };
-  const std::string one = tested("1");
-  CHECK(has(one, "FAIL  gone: "));
-  for (const char* name : {"balls", "other", "third"}) CHECK(has(one, "ok    " + std::string(name)));
-  CHECK(tested("3") == one);
-  const Outcome list = folder.call("list", {});
-  CHECK(has(
-      list.out,
-      "balls: ../../balls.scenario.json; compares answers, events, pictures, work; up to 2 pictures of 480x320; "));
-  CHECK(has(list.out, "4 goldens, "));
-  const std::string lines = folder.call("list", {"--json"}).out;
-  const auto line = nlohmann::json::parse(lines.substr(0, lines.find('\n')));
-  CHECK(line["golden"] == "balls");
-  CHECK(line["bytes"].get<int>() > 1000);
-}
-
-TEST_CASE("goldens: one of a crowd, of 1.x, fails alone with one line, and can be removed") {
-  const Approved folder;
-  fs::create_directory(folder / "goldens/three");
-  folder.write("goldens/three/golden.json",
-               R"({"crowd": "../../three.crowd.json", "size": [480, 320], "frames": 2})");
-  const Outcome o = folder.test();
-  CHECK(o.code == 1);
-  CHECK(has(o.out, "FAIL  three: goldens/three/golden.json:1:"));
-  CHECK(has(o.out, "/crowd: goldens of crowds are of 1.x: remove this one"));
-  CHECK(has(o.out, "ok    balls: "));
-  CHECK(folder.call("remove", {"three"}).code == 0);
-  CHECK_FALSE(fs::exists(folder / "goldens/three"));
 }
