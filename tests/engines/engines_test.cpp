@@ -1,10 +1,9 @@
-/// Costs of engines over poses: percentiles, the search for the worst pose, hard poses, and engines in other
-/// programs.
+/// Costs of engines over poses: percentiles, the search for the worst pose, and hard poses. The commands, and
+/// engines in other programs: tests/commands/engines.txt.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <sstream>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -12,8 +11,6 @@
 #include "bench/engines/costs.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/io/poses.hpp"
-#include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/workspace.hpp>
@@ -356,160 +353,6 @@ TEST_CASE("equal queries of a capture are rounds of one pose") {
   c.queries = {c.queries[4]};
   CHECK_THROWS_WITH_AS(samples_of(c, "run.lrbcap"), "run.lrbcap: expected queries that ended, found none",
                        InputError);
-}
-
-namespace {
-
-const std::vector<std::string> kPercentiles = {"bench", "--percentiles"}, kSearch = {"stability", "--search"};
-
-/// Two bodies centred at 0, and the arguments of a command about them.
-struct Two {
-  Folder folder;
-  Two() {
-    write_mesh(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}), folder / "a.obj");
-    write_mesh(shapes::torus(8, 6, 0.5, 0.2), folder / "b.obj");
-  }
-  static std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) {
-    words.insert(words.end(), {"a.obj", "b.obj", "--quiet"});
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-  /// Returns the lines of JSON that the command prints.
-  std::vector<nlohmann::json> rows(const std::vector<std::string>& words,
-                                   const std::vector<std::string>& more) const {
-    std::vector<std::string> all = with(words, more);
-    all.emplace_back("--json");
-    const Outcome o = run(folder, all);
-    CAPTURE(o.err);
-    CHECK(o.code == 0);
-    std::istringstream in(o.out);
-    std::vector<nlohmann::json> out;
-    for (std::string line; std::getline(in, line);) out.push_back(nlohmann::json::parse(line));
-    return out;
-  }
-};
-
-}  // namespace
-
-TEST_CASE("the same seed gives the same tests, as table and as JSON") {
-  const Two two;
-  const auto tests = [&](const char* seed) {
-    std::vector<double> numbers;
-    for (const auto& row : two.rows(kPercentiles, {"--poses", "100", "--seed", seed}))
-      if (row.at("what") != "us") numbers.push_back(row.at("p90"));
-    return numbers;
-  };
-  CHECK(tests("1").size() == 3);
-  CHECK(tests("1") == tests("1"));
-  CHECK(tests("1") != tests("2"));
-  const auto worst = [&](const char* seed) { return two.rows(kSearch, {"--budget", "200", "--seed", seed}); };
-  CHECK(!worst("1").empty());
-  CHECK(worst("1") == worst("1"));
-  CHECK(worst("1") != worst("2"));
-  CHECK(run(two.folder, Two::with(kPercentiles, {"--poses", "50"})).out.find("face tests") !=
-        std::string::npos);
-  const Outcome wrong = run(two.folder, Two::with(kSearch, {"--budget", "72", "--goal", "wrong"}));
-  CHECK(wrong.out.find("parallel edges") != std::string::npos);
-}
-
-TEST_CASE("the scenario of the worst poses meets its own expectations") {
-  const Two two;
-  const Outcome found = run(two.folder, Two::with(kSearch, {"--budget", "150", "-o", "out"}));
-  CAPTURE(found.err);
-  CHECK(found.code == 0);
-  const auto scenario = nlohmann::json::parse(slurp(two.folder / "out/worst.scenario.json"));
-  CHECK(scenario.at("expect").size() == scenario.at("motion").at("poses").size());
-  const auto code_of = [&](const std::string& file) {
-    return run(two.folder, {"run", file, "-o", "again", "--frames", "none", "-q"}).code;
-  };
-  CHECK(code_of("out/worst.scenario.json") == 0);
-  auto tighter = scenario;
-  auto& budget = tighter["expect"][0]["max_tests"];
-  budget = budget.get<int>() - 1;
-  two.folder.write("out/tighter.scenario.json", tighter.dump());
-  CHECK(code_of("out/tighter.scenario.json") == 1);
-}
-
-TEST_CASE("a method in a worker has lrbscope's pairs and the same tests") {
-  const Two two;
-  const auto ours = two.rows(kPercentiles, {"--poses", "100"});
-  const auto rows = two.rows(kPercentiles, {"--poses", "100", "--method", "ours-paper,ours"});
-  const auto of_paper = std::find_if(rows.begin(), rows.end(),
-                                     [](const auto& row) { return row.at("engine") == "ours-paper"; });
-  REQUIRE(of_paper != rows.end());
-  CHECK(of_paper->at("poses") == 100);
-  CHECK(of_paper->at("failed") == 0);
-  for (std::size_t i = 1; i < ours.size(); ++i)
-    CHECK(std::find(rows.begin(), rows.end(), ours[i]) != rows.end());
-  // The paper's recursion misses pairs that only touch, which hard poses have.
-  CHECK(!two.rows(kSearch, {"--budget", "44", "--goal", "wrong", "--method", "ours-paper"}).empty());
-  check_rejected(two.folder, Two::with(kSearch, {"--method", "no-such"}));
-}
-
-TEST_CASE("a program of another engine: the search finds where it tests most") {
-  const Two two;
-  const std::string program = "command:" LRB_PLANTED_ENGINE;
-  const auto found = two.rows(kSearch, {"--method", program, "--budget", "600"});
-  REQUIRE(!found.empty());
-  CHECK(found[0].at("tests") == 1 + 12 * 96);
-  CHECK(found[0].at("box_tests") == 1 + 12 * 96);
-  CHECK(two.rows(kSearch, {"--method", program, "--budget", "600"}) == found);
-  const auto wasted = two.rows(kSearch, {"--method", program, "--budget", "16", "--goal", "wasted"});
-  REQUIRE(!wasted.empty());
-  CHECK(wasted[0].at("cost") == 0);  // its volumes contain both bodies, so that no visit could be saved
-  const auto tails = two.rows(kPercentiles, {"--method", program, "--poses", "300"});
-  CHECK(tails.back().at("what") == "tests in phase roots");
-}
-
-TEST_CASE("a program that fails, hangs, or records nothing or something else is refused in one line") {
-  const Two two;
-  const auto says = [&](const std::string& planted, const std::string& words) {
-    const Environment fault("PLANTED", planted);
-    for (const auto& command : {kSearch, kPercentiles}) {
-      const Outcome o = check_rejected(
-          two.folder, Two::with(command, {"--method", "command:" LRB_PLANTED_ENGINE, "--timeout", "2"}));
-      CAPTURE(o.err);
-      CHECK(o.err.find(words) != std::string::npos);
-    }
-  };
-  says("fail", "exited with code 3 after 'the planted fault'");
-  says("crash", "killed by signal 6");
-  says("hang", "expected its end within 2 s, found it still running");
-  says("nothing", "expected a capture in $LRBCAP_OUT, found nothing");
-  says("junk", "its capture");
-  says("short", "expected 256 queries, one for each pose, found 1");
-  says("shift", "query 1: expected the pose of line 1, found another");
-  CHECK(check_rejected(two.folder, Two::with(kSearch, {"--method", "command:./no-such-program"}))
-            .err.find("exited with code 127") != std::string::npos);
-}
-
-TEST_CASE("percentiles of a capture, and rejected captures") {
-  const Two two;
-  io::save_poses(two.folder / "poses.txt",
-                 std::vector<Pose>{Pose::translation({0.1, 0, 0}), Pose::translation({3, 0, 0}),
-                                   Pose::translation({0.1, 0, 0})});
-  REQUIRE(std::system(("cd '" + two.folder.path.string() +
-                       "' && LRBCAP_OUT=run.lrbcap " LRB_PLANTED_ENGINE " a.obj b.obj poses.txt")
-                          .c_str()) == 0);
-  const Outcome o = run(two.folder, {"bench", "--percentiles", "run.lrbcap", "--json"});
-  CAPTURE(o.err);
-  REQUIRE(o.code == 0);
-  CHECK(o.err.find("events were recorded") != std::string::npos);
-  std::istringstream lines(o.out);
-  std::size_t rows = 0;
-  for (std::string line; std::getline(lines, line); ++rows) {
-    const auto row = nlohmann::json::parse(line);
-    CHECK(row.at("engine") == "planted engine");
-    CHECK(row.at("poses") == 2);
-    if (row.at("what") == "tests") CHECK(row.at("max") == 1 + 12 * 96);
-  }
-  CHECK(rows == 6);
-  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
-           {"a.obj"}, {"missing.lrbcap"}, {"run.lrbcap", "--method", "fcl"}}) {
-    std::vector<std::string> words = kPercentiles;
-    words.insert(words.end(), more.begin(), more.end());
-    check_rejected(two.folder, words);
-  }
 }
 
 }  // namespace lrb::test

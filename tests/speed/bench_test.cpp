@@ -1,8 +1,8 @@
-/// Speed and accuracy: data sets, records, what is computed from them, and the commands.
+/// Speed and accuracy: data sets, records, and what is computed from them. The commands:
+/// tests/commands/bench.txt.
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -176,25 +176,6 @@ TEST_CASE("ratios are medians over questions; faster engines are named") {
   CHECK(text.find("set, deep, 10 %, all pairs: fast 2.00x") != std::string::npos);
   CHECK(text.find("slow 0") == std::string::npos);
   CHECK(text.find("crash") != std::string::npos);
-}
-
-TEST_CASE("tables of bench: long names have their own column, and missing measurements are named") {
-  bench::DataSet set = made_up_set(1);
-  set.name = "a-body-with-a-long-name-and-another-one";
-  bench::Record r = answer("ours", 0, bench::PoseClass::deep, 10);
-  r.set = set.name;
-  const bench::PeerTable t = bench::peer_table({set}, {info("ours")}, {r});
-  CHECK(bench::in_brief(t).find(set.name + "  deep, 10 %") != std::string::npos);
-  const report::Table cells = bench::table_of_cells(t);
-  CHECK(cells.rows.size() == 2);  // all pairs and the first pair
-  for (const std::vector<std::string>& row : cells.rows) {
-    CHECK(row.size() == cells.columns.size());
-    CHECK(row[0] == set.name);
-    CHECK(row[1] == "deep, 10 %");
-  }
-  CHECK(bench::in_brief(t).find("No other engine was measured.") != std::string::npos);
-  CHECK(bench::in_brief(t).find("in any of 0 cells") == std::string::npos);
-  CHECK(bench::in_brief(t).find("FCL is absent") == std::string::npos);  // it was not requested
 }
 
 TEST_CASE("errors of a contact region: 0 for the exact list, 1 for an empty one, between for a part") {
@@ -447,103 +428,6 @@ TEST_CASE("a sphere tree misses no contact, and is more accurate at deeper level
   CHECK(wolves[1] < wolves[0]);
 }
 
-TEST_CASE("the commands: records, table, charts; existing records are reused") {
-  const Folder folder;
-  const std::vector<std::string> bench = {"bench", "--faces",  "320",           "--poses", "1", "--method",
-                                          "ours",  "--method", "ours-floating", "-o",      "b"};
-  const auto first = test::run(folder, bench);
-  CHECK(first.code == 0);
-  CHECK(first.out.find("ours-floating") != std::string::npos);
-  const std::string records = slurp(folder / "b/records.jsonl");
-  CHECK(std::count(records.begin(), records.end(), '\n') == 3 * 5 * 2);
-  CHECK(test::run(folder, bench).code == 0);
-  CHECK(slurp(folder / "b/records.jsonl") == records);
-
-  const auto chart = test::run(folder, {"chart", "--faces", "320", "--poses", "1", "--method", "ours",
-                                        "--method", "spheres", "--rounds", "1", "--no-scenes", "-o", "c"});
-  CHECK(chart.code == 0);
-  CHECK(slurp(folder / "c/index.html").find("sphere tree") != std::string::npos);
-  const std::string points = slurp(folder / "c/points.jsonl");
-  CHECK(std::count(points.begin(), points.end(), '\n') == 3 * 5 * 7);
-  // A figure at a width on paper, of some panels, and the table of settings for LaTeX.
-  const std::string bodies = nlohmann::json::parse(points.substr(0, points.find('\n')))["set"];
-  const auto draw = [&](std::vector<std::string> words) {
-    words.insert(words.begin(),
-                 {"chart", "draw", "--method", "ours", "--method", "spheres", "--no-scenes", "-o", "c"});
-    return test::run(folder, words);
-  };
-  const auto figure = draw({"--width", "85mm", "--tex", "--panel", bodies + "/deep," + bodies + "/shallow"});
-  CHECK(figure.code == 0);
-  const std::string svg = slurp(folder / "c/figure.svg");
-  CHECK(svg.find("width=\"241\"") != std::string::npos);  // 85 mm in points
-  CHECK(svg.find("deep, 10 %") != std::string::npos);
-  CHECK(svg.find("0.5 % apart") == std::string::npos);
-  const std::string pdf = slurp(folder / "c/figure.pdf");
-  CHECK(pdf.substr(0, 5) == "%PDF-");
-  const std::string tex = slurp(folder / "c/settings.tex"), csv = slurp(folder / "c/settings.csv");
-  CHECK(tex.find("\\begin{tabular}{lrrlrrlrr}") != std::string::npos);
-  CHECK(tex.find("\\bottomrule") != std::string::npos);
-  CHECK(tex.find("\xC2\xB5") == std::string::npos);
-  CHECK(csv.find("bodies,faces,error,fastest") == 0);
-  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 3 * 5);
-  CHECK(draw({"--panel", "neither"}).err.find("unknown panel 'neither'; known: ") != std::string::npos);
-  CHECK(draw({"--width", "30mm"}).err.find("expected a width of at least ") != std::string::npos);
-  CHECK(test::run(folder, {"chart", "draw", "-o", "nothing"}).code == 2);
-  CHECK(test::run(folder, {"bench", "--method", "nobody", "-o", "b"}).code == 2);
-}
-
-TEST_CASE("bench --build measures every structure in every round") {
-  const Folder folder;
-  const auto o = test::run(folder, {"bench", "--build", "--faces", "320", "--rounds", "2", "-o", "b"});
-  CHECK(o.code == 0);
-  for (const methods::MethodInfo& s : bench::own_structures())
-    CHECK(o.out.find(s.title) != std::string::npos);
-  std::istringstream csv(slurp(folder / "b/builds.csv"));
-  std::map<std::string, int> rows;
-  std::string line;
-  std::getline(csv, line);
-  CHECK(line.starts_with("body,faces,method,round,outcome,build_ms"));
-  while (std::getline(csv, line)) {
-    std::vector<std::string> cells;
-    std::istringstream in(line);
-    for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-    REQUIRE(cells.size() == 11);
-    ++rows[cells[2]];
-    const bool own = cells[2].starts_with("tree") || cells[2].starts_with("lrb");
-    if (own) CHECK(cells[4] == "answered");
-    if (cells[4] != "answered") continue;
-    CHECK(std::stod(cells[5]) > 0);
-    CHECK(std::stod(cells[7]) > std::stod(cells[5]));  // the first answer includes the build
-    CHECK(std::stod(cells[9]) > 0);
-    CHECK(cells[10] == "1");  // the bodies intersect
-  }
-  for (const methods::MethodInfo& s : bench::own_structures()) CHECK(rows[s.name] == 3 * 2);
-  CHECK(slurp(folder / "b/index.html").find("First answer") != std::string::npos);
-}
-
-TEST_CASE("bench --build: bodies of one kind and two sizes have different names") {
-  const Folder folder;
-  CHECK(test::run(folder, {"bench", "--build", "--faces", "80", "320", "--rounds", "1", "-o", "b"}).code ==
-        0);
-  std::istringstream csv(slurp(folder / "b/builds.csv"));
-  std::map<std::string, std::string> faces;  // by body
-  std::map<std::pair<std::string, std::string>, int> rows;
-  std::string line;
-  std::getline(csv, line);
-  while (std::getline(csv, line)) {
-    std::istringstream in(line);
-    std::string body, count, method;
-    std::getline(in, body, ',');
-    std::getline(in, count, ',');
-    std::getline(in, method, ',');
-    CHECK(faces.try_emplace(body, count).first->second == count);
-    CHECK(++rows[{body, method}] == 1);
-  }
-  CHECK(faces.size() == 4);  // a rock, a knot and a ball, and a larger rock
-  CHECK(faces.at("rock") == "80");
-  CHECK(faces.at("rock-2") == "320");
-}
-
 TEST_CASE("numbers are judged by their error, in diagonals or fractions of the motion") {
   const auto error = [](Quantity quantity, double known, const bench::Record& r) {
     bench::DataSet set;
@@ -594,55 +478,6 @@ TEST_CASE("a data set of numbers is read back unchanged, and complete if all num
   CHECK_FALSE(bench::is_complete(again));
   set.questions[0].number = {2, 2};
   CHECK(bench::is_complete(set));
-}
-
-TEST_CASE("chart --quantity: correct answers, records, points and a page for each quantity") {
-  const Folder folder;
-  const auto chart = [&](const std::string& quantity, std::vector<std::string> more = {}) {
-    std::vector<std::string> words = {"chart",   "--quantity", quantity,   "--faces", "80",
-                                      "--poses", "1",          "--rounds", "1"};
-    words.insert(words.end(), more.begin(), more.end());
-    return test::run(folder, words);
-  };
-  const auto lines = [&](const std::string& file) {
-    const std::string text = slurp(folder / file);
-    return std::count(text.begin(), text.end(), '\n');
-  };
-  CHECK(chart("distance", {"--no-scenes", "--method", "ours", "--method", "ours-within"}).code == 0);
-  CHECK(lines("out/chart-distance/points.jsonl") == 3 * 4 * (5 + 1));
-  CHECK(slurp(folder / "out/chart-distance/index.html").find("error of the distance / diagonal") !=
-        std::string::npos);
-  CHECK(chart("first_contact", {"--no-scenes", "--method", "sampled-10"}).code == 0);
-  CHECK(lines("out/chart-first_contact/points.jsonl") == 3 * 3);
-  CHECK(chart("depth", {"--method", "ours"}).code == 0);
-  for (const bench::Record& r : bench::read_records(folder / "out/chart-depth/records.jsonl"))
-    CHECK(*r.all.lower <= *r.all.upper);
-  CHECK(slurp(folder / "out/chart-depth/index.html").find("scenes/rocks-80-depth-deep/index.html") !=
-        std::string::npos);
-  CHECK(chart("length").code == 2);
-  CHECK(chart("self_intersections").code == 2);
-}
-
-TEST_CASE("chart --quantity near_pairs: lists and distances are judged, and written as CSV") {
-  const Folder folder;
-  const auto ran =
-      test::run(folder, {"chart", "--quantity", "near_pairs", "--faces", "80", "--poses", "2", "--rounds",
-                         "1", "--no-scenes", "--method", "ours", "--method", "plain", "-o", "c"});
-  CHECK(ran.code == 0);
-  std::uint64_t near = 0;
-  for (const bench::Record& r : bench::read_records(folder / "c/records.jsonl")) {
-    REQUIRE(r.errors);
-    CHECK((*r.errors)[static_cast<std::size_t>(Metric::list)] == 0);
-    CHECK(*(*r.errors)[static_cast<std::size_t>(Metric::distance)] == 0);
-    if (r.method == "ours") CHECK(*r.all.error_bound < 1e-12);
-    near += r.all.count;
-  }
-  CHECK(near > 100);
-  if (report::has_gnuplot())
-    CHECK(std::filesystem::exists(folder / "c/chart.svg"));  // with crosses and their lines
-  const std::string csv = slurp(folder / "c/chart.csv");
-  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 3 * 3 * 2);
-  CHECK(slurp(folder / "c/index.html").find("Which setting for an error of at most x?") != std::string::npos);
 }
 
 TEST_CASE("errors of near pairs: missing and extra pairs, and the largest error of a distance") {

@@ -1,8 +1,8 @@
-/// Shrinking cases on which methods fail: sizes, that the result still fails, and the folder that is written.
+/// Shrinking cases on which methods fail: sizes, and that the result still fails. The command:
+/// tests/commands/stability.txt.
 
 #include "bench/stability/minimise.hpp"
 
-#include <array>
 #include <cstdlib>
 #include <set>
 
@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cases/families.hpp"
-#include "bench/stability/rational_oracles.hpp"
 #include "bench/stability/saved_case.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/program.hpp"
@@ -21,8 +20,6 @@
 using namespace lrb;
 using namespace lrb::stability;
 using lrb::test::Folder;
-using lrb::test::run;
-using lrb::test::slurp;
 using lrb::test::worker_method;
 using lrb::test::WorkerPrograms;
 
@@ -39,16 +36,6 @@ Replay spoilt_answer(const CaseMeshes& c, const Spoil& spoil) {
   out.record.relation = out.record.expected_relation = to_string(right.relation);
   spoil(out, right);
   return out;
-}
-
-const char* const kIdentity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
-
-/// Asks lrbscope's exact query about the files of a folder.
-nlohmann::json pairs_of_files(const Folder& folder, const std::string& where) {
-  folder.write("identity.txt", kIdentity);
-  return nlohmann::json::parse(run(folder, {"-q", "query", where + "/a_world.obj", where + "/b_world.obj",
-                                            "--poses", "identity.txt", "--pairs"})
-                                   .out)["list"];
 }
 
 }  // namespace
@@ -98,51 +85,6 @@ TEST_CASE("an engine that misses one pair of triangles is shrunk to two triangle
     results.insert(text);
   }
   CHECK(results.size() == 1);
-}
-
-TEST_CASE("an engine that takes a body inside another for separate is shrunk to two tetrahedra") {
-  CaseMeshes c{shapes::icosphere(2), shapes::scaled(shapes::icosphere(1), 0.25), {}, {}};
-  c.pose_b = Pose::rotation({1, 2, 3}, 0.7, {0.01, 0.02, 0.03});
-  const auto ask = [](const CaseMeshes& meshes) {
-    return spoilt_answer(meshes, [](Replay& answer, const RightAnswer& right) {
-      if (right.relation != Relation::b_inside_a) return;
-      answer.record.relation = "separate";
-      answer.record.outcome = Outcome::wrong;
-    });
-  };
-  const Minimised m = minimise(c, ask);
-  CHECK(m.kind == FailureKind::relation);
-  CHECK(m.before.simplices == 400);
-  CHECK(m.after.simplices == 8);
-  CHECK(m.after.vertices == 8);
-  CHECK(m.after.poses == 0);
-  CHECK(m.after.bits < 60);
-  CHECK(check_mesh(m.meshes.a, false).bounds_solid);
-  CHECK(failure_of(case_of(m.meshes), ask(m.meshes)) == FailureKind::relation);
-}
-
-TEST_CASE("a polygon whose fan has triangles without area is shrunk") {
-  Mesh square = shapes::quad_box();  // with a corner more in the middle of an edge
-  square.vertices.emplace_back(
-      (square.vertices[square.face(FaceId(0))[0]] + square.vertices[square.face(FaceId(0))[1]]) / 2);
-  Mesh mesh;
-  mesh.vertices = square.vertices;
-  for (FaceId f = 0; f < square.face_count(); ++f) {
-    std::vector<VertexId> corners(square.face(f).begin(), square.face(f).end());
-    if (f == FaceId(0)) corners.insert(corners.begin() + 1, VertexId(square.vertices.size() - 1));
-    mesh.add_face(corners);
-  }
-  REQUIRE(check_mesh(mesh, false)[MeshFault::zero_area_face].count == 0);
-  const Minimised m =
-      minimise({mesh, mesh, {}, Pose::translation({0.5, 0.25, 0.125})}, [](const CaseMeshes& meshes) {
-        return spoilt_answer(meshes, [](Replay& answer, const RightAnswer& right) {
-          answer.answered->clear();
-          answer.record.missed = right.pairs.size();
-          if (!right.pairs.empty()) answer.record.outcome = Outcome::wrong;
-        });
-      });
-  CHECK(m.before.simplices == 26);
-  CHECK(m.after.simplices == 2);
 }
 
 TEST_CASE("the kind of a failure is kept, and calls are bounded") {
@@ -230,85 +172,4 @@ TEST_CASE("a minimised case of every family fails again when it is loaded") {
   }
   CHECK(minimised > 15);
   CHECK(flat > 0);
-}
-
-TEST_CASE("lrbscope stability --minimise: the folder, its proof, the same bytes twice, and the case again") {
-  const WorkerPrograms workers;
-  const bool has_fcl = worker_method("fcl").column.present;
-  for (const auto& [name, family, difficulty, index] : {std::array{"plain", "touch", "8", "4"},
-                                                        {"fake-miss", "identical", "10", "0"},
-                                                        {"fake-crash", "identical", "10", "0"},
-                                                        {"fcl", "identical", "10", "9"}}) {
-    const std::string method = name;
-    CAPTURE(method);
-    if (method == "fcl" && !has_fcl) continue;
-    const Folder one, two;
-    const std::vector<std::string> command = {"-q",         "stability",    "--family", family,   "--method",
-                                              name,         "--difficulty", difficulty, "--only", index,
-                                              "--minimise", "--save",       "small"};
-    const test::Outcome o = run(one, command);
-    CAPTURE(o.err);
-    REQUIRE(o.code == 1);
-    CHECK(o.out.find("\n  after: 2 triangles, 6 vertices, ") != std::string::npos);
-    CHECK(o.out.find("\nsmall/report.md\n") != std::string::npos);
-    REQUIRE(run(two, command).code == 1);
-    REQUIRE(one.tree() == two.tree());
-    for (const char* file : {"a.obj", "b.obj", "case.json", "report.md", "picture.png"}) {
-      CAPTURE(file);
-      CHECK(!slurp(one / (std::string("small/") + file)).empty());
-      CHECK(slurp(one / (std::string("small/") + file)) == slurp(two / (std::string("small/") + file)));
-    }
-    const auto saved = nlohmann::json::parse(slurp(one / "small/case.json"));
-    CHECK(saved["family"] == family);
-    CHECK(std::filesystem::exists(one.path / "small/fcl.cpp") == (name == std::string("fcl")));
-    CHECK(saved["minimised"]["after"]["simplices"] == 2);
-    CHECK(pairs_of_files(one, "small") == saved["expected"]["pairs"]);
-    CHECK(saved["proof"]["intersect"] == !saved["expected"]["pairs"].empty());
-    const std::string report = slurp(one / "small/report.md");
-    for (const char* part : {"## Meshes", "\nv ", "\nf 1 2 3\n", "## Called", "## Expected", "exactly",
-                             "## Found", "## Versions", "--minimise"})
-      CHECK(report.find(part) != std::string::npos);
-    const test::Outcome again = run(one, {"stability", "--saved", "small", "--method", name});
-    CHECK(again.code == 1);
-    CHECK(again.out.find(std::string(name) + ": " +
-                         (name == std::string("fake-crash") ? "crashed" : "wrong")) != std::string::npos);
-    const test::Outcome ours = run(one, {"stability", "--saved", "small", "--method", "ours", "--pairs"});
-    CHECK(ours.code == 0);
-    CHECK(ours.out.find("ours: right") != std::string::npos);
-  }
-}
-
-TEST_CASE("lrbscope stability --minimise, --saved: invalid arguments and folders") {
-  const WorkerPrograms workers;
-  const Folder folder;
-  std::filesystem::create_directories(folder.path / "broken");
-  folder.write("broken/case.json", "{\"pose_a\":[1,2]}");
-  std::filesystem::create_directories(folder.path / "text");
-  folder.write("text/case.json", "poses");
-  const std::vector<std::string> one = {"--family", "touch", "--difficulty", "8", "--only", "4"};
-  const auto with = [&](std::vector<std::string> more) {
-    std::vector<std::string> all = {"stability"};
-    all.insert(all.end(), one.begin(), one.end());
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  };
-  const std::pair<std::vector<std::string>, std::string> wrong[] = {
-      {{"stability", "--method", "plain", "--minimise"},
-       "--minimise: expected --only CASE or --saved DIR with it"},
-      {with({"--method", "plain", "--minimise"}), "--minimise: expected --save DIR with it"},
-      {with({"--method", "plain", "--method", "ours", "--minimise", "--save", "x"}),
-       "--minimise: expected exactly one --method, found 2"},
-      {with({"--method", "ours", "--minimise", "--save", "x"}), "the method does not fail on this case"},
-      {with({"--method", "ours", "--saved", "x"}), "--saved: expected no --only with it"},
-      {{"stability", "--saved", "none", "--method", "ours"}, "none/case.json"},
-      {{"stability", "--saved", "broken", "--method", "ours"}, "no 12 numbers under \"pose_a\""},
-      {{"stability", "--saved", "text", "--method", "ours"}, "found no JSON object"},
-      {{"stability", "--saved", "x", "--quantity", "distance", "--method", "ours"},
-       "--saved: expected --quantity pairs, found distance"}};
-  for (const auto& [command, message] : wrong) {
-    const std::string expected = message;
-    CAPTURE(expected);
-    const test::Outcome o = test::check_rejected(folder, command);
-    CHECK(o.err.find(expected) != std::string::npos);
-  }
 }

@@ -139,56 +139,6 @@ TEST_CASE("the page is complete and self-contained") {
   CHECK(count(html, "<img src=") == 1);
 }
 
-TEST_CASE("difficulties have their physical values on page and charts") {
-  const Grid grid = made_up_grid();
-  const auto family = [&](const char* name) {
-    return std::find_if(grid.families.begin(), grid.families.end(),
-                        [&](const FamilyRow& f) { return f.name == name; });
-  };
-  REQUIRE(family("shared") != grid.families.end());
-  const std::vector<std::string>& off = family("shared")->values;
-  REQUIRE(off.size() == cases::kDifficulties);
-  CHECK(off[0] == "0.1");  // as slack() has it
-  CHECK(off[3] == "1e-6");
-  CHECK(off[9] == "1e-16");
-  CHECK(off[10] == "0");
-  CHECK(family("far")->values[10] == "1e16");
-  const std::string html = stability_page(grid, ".", {}).html();
-  CHECK(html.find(">1e-6</i>") != std::string::npos);
-  CHECK(html.find("of 0 to 10 (1e-11)") != std::string::npos);
-  CHECK(profile_chart(grid).script.find("'1e-11' 6") != std::string::npos);
-}
-
-TEST_CASE("the page has every cell, every mark and every worst case") {
-  const Grid grid = made_up_grid();
-  const std::string html = stability_page(grid, ".", {}).html();
-  const std::size_t families = grid.families.size(), methods = grid.methods.size();
-  CHECK(count(html, "<td ") == (families + 1) * (methods - 1));  // one is absent, and named
-  CHECK(html.find("1 method is not installed here: bullet.") != std::string::npos);
-  std::size_t worst = 0, crashed = 0, timed_out = 0, rejected = 0;
-  for (const Cell& c : grid.cells) {
-    const CellSummary s = summarise(c);
-    worst += c.worst ? 1 : 0;
-    crashed += s.crashed > 0;
-    timed_out += s.timed_out > 0;
-    rejected += s.rejected > 0;
-  }
-  CHECK(count(html, "<dialog ") == worst);
-  CHECK(count(html, "href=\"#case-") == worst);
-  // One more for the sums of each method that has any: CGAL, FCL, and ours with FCL in float.
-  CHECK(count(html, "class=\"mark crashed\"") == crashed + 1);
-  CHECK(count(html, "class=\"mark timed-out\"") == timed_out + 1);
-  CHECK(count(html, "class=\"mark refused\"") == rejected + 2);
-  for (const char* what : {"wrong answer", "crashed", "timed out", "refused", "only refusals"})
-    CHECK(html.find(what) != std::string::npos);
-  for (std::size_t m = 0; m < methods; ++m)  // the sums too
-    if (grid.methods[m].present) {
-      const CellSummary s = summarise(sum_of_column(grid, m));
-      CHECK(html.find("all families \u00d7 ") != std::string::npos);
-      CHECK(s.cases == families * cases::kDifficulties * 30);
-    }
-}
-
 TEST_CASE("names are escaped, and their addresses are plain") {
   Grid grid = made_up_grid();
   grid.methods[1].name = "a\"><script>x";
@@ -301,20 +251,6 @@ TEST_CASE("the picture does not depend on scale and position of the world") {
   // Far away the close-up's box is rounded: edges may move by a fraction of a pixel.
   CHECK(differing(here, picture(boxes(1, {0x1p40, -0x1p40, 0x1p30}))) < 0.002);
   CHECK(differing(here, picture(boxes(), 3)) > 0.01);
-}
-
-TEST_CASE("a missed pair is visible next to a body 1e60 times as large") {
-  cases::Case c = boxes(1e-60);
-  c.b = made(shapes::box({-1, -1, 0}, {1, 1, 1}));
-  c.pose_b = Pose::translation({0, 0, 0.5e-60});
-  const render::Image image = picture(c, 2, false);
-  int red = 0;
-  for (int y = 90; y < image.height() - 90; ++y)
-    for (int x = image.width() / 2 + 10; x < image.width(); ++x) {  // the close-up
-      const render::Rgba p = image.at(x, y);
-      red += p.r > 100 && p.r > 2 * p.g && p.r > p.b + 40;
-    }
-  CHECK(red > 1000);
 }
 
 TEST_CASE("two triangles have the bodies' colours, and the place where they cross or come close") {
