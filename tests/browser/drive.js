@@ -5,8 +5,7 @@
     { run } = scene_js,
     { byId, digits } = dom_js,
     { data, moment } = page_js,
-    { NONE, lastAtMost } = scene_run_js,
-    { sumsOfGroups } = scene_bodies_js,
+    { lastAtMost } = scene_run_js,
     { events, selection, view, wrappers, table, tabs, timeline, why } = run;
   const wait = (ms) => new Promise((then) => setTimeout(then, ms)),
     text = (id) => byId(id).textContent,
@@ -169,22 +168,6 @@
     check(view.whyMarks.group.children.length > 0, "also in the view");
   }
 
-  /** Parts of the work: a click on one lists its events; the shares of all steps are those of the run. */
-  async function shares() {
-    const { work } = run,
-      groups = () => [...byId("work-chart").querySelectorAll("[data-parts]")],
-      boxes = () => groups().find((g) => g.querySelector("title").textContent.startsWith("boxes of nodes:")),
-      total = (outcomes) => outcomes.reduce((n, o) => n + o.operations, 0);
-    boxes().dispatchEvent(new MouseEvent("click", { bubbles: true }));
-    const [part] = boxes().dataset.parts.split(" ").map(Number);
-    const count = work.work.outcomes[part].events;
-    equal(table.rows.length, count, "a click on a part lists as many events as it says");
-    equal(boxes().getAttribute("aria-pressed"), "true", "and marks it");
-    byId("filter-clear").click();
-    const steps = [...work.ofStep.values()].reduce((n, o) => n + total(o), 0);
-    equal(steps, total(work.work.outcomes), "the work of all steps is that of the run");
-  }
-
   /** A row of a table of each kind selects what it is about, and is marked. */
   async function rowsLead() {
     const rowOf = (what) => document.querySelectorAll(`tr.leads[data-to^="${what} "]`)[0];
@@ -211,32 +194,6 @@
       .map((cell) => cell.closest("table").tHead.rows[0].cells[cell.cellIndex])
       .find((head) => !head.title);
     check(!untitled, "every column of numbers says what it counts", untitled && untitled.textContent);
-  }
-
-  async function colours() {
-    const tests = ofKind(events.FACE_TEST);
-    let counted = 0;
-    for (const body of events.bodies) {
-      for (const n of body.counts.tests) counted += n;
-      for (const per of ["region", "level"]) {
-        const seen = new Set();
-        let total = 0;
-        sumsOfGroups(body, per, body.counts.tests).forEach((n, f) => {
-          const group = per === "region" ? body.regionOf(f) : body.depth(body.outer[f]);
-          if (group === NONE || !seen.has(group)) total += n;
-          seen.add(group);
-        });
-        equal(total, tests, `sums of ${per}s count every test once`);
-      }
-    }
-    equal(counted, 2 * tests, "every test counts for a face of each body");
-    input("colour-by", "misses");
-    await frame();
-    const most = Math.max(...events.bodies.map((b) => b.counts.misses.reduce((m, n) => Math.max(m, n), 0)));
-    equal(text("scale-most"), digits(most), "the scale goes to the most of both bodies");
-    input("colour-by", "kind");
-    await frame();
-    equal(byId("scale").hidden, true, "and there is none without counters");
   }
 
   /** The address has the state; another page of it shows the same (opensAtItsAddress). */
@@ -411,32 +368,6 @@
       midpoint = [0, 1, 2].map((i) => (body.vertices[3 * p + i] + body.vertices[3 * q + i]) / 2),
       hit = view.picker.under(...screenOf(view.views[0].toWorld(midpoint)), true);
     check(hit && hit.side === 0 && hit.face === 0, "a click finds the segment under it", JSON.stringify(hit));
-    fillsInside();
-  }
-
-  /** The fill of A alone has as many pixels as its loops have inside. */
-  function fillsInside() {
-    const [a] = view.views,
-      { camera } = view.camera,
-      { fan, sheet } = a.fills.solid,
-      own = [a.group, fan, sheet],
-      all = [...view.stage.children, ...a.group.children],
-      others = all.filter((o) => !own.includes(o) && !o.isCamera && !o.isLight),
-      { width, height } = view.canvas,
-      gl = view.renderer.getContext(),
-      pixels = new Uint8Array(4 * width * height);
-    for (const o of others) o.visible = false;
-    view.renderer.render(view.stage, camera);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    let inside = 0,
-      area = 0;
-    for (let i = 3; i < pixels.length; i += 4) inside += pixels[i] > 0;
-    for (let face = 0; face < a.body.realCount; face++) {
-      const [p, q] = [...a.body.face(face)].map((v) => a.toWorld(a.point(v)).project(camera));
-      area += (p.x * q.y - p.y * q.x) * (width / 2) * (height / 4);
-    }
-    const share = inside / Math.abs(area);
-    check(Math.abs(share - 1) < 0.05, "a flat body is filled, inside and nowhere else", share);
   }
 
   /** A body without regions is never called a wrapper. The view looks as the scenario's first one. */
@@ -483,7 +414,7 @@
     screen: [fitsOneScreen],
     all: [
       ...[opensAtFirstContact, replaysAsRecorded, selectsEverywhere, clicks, filters, explains],
-      ...[shares, rowsLead, colours, keepsItsState, loadsTheTrace],
+      ...[rowsLead, keepsItsState, loadsTheTrace],
     ],
     flat: [opensAtFirstContact, withoutWebgl],
   };

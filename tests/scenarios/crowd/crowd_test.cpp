@@ -144,20 +144,6 @@ TEST_CASE("pairs are listed by their cost, with the sums over all steps") {
   CHECK(summary["pairs_by_cost"][0]["face_tests"] == pairs[0].face_tests);
 }
 
-TEST_CASE("times of a crowd have units that people read") {
-  spec::Crowd none;
-  none.poses.emplace_back();  // or it has motions
-  crowd::CrowdRun run{{}, {}, crowd::CrowdMotion(none, {}), {}, {}, 2};
-  crowd::CrowdStep step;
-  step.broad_phase_ns = 1'600'000;
-  step.queries_ns = 1'150'000'000;
-  run.steps.push_back(step);
-  CHECK(crowd::crowd_speed(run) ==
-        "a step takes (medians): broad phase 1.6 ms, queries 1.15 s, on 2 threads");
-  run.steps[0].broad_phase_ns = 12'000;
-  CHECK(crowd::crowd_speed(run).find("broad phase 12 us,") != std::string::npos);
-}
-
 TEST_CASE("bodies stay in the arena if they fit") {
   for (const json& j : {good(), good_2d()}) {
     spec::Crowd crowd = crowd_of(j);
@@ -374,31 +360,6 @@ TEST_CASE("two bodies of a crowd are a run of their own, with the same answers")
   }
 }
 
-TEST_CASE("schema and reader agree on every key of a query") {
-  const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
-  const json& keys = scenario["properties"]["query"]["properties"];
-  REQUIRE(keys.size() > 10);
-  for (const auto& item : keys.items()) {
-    const std::string& key = item.key();
-    const json& about = item.value();
-    CAPTURE(key);
-    json value = true;
-    if (about.contains("enum"))
-      value = about["enum"][0];
-    else if (about.value("type", "") != "boolean")
-      value = about.value("minimum", 1);
-    json crowd = good();
-    crowd["query"] = {{key, value}};
-    CHECK(schema_accepts(crowd) == error_of(crowd).empty());
-  }
-  const std::string unknown = error_of(with("/query/clsh", true));
-  CHECK(unknown.find("/query/clsh") != std::string::npos);
-  for (const char* refused : {"tolerance", "separation", "coherent"})
-    CHECK(unknown.find(refused) == std::string::npos);
-  CHECK(error_of(with("/query/manifold", 0.1)).find("/query/manifold: not supported for a crowd") !=
-        std::string::npos);
-}
-
 TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of bodies") {
   json j = good();
   constexpr double kWithin = 0.3;
@@ -453,27 +414,6 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
   CHECK_THROWS_AS(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, run::kSilent)), InputError);
   flat["query"] = {{"distance", true}, {"near", 0.2}};
   CHECK_NOTHROW(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, run::kSilent)));
-}
-
-TEST_CASE("the geometry of contacts is computed only on request") {
-  json crowd = good();
-  crowd.erase("query");
-  CHECK_FALSE(crowd_of(crowd).request.contacts);
-  crowd["query"] = {{"max_pairs", 1000}};
-  CHECK_FALSE(crowd_of(crowd).request.contacts);
-  crowd["query"] = {{"contacts", true}};
-  CHECK(crowd_of(crowd).request.contacts);
-}
-
-TEST_CASE("commands for runs of two bodies name the trace of a crowd of 1.x as such") {
-  const test::Folder folder;
-  folder.write("trace.json",
-               R"({"traceEvents": [], "metadata": {"format": "lrbscope crowd", "version": 2}})");
-  const std::string expected =
-      (folder / "trace.json") +
-      ": expected a run of one or two bodies, found the trace of a crowd, which 2.0 does not read; record two "
-      "of its bodies with lrbscope crowd FILE --pair";
-  CHECK_THROWS_WITH_AS(static_cast<void>(run::open_run(folder / "trace.json")), expected.c_str(), InputError);
 }
 
 TEST_CASE("errors in crowds are reported with their location") {

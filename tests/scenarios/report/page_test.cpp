@@ -57,23 +57,6 @@ TEST_CASE("text cannot become markup or end the data") {
   CHECK(count(html, "<script") == count(html, "</script>"));
 }
 
-TEST_CASE("a page with a run's data contains the 3D view without external files") {
-  std::string html = full_page(R"({"name":"</script><b>"})");
-  for (const char* name : {"three.min.js", "OrbitControls.js", "chart.min.js"}) {
-    const std::string library(io::embedded_file(name));
-    const std::size_t at = html.find(library);
-    REQUIRE(at != std::string::npos);
-    html.erase(at, library.size());
-  }
-  CHECK(html.find("http:") == std::string::npos);
-  CHECK(html.find("https:") == std::string::npos);
-  CHECK(html.find("id=\"view-canvas\"") != std::string::npos);
-  CHECK(html.find("function startScene()") != std::string::npos);
-  CHECK(html.find("{\"name\":\"\\u003c/script>\\u003cb>\"}") != std::string::npos);
-  CHECK(html.find("<details class=\"frames\"") != std::string::npos);
-  CHECK(count(html, "<script") == count(html, "</script>"));
-}
-
 TEST_CASE("a page has each module of its view once, after those that it imports") {
   const std::string html = report::Document("t").scene("{}").html();
   for (const io::EmbeddedFile& file : io::embedded_files()) {

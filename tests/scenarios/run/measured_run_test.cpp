@@ -138,23 +138,6 @@ TEST_CASE("measured runs: distances of points that move with B are those of the 
   CHECK_THROWS_WITH_AS(record_with(R"({"points": "none.csv"})"), doctest::Contains("none.csv"), InputError);
 }
 
-TEST_CASE("measured runs: only their pages have the numbers, columns and charts") {
-  const std::string page = page_of(recorded(R"({"distance": true, "clash": true})")),
-                    plain = page_of(recorded("{}"));
-  CHECK(number(page, "Distance").starts_with("0<small>"));
-  CHECK(number(page, "Contact kind").starts_with("one protrudes into the other<small>"));
-  CHECK_FALSE(number(page, "Penetration depth").empty());
-  CHECK(number(plain, "Distance").empty());
-  for (const char* part :
-       {">distance</th>", ">contact kind</th>", "<h2>Distance and depth by step</h2>",
-        "<h2>Convergence of the distance bounds, step ", "<h2>Convergence of the depth bounds, step "}) {
-    CHECK_MESSAGE(count(page, part) == 1, std::string(part));
-    CHECK_MESSAGE(count(plain, part) == 0, std::string(part));
-  }
-  CHECK(count(page, "<h2>Search for the first contact</h2>") == 1);
-  CHECK(count(plain, "<h2>Search for the first contact</h2>") == 0);
-}
-
 TEST_CASE("measured runs: near pairs and contact manifolds of each step are those of the library") {
   const run::Recording r = recorded(R"({"near": 0.6, "manifold": 0.05})"), plain = recorded("{}");
   const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
