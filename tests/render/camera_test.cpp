@@ -129,23 +129,6 @@ TEST_CASE("a shifted camera shows a part of the picture, at any scale") {
   }
 }
 
-TEST_CASE("orbit keeps target, distance and height") {
-  const render::Camera camera =
-      render::fit_camera(Eigen::AlignedBox3d(Vector3d(-1, -1, -1), Vector3d(1, 1, 1)), 640, 360);
-  render::Camera turned = camera;
-  for (int i = 0; i < 12; ++i) turned = render::orbit(turned, 2 * 3.14159265358979323846 / 12);
-  CHECK((turned.eye - camera.eye).norm() < 1e-12);
-  const render::Camera quarter = render::orbit(camera, 1.5);
-  CHECK(quarter.eye.z() == doctest::Approx(camera.eye.z()));
-  CHECK((quarter.eye - quarter.target).norm() == doctest::Approx((camera.eye - camera.target).norm()));
-  CHECK((quarter.eye - camera.eye).norm() > 1);
-  const render::Camera lifted = render::orbit(camera, 0, 0.3);
-  CHECK(lifted.eye.z() > camera.eye.z());
-  CHECK((lifted.eye - lifted.target).norm() == doctest::Approx((camera.eye - camera.target).norm()));
-  const render::Camera top = render::orbit(camera, 0, 9);  // stops short of the vertical
-  CHECK((top.eye - top.target).cross(top.up).norm() > 0.01);
-}
-
 TEST_CASE("cameras without a direction or a field of view are rejected") {
   render::Camera camera;
   camera.eye = camera.target;

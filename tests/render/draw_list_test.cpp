@@ -35,26 +35,6 @@ TEST_CASE("a polygon becomes a fan whose edges are its outline") {
   }
 }
 
-TEST_CASE("the summary counts by kind and layer") {
-  render::DrawList list;
-  render::DrawTriangle t;
-  t.colour = {1, 2, 3};
-  test::add(list, test::box_triangles({0, 0, 0}, {1, 1, 1}), t);
-  t.layer = render::Layer::translucent;
-  t.colour = {4, 5, 6, 70};
-  test::add(list, test::box_triangles({0, 0, 0}, {2, 2, 2}), t);
-  list.lines.push_back({{{0, 0, 0}, {1, 1, 1}}, false, {9, 9, 9}});
-  list.labels.push_back({{0, 0, 0}, "origin"});
-  CHECK(render::summary(list) ==
-        "triangles, opaque: 12, 12 ids, #010203ff x12\n"
-        "triangles, translucent: 12, 12 ids, #04050646 x12\n"
-        "lines, opaque: 1, #090909ff x1\n"
-        "label: origin\n");
-  CHECK(render::bounds(list).isApprox(Eigen::AlignedBox3d(Vector3d(0, 0, 0), Vector3d(2, 2, 2))));
-  CHECK(render::DrawList().empty());
-  CHECK(!list.empty());
-}
-
 TEST_CASE("corners lie on the grid of 1/256 pixel") {
   render::DrawList list;
   test::add(list, test::sphere_triangles(2), {});

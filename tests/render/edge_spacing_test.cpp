@@ -61,29 +61,6 @@ TEST_CASE("the spacing of edges is the local mean altitude of triangles of one s
   }
 }
 
-TEST_CASE("the uniform spacing of edges is one number per style, weighted by covered area") {
-  render::DrawList list;
-  render::DrawTriangle t;
-  t.edges = 7;
-  t.x = {Vector3d(-4, -1, 0), {0, -1, 0}, {-2, 2, 0}};  // large
-  list.triangles.push_back(t);
-  for (int i = 0; i < 9; ++i) {  // many small ones, which cover less together
-    t.x = {Vector3d(1 + 0.2 * i, 0, 0), {1.1 + 0.2 * i, 0, 0}, {1 + 0.2 * i, 0.1, 0}};
-    list.triangles.push_back(t);
-  }
-  t.edge_style = list.edge_style({render::kBlack, 3});
-  list.triangles.push_back(t);
-  t.edges = 0;
-  list.triangles.push_back(t);
-  const auto points = render::extent_points(list);
-  const render::Projection projection(render::fit_top(points, 640, 480), 640, 480, render::bounds(list));
-  const std::vector<render::StyleSpacing> spacing = render::even_edge_spacing(list, projection);
-  REQUIRE(spacing.size() == 2);
-  CHECK(spacing[0].all == doctest::Approx(altitude(list.triangles[0], projection)));
-  CHECK(spacing[1].all == doctest::Approx(altitude(list.triangles[10], projection)));
-  CHECK(std::isinf(spacing[0].borders));
-}
-
 TEST_CASE("the spacing of borders depends on their length in the area of their style") {
   // A grid of 8 x 8 squares of two triangles each, in blocks of 4 x 4 squares with borders.
   render::DrawList list;

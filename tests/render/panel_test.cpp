@@ -68,32 +68,3 @@ TEST_CASE("titles are in their panels, and a look can omit them; transparent pan
   CHECK(clear.at(0, 0) == render::kTransparent);
   CHECK(clear.at(150, 100) == kPanelRed);
 }
-
-TEST_CASE("a picture is unchanged by the texts of its overlay, at any resolution" *
-          doctest::test_suite("font")) {
-  test::need_font();
-  render::Overlay overlay;
-  overlay.title = "Title";
-  overlay.key = {{run::Mark::solid, kPanelRed, "a square"}};
-  render::Look look;
-  look.width = 400;
-  look.height = 300;
-  for (const double dpi : {0.0, 192.0}) {
-    render::Look in_file = look;
-    in_file.dpi = dpi;
-    run::to_pixels(in_file);
-    CHECK(in_file.width == (dpi > 0 ? 800 : 400));
-    const std::vector<run::Panel> panels = {red("")};
-    const render::Image image = run::draw_panels(panels, overlay, in_file);
-    CHECK(image.rect() == render::PixelRect{0, 0, in_file.width, in_file.height});
-    CHECK(image.at(in_file.width / 2, in_file.height / 2) == kPanelRed);
-    const render::Image sheet = run::draw_sheet(panels, in_file);
-    const render::Image framed = run::with_overlay(sheet, overlay, in_file.scale());
-    const int top =
-        render::lay_out(overlay, framed.width(), framed.height(), static_cast<float>(in_file.scale()))
-            .picture.y;
-    CHECK(framed.height() > sheet.height());
-    for (int y = 0; y < sheet.height(); y += 7)
-      for (int x = 1; x + 1 < sheet.width(); x += 7) REQUIRE(framed.at(x, top + y) == sheet.at(x, y));
-  }
-}

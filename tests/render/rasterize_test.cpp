@@ -1,7 +1,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <set>
 #include <string>
 #include <thread>
 
@@ -308,39 +307,6 @@ TEST_CASE("ids name the visible face at each pixel") {
   CHECK(facing > 200);
   CHECK(found == facing);
   CHECK(ids.at(0, 0) == render::kNoId);
-}
-
-TEST_CASE("pictures are reproducible byte for byte, also after others and by another rasterizer") {
-  render::DrawList list;
-  render::DrawTriangle t;
-  t.edges = 7;
-  test::add(list, test::sphere_triangles(3), t);
-  t.layer = render::Layer::translucent;
-  t.colour = {0, 90, 200, 70};
-  test::add(list, test::sphere_triangles(1, 1.3), t);
-  const render::Camera camera = render::fit_camera(render::extent_points(list), 320, 240);
-  const render::Image first = rasterizer().draw(list, camera, size(320, 240));
-  rasterizer().draw(list, camera, size(111, 97, 1));
-  CHECK(rasterizer().draw(list, camera, size(320, 240)) == first);
-  render::Rasterizer other;
-  CHECK(other.draw(list, camera, size(320, 240)) == first);
-  CHECK(rasterizer().draw(list, camera, size(320, 240)) == first);
-}
-
-TEST_CASE("the number of rasterizer threads does not change a byte") {
-  std::set<std::string> outputs;
-  for (const char* threads : {"0", "1", "2", "5"}) {
-    const std::string command = std::string("LP_NUM_THREADS=") + threads + " '" + LRB_RENDER_HASH + "'";
-    std::FILE* pipe = popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    std::array<char, 512> buffer{};
-    std::string output;
-    while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
-    REQUIRE(pclose(pipe) == 0);
-    CHECK(output.size() > 60);
-    outputs.insert(output);
-  }
-  CHECK(outputs.size() == 1);
 }
 
 TEST_CASE("threads draw the same pictures, each with its rasterizer or one after another with a shared one") {

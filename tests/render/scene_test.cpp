@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -98,24 +97,6 @@ TEST_CASE("borders of regions and creases are marked on request") {
   CHECK(creases == 0);
 }
 
-TEST_CASE("poses move bodies; names and sides are distinguished") {
-  const LrbRep rep = test::dented(shapes::icosphere(0), 1);
-  const Pose pose = Pose::rotation({0, 1, 0}, 0.4, {3, 0, 0});
-  const std::vector<render::SceneBody> bodies = {{&rep, nullptr, {}, {}, "bowl"},
-                                                 {&rep, nullptr, pose, {}, ""}};
-  const render::Scene scene = render::build_scene(bodies);
-  CHECK(has_key(scene, "bowl, real faces"));
-  CHECK(has_key(scene, "B, real faces"));
-  Eigen::AlignedBox3d b;
-  for (const render::DrawTriangle& t : scene.list.triangles) {
-    if (t.id >> 31 == 0) continue;
-    for (const Vector3d& x : t.x) b.extend(x);
-    const auto corners = rep.face(FaceId(t.id & 0x7fffffff));
-    CHECK(t.x[0] == pose.apply(rep.vertices()[corners[0]]));
-  }
-  CHECK(b.center().x() == doctest::Approx(3).epsilon(0.05));
-}
-
 TEST_CASE("the elements of the event are highlighted") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   Wrapper wrapper(rep);
@@ -192,21 +173,6 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
   CHECK(render::build_scene(body, {}, options).scale->high == 20);
 }
 
-TEST_CASE("isolated regions are drawn before ghosts, or alone") {
-  const LrbRep rep = test::dented(shapes::icosphere(0), 2);
-  const std::vector<render::SceneBody> body = {{&rep, nullptr, {}, {}, ""}};
-  render::SceneOptions options;
-  options.isolate[0] = {7};
-  options.ghost_rest = false;
-  render::Scene scene = render::build_scene(body, {}, options);
-  std::set<std::uint32_t> drawn = ids(scene.list, render::Layer::opaque);
-  for (const std::uint32_t id : ids(scene.list, render::Layer::translucent)) drawn.insert(id);
-  CHECK(drawn == std::set<std::uint32_t>(rep.collector(7).begin(), rep.collector(7).end()));
-  options.ghost_rest = true;
-  scene = render::build_scene(body, {}, options);
-  CHECK(count(scene.list).translucent >= rep.real_face_count());
-}
-
 TEST_CASE("exploded regions keep their shape and move outward") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 2);
   const Wrapper wrapper(rep);
@@ -235,63 +201,6 @@ TEST_CASE("exploded regions keep their shape and move outward") {
       std::count_if(later.list.triangles.begin(), later.list.triangles.end(),
                     [&](const auto& t) { return t.colour == render::style_of(options.style).refining; });
   CHECK(static_cast<std::size_t>(green) == rep.collector(3).size());
-}
-
-TEST_CASE("2D: the solid dark, regions light, the wrapper as a line") {
-  const LrbRep rep = test::dented(shapes::circle(6), 2);
-  Wrapper wrapper(rep);
-  wrapper.refine(1);
-  const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
-  const render::Scene scene = render::build_scene(body);
-  REQUIRE(scene.list.fills.size() == rep.region_count());  // the solid, and all regions but one
-  CHECK(scene.list.fills.back().segments.size() == rep.real_face_count());
-  CHECK(has_key(scene, "A, wrapper"));
-  CHECK(has_key(scene, "A, refined"));
-
-  render::Rasterizer rasterizer;
-  render::RasterOptions o;
-  o.width = 300, o.height = 300;
-  const render::Camera camera = render::fit_top(render::body_points(rep, {}), 300, 300);
-  const render::Image image = rasterizer.draw(scene.list, camera, o);
-  const render::IdImage picked = rasterizer.ids(scene.list, camera, 300, 300);
-  const render::Rgba dark = render::palette::solid_2d(render::palette::body(Side::a));
-  CHECK(image.at(150, 150) == dark);
-  const render::Projection projection(camera, 300, 300, render::bounds(scene.list));
-  const auto inside = [&](RegionId r) {  // the middle of a triangle
-    Vector3d sum = Vector3d::Zero();
-    for (const FaceId f : rep.collector(r))
-      sum += rep.vertices()[rep.face(f)[0]] + rep.vertices()[rep.face(f)[1]];
-    return *projection.to_pixel(sum / 6);
-  };
-  for (RegionId r = 0; r < 6; ++r) {
-    const Eigen::Vector2d at = inside(r);
-    const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
-    if (r == 1) {
-      CHECK(image.at(x, y) == render::kWhite);
-      CHECK(picked.at(x, y) == render::kNoId);
-    } else {
-      CHECK(render::luma(image.at(x, y)) > render::luma(dark) + 60);
-      CHECK(image.at(x, y) != render::kWhite);
-      CHECK(picked.at(x, y) == render::region_id(Side::a, r));
-    }
-  }
-}
-
-TEST_CASE("segments are joined into as few polylines as possible") {
-  using render::scene::chains;
-  auto found = chains({{0, 1}, {2, 0}, {1, 2}});
-  REQUIRE(found.size() == 1);
-  CHECK(found[0].closed);
-  CHECK(found[0].vertices.size() == 3);
-  found = chains({{5, 6}, {4, 5}, {6, 7}});
-  REQUIRE(found.size() == 1);
-  CHECK(!found[0].closed);
-  CHECK(found[0].vertices == std::vector<VertexId>{4, 5, 6, 7});
-  found = chains({{0, 1}, {1, 2}, {2, 0}, {0, 3}, {3, 4}, {4, 0}});  // an eight
-  std::size_t segments = 0;
-  for (const auto& chain : found) segments += chain.vertices.size() - (chain.closed ? 0 : 1);
-  CHECK(segments == 6);
-  CHECK(chains({}).empty());
 }
 
 TEST_CASE("many bodies: each in its colour, faces in contact in the contact colour") {

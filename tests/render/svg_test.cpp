@@ -9,7 +9,6 @@
 #include "tests/render/bodies.hpp"
 #include "tests/render/font_guard.hpp"
 #include "tests/support/text.hpp"
-#include <lrbscope/error.hpp>
 #include <lrbscope/render/rasterize.hpp>
 #include <lrbscope/render/scene.hpp>
 #include <lrbscope/render/svg.hpp>
@@ -155,34 +154,4 @@ TEST_CASE("lines, points and labels of an SVG") {
   CHECK(count(text, ">a &lt; b &amp; &quot;c&quot;</text>") == 1);
   options.background.reset();
   CHECK(count(render::svg(list, camera, options), "<rect") == 0);
-}
-
-TEST_CASE("a montage of SVG: panels where the pixels would be, captions as text" *
-          doctest::test_suite("font")) {
-  test::need_font();
-  render::DrawList list;
-  list.lines.push_back({{{0, 0, 0}, {1, 0, 0}}, false, render::kBlack, 1});
-  render::SvgOptions each;
-  each.width = 300, each.height = 200;
-  const std::string panel = render::svg(list, render::Camera{}, each);
-  const std::vector<render::Panel> panels = {{render::Image(300, 200), "one < two"},
-                                             {render::Image(300, 200), "more"}};
-  render::MontageOptions columns;
-  columns.columns = 2;
-  const render::MontageLayout layout = render::lay_out(panels, columns);
-  render::SvgMontageOptions options;
-  options.title = "A & B";
-  const std::string text = render::svg_montage({panel, panel}, layout, options);
-  for (const render::PixelRect& r : layout.panels)
-    CHECK(count(text, "<svg x=\"" + std::to_string(r.x) + "\" y=\"" + std::to_string(r.y) +
-                          "\" width=\"300\" height=\"200\" viewBox=\"0 0 300 200\"") == 1);
-  CHECK(count(text, "<svg") == 3);
-  CHECK(count(text, "</svg>") == 3);
-  CHECK(count(text, ">(a) one &lt; two</text>") == 1);
-  CHECK(count(text, ">(b) more</text>") == 1);
-  CHECK(count(text, "<title>A &amp; B</title>") == 1);
-  CHECK(count(text, "<rect") == 3);
-  options.transparent = true;
-  CHECK(count(render::svg_montage({panel, panel}, layout, options), "<rect") == 2);
-  CHECK_THROWS_AS(render::svg_montage({"no picture", panel}, layout), InputError);
 }

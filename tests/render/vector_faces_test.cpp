@@ -193,48 +193,6 @@ TEST_CASE("faces that opaque faces hide entirely are removed") {
                                     rasterizer.depths(list, camera, kFine, kFine)));
 }
 
-TEST_CASE("vector faces look like rasterized ones") {
-  for (const std::uint32_t seed : {5U, 6U}) {
-    CAPTURE(seed);
-    render::DrawList list = tangle(seed, 40);
-    const render::Camera camera = camera_for(list, seed == 5);
-    const render::Projection projection = projection_of(camera, list);
-    const render::Lighting lighting;
-    const render::FaceLooks looks(list, projection, 1, lighting, true);
-    render::Rasterizer rasterizer;
-    const auto visible =
-        render::visible_faces(list, projection, rasterizer.depths(list, camera, 2 * kSide, 2 * kSide));
-    REQUIRE(visible);
-    const render::Image vector =
-        render::paint_pixels({kSide, kSide, render::kWhite, {}, {}}, 72, [&](render::Canvas& canvas) {
-          render::paint_faces(canvas, list, render::painting_order(list, projection, looks, *visible).value(),
-                              looks, {0, 0});
-        });
-    render::RasterOptions options;
-    options.width = options.height = kSide;
-    options.supersample = 4;
-    const render::Image pixels = rasterizer.draw(list, camera, options);
-    // Smoothed borders differ by a share of a pixel; areas must not.
-    const auto sum = [](const render::Rgba& a, const render::Rgba& b) {
-      return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b);
-    };
-    const auto uniform = [&](const render::Image& image, int x, int y) {
-      for (int i = 0; i < 9; ++i)
-        if (sum(image.at(x, y), image.at(x + i % 3 - 1, y + i / 3 - 1)) > 12) return false;
-      return true;
-    };
-    std::size_t areas = 0, different = 0;
-    for (int y = 1; y + 1 < kSide; ++y)
-      for (int x = 1; x + 1 < kSide; ++x) {
-        if (!uniform(vector, x, y) || !uniform(pixels, x, y) || pixels.at(x, y) == render::kWhite) continue;
-        ++areas;
-        if (sum(vector.at(x, y), pixels.at(x, y)) > 12) ++different;
-      }
-    CHECK(areas > 4000);
-    CHECK(different * 500 < areas);
-  }
-}
-
 TEST_CASE("faces with too many parts are not ordered, after a bounded time") {
   const render::DrawList list = tangle(7, 2000);
   const render::Camera camera = camera_for(list, true);
