@@ -1,6 +1,5 @@
 /// Constructions as traces: content, files, schema, summary, SQL and divergence.
 
-#include <array>
 #include <bit>
 #include <set>
 #include <string>
@@ -110,14 +109,6 @@ TEST_CASE("a construction begins with the body, falls pass by pass, and ends wit
     const Chart chart = chart_over_construction(t);
     CHECK(chart.series[0].values.front() == built.rep.real_face_count());
     CHECK(chart.series[0].values.back() == built.rep.outermost_faces().size());
-  }
-}
-
-TEST_CASE("the same trace on any number of threads") {
-  for (const Mesh& mesh : meshes()) {
-    CAPTURE(mesh.name);
-    const Built one = build(mesh);
-    for (const unsigned threads : {2u, 4u}) CHECK((build(mesh, threads).trace == one.trace));
   }
 }
 

@@ -45,17 +45,6 @@ double value_of(const std::vector<Statistic>& all, std::string_view name) {
 
 }  // namespace
 
-TEST_CASE("totals count each kind") {
-  const Totals t = count_events(by_hand().events);
-  CHECK(t.events == 12);
-  CHECK(t.face_tests == 4);
-  CHECK(t.hits == 3);
-  CHECK(t.crossings == 2);
-  CHECK(t.refinements == std::array<std::uint64_t, 2>{2, 1});
-  CHECK(t.faces_added == 9);
-  CHECK(t.contacts == 1);
-}
-
 TEST_CASE("statistics are the documented ratios") {
   const auto all = statistics(by_hand());
   CHECK(value_of(all, "tests_per_contact") == 4.0);

@@ -1,4 +1,3 @@
-#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -62,34 +61,6 @@ TEST_CASE("the first divergent event is reported, with the field and both values
   CHECK(d->message() == "event " + std::to_string(refine) + " (step " + std::to_string(*d->step) +
                             "): region: expected " + std::to_string(x.events[refine].a) + ", found " +
                             std::to_string(y.events[refine].a));
-}
-
-TEST_CASE("two events swapped, one lost, one too many") {
-  const Trace x = diverging_run();
-  const EventId contact = first_of(x, EventKind::contact);
-  Trace y = x;
-  std::swap(y.events[contact], y.events[contact - 1]);
-  auto d = first_divergence(x, y);
-  REQUIRE(d);
-  CHECK(d->event == contact - 1);
-  CHECK(d->what == "kind");
-
-  const LrbRep plate(toy::notched_plate());
-  const auto record = [&](int tests) {
-    Recorder recorder(plate, plate, {});
-    recorder.begin_step(0, {}, {});
-    for (int i = 0; i < tests; ++i) recorder.face_test(0, 0, exact::Meet::disjoint, 0, 0);
-    return recorder.take();
-  };
-  d = first_divergence(record(3), record(2));
-  REQUIRE(d);
-  CHECK(d->event == 3);
-  CHECK(d->what == "event");
-  CHECK(d->actual == "the end of the step");
-  d = first_divergence(record(2), record(3));
-  REQUIRE(d);
-  CHECK(d->event == 3);
-  CHECK(d->expected == "the end of the step");
 }
 
 TEST_CASE("metadata of events is compared") {
