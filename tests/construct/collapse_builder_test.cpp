@@ -126,16 +126,6 @@ TEST_CASE("every patch size works; larger patches make lean LRB-reps smaller") {
   }
 }
 
-TEST_CASE("the number of outer faces is an option") {
-  for (const std::uint32_t most : {12u, 14u, 20u, 40u}) {
-    BuildOptions options;
-    options.max_outer_faces = most;
-    const LrbRep rep = build_lrb(bumpy_sphere(3, 2), options);
-    CHECK(rep.outermost_faces().size() <= most);
-    check_valid(rep);
-  }
-}
-
 TEST_CASE("voids have their own regions, and a solid in a void has its own wrapper") {
   const Mesh mesh = several(
       {icosphere(3, 3), turned_inside_out(icosphere(3, 2)), translated(icosphere(2, 0.5), {0.7, 0, 0})});
@@ -156,18 +146,6 @@ TEST_CASE("the LRB-rep does not depend on scale and position") {
     CHECK(rep.outermost_faces().size() <= 20);
   }
   check_valid(build_lrb(translated(bumpy_sphere(3, 7), {1e4, -1e4, 1e4})));
-}
-
-TEST_CASE("progress is reported after each pass") {
-  std::vector<std::uint32_t> faces;
-  BuildOptions options;
-  options.progress = [&](std::uint32_t pass, std::uint32_t front_faces) {
-    CHECK(pass == faces.size() + 1);
-    faces.push_back(front_faces);
-  };
-  const LrbRep rep = build_lrb(icosphere(3), options);
-  CHECK(faces.size() == rep.layer_count());
-  CHECK(faces.front() < 1280);
 }
 
 TEST_CASE("bodies that cannot be built are rejected with the affected elements, on one line") {

@@ -6,7 +6,6 @@
 #include "engine/mesh/nesting.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/build.hpp>
-#include <lrbscope/error.hpp>
 #include <lrbscope/mesh_check.hpp>
 
 namespace lrb::test {
@@ -64,32 +63,6 @@ TEST_CASE("a checked mesh has the report of check_mesh(), before and after orien
     CHECK(same(checked.report(), check_mesh(turned)));
     CHECK((checked.self_intersecting_faces(workers) == meeting));
   }
-}
-
-TEST_CASE("a checked mesh is buildable if and only if it can be built") {
-  for (const Mesh& m : bodies()) {
-    CAPTURE(m.face_count());
-    CheckedMesh checked = check(m);
-    const auto builds = [&](const auto& mesh) {
-      try {
-        build_lrb(mesh);
-        return true;
-      } catch (const InputError&) {
-        return false;
-      }
-    };
-    CHECK(builds(m) == checked.report().buildable());
-    CHECK(builds(checked) == checked.report().buildable());
-    const bool when_turned = checked.report().when_turned().buildable();
-    checked.turn_outward();
-    CHECK(checked.report().buildable() == when_turned);
-    CHECK(builds(checked) == when_turned);
-    if (when_turned) CHECK(build_lrb(checked).hash() == build_lrb(checked.mesh()).hash());
-  }
-  const MeshReport inside_out = check_mesh(turned_inside_out(icosphere(1)));
-  CHECK_FALSE(inside_out.buildable());
-  CHECK(inside_out.when_turned().buildable());
-  CHECK(inside_out.obstacles(icosphere(1)).size() == 1);
 }
 
 TEST_CASE("one ray finds the same sides of surfaces as one ray per surface") {

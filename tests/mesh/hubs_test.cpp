@@ -3,7 +3,6 @@
 #include "engine/mesh/hubs.hpp"
 
 #include <algorithm>
-#include <map>
 #include <random>
 #include <set>
 
@@ -140,35 +139,6 @@ TEST_CASE("a chord of a large face is not an edge that others may share") {
     CHECK(found_in(m).contains(FacePair{1, static_cast<FaceId>(m.face_count() - 1)}));
     m.face_vertices[m.face_vertices.size() - 2] = VertexId(kMany + 1);  // a neighbour
     CHECK_FALSE(found_in(m).contains(FacePair{1, static_cast<FaceId>(m.face_count() - 1)}));
-  }
-}
-
-TEST_CASE("a large polygon is cut into triangles with area that cover it once") {
-  for (const Mesh& m : {drum(67), drum(1000), fine_box(400), fine_box(12), drum(3), drum(4)}) {
-    std::vector<Triangle> triangles;
-    triangulate_by_halves(m, m.face(1), triangles);
-    CHECK(triangles.size() == m.face(1).size() - 2);
-    std::map<std::array<VertexId, 2>, int> sides;
-    double area = 0;
-    for (const Triangle& t : triangles) {
-      const auto &a = m.vertices[t[0]], &b = m.vertices[t[1]], &c = m.vertices[t[2]];
-      CHECK(exact::orient2d(a.data(), b.data(), c.data()) == 1);
-      area += 0.5 * (b - a).cross(c - a).z();
-      for (int k = 0; k < 3; ++k) {
-        ++sides[{t[k], t[(k + 1) % 3]}];
-        --sides[{t[(k + 1) % 3], t[k]}];
-      }
-    }
-    double whole = 0;
-    const auto c = m.face(1);
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      const VertexId v = c[i], w = c[(i + 1) % c.size()];
-      whole += 0.5 * m.vertices[v].cross(m.vertices[w]).z();
-      --sides[{v, w}];
-      ++sides[{w, v}];
-    }
-    CHECK(area == doctest::Approx(whole));
-    CHECK(std::all_of(sides.begin(), sides.end(), [](const auto& s) { return s.second == 0; }));
   }
 }
 

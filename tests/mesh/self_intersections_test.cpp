@@ -206,28 +206,6 @@ TEST_CASE("self-intersections agree with an oracle over all pairs") {
   }
 }
 
-TEST_CASE("self-intersections among neighbours") {
-  // A fin folded back onto its neighbour: they share an edge and overlap in the plane.
-  Mesh m;
-  m.vertices = {{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 2, 0}};
-  m.add_face(std::array<VertexId, 3>{0, 1, 2});
-  m.add_face(std::array<VertexId, 3>{1, 0, 3});
-  CHECK(check_mesh(m)[MeshFault::self_intersection].first == Pairs{{0, 1}});
-  m.vertices[3] = {1, 2, 0x1p-1000};  // lifted by next to nothing
-  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
-  m.vertices[3] = {1, -1, 0};
-  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
-
-  // Two triangles with one common vertex that cross each other beyond it.
-  m = {};
-  m.vertices = {{0, 0, 0}, {2, -1, 0}, {2, 1, 0}, {2, 0, -1}, {2, 0, 1}};
-  m.add_face(std::array<VertexId, 3>{0, 1, 2});
-  m.add_face(std::array<VertexId, 3>{0, 3, 4});
-  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 1);
-  m.vertices[3] = {2, 0, 0.5};
-  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
-}
-
 TEST_CASE("self-intersections of polygons are counted by face") {
   const Mesh cubes = several({quad_box(), translated(quad_box(), {0.5, 0.5, 0.5})});
   CHECK(check_mesh(cubes)[MeshFault::self_intersection].count ==
@@ -351,38 +329,6 @@ TEST_CASE("self-intersections of faces with common corners: a fold, a spike, a d
   REQUIRE(found.pairs.size() == 1);
   CHECK(found.pairs[0].kind == SelfContact::overlap);
   CHECK(found.pairs[0].shared == 3);
-}
-
-TEST_CASE("self-intersections: a chord of a polygon is not an edge that another face may share") {
-  // A fin on the diagonal of a square, and one on a side of it.
-  Mesh m;
-  m.vertices = {{0, 0, 0}, {2, -2, 0}, {4, 0, 0}, {2, 2, 0}, {2, 0, 2}};
-  m.add_face(std::array<VertexId, 4>{0, 1, 2, 3});
-  m.add_face(std::array<VertexId, 3>{0, 2, 4});
-  m.add_face(std::array<VertexId, 3>{1, 0, 4});
-  for (std::size_t first = 0; first < 4; ++first) {  // whichever diagonal the square is cut along
-    std::rotate(m.face_vertices.begin(), m.face_vertices.begin() + 1, m.face_vertices.begin() + 4);
-    CHECK(check_mesh(m)[MeshFault::self_intersection].first == Pairs{{0, 1}});
-    const SelfIntersections found = listed_in(m);
-    REQUIRE(found.pairs.size() == 1);
-    CHECK(found.pairs[0].kind == SelfContact::touch);
-    REQUIRE(found.segments.size() == (first % 2 == 1 ? 1 : 2));
-    double length = 0;
-    for (const auto& segment : found.segments) length += (segment[1] - segment[0]).norm();
-    CHECK(length == 4);
-  }
-  // Two squares through one diagonal.
-  m.face_offsets = {0}, m.face_vertices = {};
-  m.vertices.push_back({2, 0, -2});
-  m.add_face(std::array<VertexId, 4>{0, 1, 2, 3});
-  m.add_face(std::array<VertexId, 4>{0, 4, 2, 5});
-  CHECK(check_mesh(m)[MeshFault::self_intersection].first == Pairs{{0, 1}});
-  // A polygon that is not planar is its fan: the chords are edges of it.
-  m.face_offsets = {0}, m.face_vertices = {};
-  m.vertices[3] = {2, 2, 1};
-  m.add_face(std::array<VertexId, 4>{0, 1, 2, 3});
-  m.add_face(std::array<VertexId, 3>{0, 2, 5});
-  CHECK(check_mesh(m)[MeshFault::self_intersection].count == 0);
 }
 
 TEST_CASE("self-intersections: no pairs, no faces, and too many pairs") {
