@@ -14,7 +14,6 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/bodies.hpp"
 #include <lrbscope/clash.hpp>
-#include <lrbscope/error.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -425,119 +424,6 @@ TEST_CASE("clash: non-convex bodies of cells: intervals contain depth and volume
   }
   CHECK(overlap > 25 * share());
   CHECK(found > overlap * 8 / 10);  // the shortest separation vector, which is not guaranteed
-}
-
-namespace {
-
-Mesh random_round(RandomEngine& random) {
-  switch (random() % 4) {
-    case 0:
-      return shapes::bumpy_sphere(2, random(), 0.3);
-    case 1:
-      return shapes::torus(12, 8);
-    case 2:
-      return shapes::bowl(10, 5, 0.3);
-    default:
-      return shapes::l_shape();
-  }
-}
-
-/// Cells by the order of a face's border, and by rational arithmetic alone, make the same pieces.
-void check_pieces(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  QueryContext context;
-  NullProbe probe;
-  const CollideResult found = collide(a, pose_a, b, pose_b, {}, context, probe);
-  const auto quick = penetration::surface_pieces(context, found);
-  const auto slow = penetration::surface_pieces(context, found, true);
-  REQUIRE((quick && slow));
-  for (std::size_t side = 0; side < 2; ++side) {
-    CHECK((*quick)[side].inside == (*slow)[side].inside);
-    CHECK((*quick)[side].outside == (*slow)[side].outside);
-    CHECK((*quick)[side].max_outside == (*slow)[side].max_outside);
-  }
-}
-
-bool overlaps(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  CollideRequest request;
-  request.interiors_overlap = true;
-  return collide(a, pose_a, b, pose_b, request).interiors_overlap == Answer::yes;
-}
-
-ClashKind seen_from_b(ClashKind kind) {
-  switch (kind) {
-    case ClashKind::pierces:
-      return ClashKind::cuts_through;
-    case ClashKind::a_inside_b:
-      return ClashKind::b_inside_a;
-    case ClashKind::b_inside_a:
-      return ClashKind::a_inside_b;
-    default:
-      return kind;
-  }
-}
-
-bool have_in_common(const ProvedInterval& x, const ProvedInterval& y) {
-  return x.lower <= y.upper && y.lower <= x.upper;
-}
-
-/// Searches for contradictions to the intervals of two overlapping bodies.
-void look_for_counterexamples(RandomEngine& random, const LrbRep& a, const Pose& pose_a, const LrbRep& b,
-                              const Pose& pose_b, const ClashResult& r, const Vector3d& along) {
-  check_translation(a, pose_a, b, pose_b, r);
-  REQUIRE(r.along.has_value());
-  CHECK(r.along->lower <= r.along->upper);
-  CHECK(r.depth->lower <= r.along->upper);
-  for (int i = 0; i < 12; ++i) {
-    const Vector3d less =
-        shapes::uniform(random, 0, 0.999999) * r.depth->lower * shapes::random_direction(random);
-    CHECK(overlaps(a, pose_a, b, Pose{pose_b.r, pose_b.t + less}));
-    const Vector3d on_the_way = shapes::uniform(random, 0, 0.999999) * r.along->lower * along;
-    CHECK(overlaps(a, pose_a, b, Pose{pose_b.r, pose_b.t + on_the_way}));
-  }
-  const Pose out{pose_b.r, pose_b.t + r.along->upper * (1 + 1e-12) * along};
-  CHECK(collide(a, pose_a, b, out).relation == Relation::separate);
-}
-
-}  // namespace
-
-TEST_CASE("clash: bodies of all shapes: sampling finds no contradiction to the intervals") {
-  RandomEngine random(20);
-  int overlap = 0;
-  for (int i = 0; i < 8 * share(); ++i) {
-    CAPTURE(i);
-    const LrbRep a = closed(random_round(random)), b = closed(random_round(random));
-    const Pose pose_a{shapes::random_rotation(random), Vector3d::Zero()};
-    const Pose pose_b{shapes::random_rotation(random),
-                      shapes::uniform(random, 0.2, 1.8) * shapes::random_direction(random)};
-    const Vector3d along = shapes::random_direction(random);
-    ClashRequest request;
-    request.along = along;
-    const ClashResult r = clash(a, pose_a, b, pose_b, request), s = clash(b, pose_b, a, pose_a);
-    const CollideResult query = collide(a, pose_a, b, pose_b);
-    CAPTURE(to_string(r.kind));
-    CAPTURE(to_string(s.kind));
-    if (r.kind != ClashKind::cuts_through) CHECK(s.kind == seen_from_b(r.kind));
-    CHECK(r.pieces[0].inside == s.pieces[1].inside);
-    CHECK(r.pieces[1].outside == s.pieces[0].outside);
-    CHECK((r.kind == ClashKind::apart) == (query.relation == Relation::separate));
-    REQUIRE((r.volume && s.volume && r.depth && s.depth));
-    CHECK(have_in_common(*r.volume, *s.volume));
-    CHECK(have_in_common(*r.depth, *s.depth));
-    // Seen along other axes.
-    Eigen::Matrix3d turn;
-    turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
-    ClashRequest volume;
-    volume.depth = false;
-    const ClashResult t =
-        clash(a, Pose{turn * pose_a.r, turn * pose_a.t}, b, Pose{turn * pose_b.r, turn * pose_b.t}, volume);
-    CHECK(std::abs(t.volume->lower - r.volume->lower) < 1e-9);
-    CHECK(t.volume->upper - t.volume->lower < 1e-9);
-    if (r.interiors_overlap != Answer::yes) continue;
-    ++overlap;
-    check_pieces(a, pose_a, b, pose_b);
-    look_for_counterexamples(random, a, pose_a, b, pose_b, r, along);
-  }
-  CHECK(overlap > 3 * share());
 }
 
 TEST_CASE("clash: the same solid in more faces gives the same intervals") {

@@ -14,7 +14,6 @@
 #include "tests/support/simplex_distance.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
-#include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -90,40 +89,6 @@ double median(std::vector<double> x) {
 }
 
 }  // namespace
-
-TEST_CASE("an approximate query reports the exact relation and keeps its error bound") {
-  RandomEngine random(41);
-  int crossing = 0, with_pseudo = 0, exact = 0;
-  std::vector<double> ratios;
-  for (const CoarseBodies& pair : coarse_bodies()) {
-    CAPTURE(pair.name);
-    QueryContext context;
-    for (int i = 0; i < 30; ++i) {
-      CAPTURE(i);
-      const Pose p = pose_around(random, pair);
-      const BruteForceResult truth = brute_force(pair.a, Pose{}, pair.b, p);
-      const test::RealSurfaces real(pair.a, Pose{}, pair.b, p);
-      for (const double tolerance : {0.01, 0.1, 0.5}) {
-        CAPTURE(tolerance);
-        CollideRequest request;
-        request.tolerance = tolerance;
-        const CollideResult coarse = ask(pair, p, request, context);
-        REQUIRE(coarse.finished);
-        REQUIRE(coarse.error_bound <= 2 * tolerance * (1 + 1e-4));
-        check_claims(pair, p, coarse, truth);
-        for (const SimplexPair& q : coarse.pairs) {
-          with_pseudo += !pair.a.is_real_simplex(q.a) || !pair.b.is_real_simplex(q.b);
-          if (coarse.error_bound > 0) REQUIRE(real.off(q) <= coarse.error_bound * (1 + 1e-12));
-        }
-        crossing += coarse.relation == Relation::crossing;
-        exact += coarse.error_bound == 0;
-      }
-    }
-  }
-  CHECK(crossing > 100);
-  CHECK(exact > 200);
-  CHECK(with_pseudo > 50);
-}
 
 /// Returns the error bounds of answers about two bodies, each divided by the most that one of its pairs is
 /// off. Leaves out exact answers. Tolerances are shares of the larger body's size.

@@ -1,6 +1,5 @@
 // Explanations against the query itself, brute force and distances from another source.
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <string>
 
@@ -152,27 +151,6 @@ TEST_CASE("separate bodies: the closest disjoint boxes, and a separating plane i
   CHECK(boxes > 10);
 }
 
-TEST_CASE("gaps of 2D boxes are those in the plane, not that of their thickness") {
-  bool any_thin = false;
-  for (const ExplainedScene& s : scenes()) {
-    if (s.a.dim() != 2) continue;
-    const std::array<WorldBox, 2> boxes = {box_of(s.a.tree(), 0, kWhole, {}),
-                                           box_of(s.b.tree(), 0, kWhole, s.pose)};
-    const auto is_across_plane = [&](BoxAxis axis) {
-      const auto k = static_cast<std::size_t>(axis);
-      return std::abs(boxes[k / 3].across[k % 3].z()) > 0.5;
-    };
-    BoxPair thin;
-    compare_boxes(boxes[0], boxes[1], thin);
-    any_thin |= is_across_plane(thin.axis);
-    CHECK_FALSE(is_across_plane(explain_walk(s.a, {}, s.b, s.pose).roots.axis));
-    const BoxPair first = explain_pair(s.a, {}, s.b, s.pose, {SimplexId(0), SimplexId(0)}).nodes.front();
-    CHECK_FALSE(is_across_plane(first.axis));
-    CHECK(first.gap == explain_walk(s.a, {}, s.b, s.pose).roots.gap);
-  }
-  CHECK(any_thin);
-}
-
 TEST_CASE("linked rings are separate, but no plane separates them") {
   const LrbRep ring = build_lrb(torus(24, 12));
   Pose through;
@@ -182,17 +160,6 @@ TEST_CASE("linked rings are separate, but no plane separates them") {
   REQUIRE(e.result.relation == Relation::separate);
   CHECK_FALSE(e.plane);
   CHECK(e.nearest_boxes);
-}
-
-TEST_CASE("faces are hidden by the regions that a wrapper refines to reach them") {
-  const LrbRep body = build_lrb(bumpy_sphere(3, 5, 0.2));
-  const PairExplanation e = explain_pair(body, {}, body, {}, {7, 7});
-  const auto& regions = e.hidden_by[0];
-  REQUIRE(!regions.empty());
-  CHECK(body.depth(regions.front()) == 1);
-  for (std::size_t i = 1; i < regions.size(); ++i) CHECK(body.parent(regions[i]) == regions[i - 1]);
-  CHECK(body.outer_cell(body.face_of_simplex(7)) == regions.back());
-  CHECK(e.hidden_by[0] == e.hidden_by[1]);
 }
 
 LrbRep segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

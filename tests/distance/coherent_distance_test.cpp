@@ -76,13 +76,13 @@ TEST_CASE(
       {"ball in bowl", closed(shapes::bowl(8, 4)), closed(shapes::icosphere(1, 0.3))},
       {"ball in ball", closed(shapes::icosphere(2)), closed(shapes::icosphere(1, 0.4))},
       {"ring 2D", closed(shapes::ring_2d(30)), closed(shapes::star(5, 0.3, 0.1))},
-      {"rock and ring", closed(shapes::bumpy_sphere(4, 7, 0.3)), closed(shapes::torus(48, 24)), 1000, 0.05},
-      {"small in bowl", closed(shapes::bowl(30, 12)), closed(shapes::bumpy_sphere(3, 5, 0.3), 0.3), 1000,
+      {"rock and ring", closed(shapes::bumpy_sphere(4, 7, 0.3)), closed(shapes::torus(48, 24)), 400, 0.05},
+      {"small in bowl", closed(shapes::bowl(30, 12)), closed(shapes::bumpy_sphere(3, 5, 0.3), 0.3), 400,
        0.05},
-      {"outlines", closed(shapes::gear(60)), closed(shapes::star(40, 0.5, 0.2)), 1000, 0.05},
-      {"needle by rock", closed(shapes::bumpy_sphere(3, 7, 0.3)), closed(needle()), 1000, 0.2},
+      {"outlines", closed(shapes::gear(60)), closed(shapes::star(40, 0.5, 0.2)), 400, 0.05},
+      {"needle by rock", closed(shapes::bumpy_sphere(3, 7, 0.3)), closed(needle()), 400, 0.2},
       {"needle by needles", closed(shapes::several({needle(), shapes::translated(needle(), {0, 0.3, 0.1})})),
-       closed(needle()), 1000, 0.2}};
+       closed(needle()), 400, 0.2}};
   CoherentDistanceTally all;
   for (const auto& pair : pairs) {
     CAPTURE(pair.name);

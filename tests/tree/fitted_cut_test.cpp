@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -120,18 +119,6 @@ Triangles bent_strip(RandomEngine& random, int count, double crowding, double th
   return triangles;
 }
 
-/// Adds triangles on a disc.
-void add_disc(Triangles& triangles, int count, const Vector3d& centre, const Vector3d& normal,
-              double radius) {
-  const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
-  for (int i = 0; i < count; ++i) {  // a spiral of points that are about as far from each other
-    const double r = radius * std::sqrt((i + 0.5) / count),
-                 angle = std::numbers::pi * (3 - std::sqrt(5.0)) * i;
-    const Vector3d at = centre + r * (std::cos(angle) * u + std::sin(angle) * v);
-    triangles.add(at, at + 0.1 * radius * u, at + 0.1 * radius * v);
-  }
-}
-
 /// Looks at so many cuts that none is left out.
 constexpr std::uint32_t kAll = 10'000;
 
@@ -177,35 +164,6 @@ TEST_CASE("the split across the coordinate axes with the smallest boxes is found
   }
 }
 
-TEST_CASE("a long body is split across its longest principal axis if no coordinate axis separates it") {
-  // Two discs that face each other along a diagonal, so wide that they overlap as seen along any coordinate
-  // axis, but less wide than they are apart; one holds three times as many triangles.
-  const Vector3d along = Vector3d(1, 1, 1).normalized();
-  Triangles triangles;
-  add_disc(triangles, 24, along, along, 1.2);
-  add_disc(triangles, 72, -along, along, 1.2);
-  for (const std::uint32_t tried : {1u, 4u}) {
-    CHECK(FirstCut(triangles, {.principal = 1, .tried = tried}).parts_first(24));
-    CHECK_FALSE(FirstCut(triangles, {.principal = 0, .tried = tried}).parts_first(24));
-  }
-}
-
-TEST_CASE("a body is split across the second or last principal axis if that one separates it") {
-  const Vector3d u = Vector3d(1, 1, 1).normalized(), v = u.unitOrthogonal(), w = u.cross(v);
-  // Two strips side by side along u, and two plates that face each other: all overlap as seen along any
-  // coordinate axis and along the other principal axes.
-  Triangles strips, plates;
-  for (const double side : {-0.5, 0.5})
-    for (int i = 0; i < 64; ++i) {
-      const Vector3d at = side * v + 0.0625 * (i - 32) * u;
-      strips.add(at, at + 0.06 * u, at + 0.06 * w);
-    }
-  for (const double side : {-0.45, 0.45}) add_disc(plates, 64, side * u, u, 1);
-  CHECK(FirstCut(strips, {.principal = 2, .tried = 1}).parts_first(64));
-  CHECK(FirstCut(plates, {.principal = 3, .tried = 1}).parts_first(64));
-  CHECK_FALSE(FirstCut(plates, {.principal = 2, .tried = 1}).parts_first(64));
-}
-
 TEST_CASE("a split does not depend on the order of simplices, nor on other simplices") {
   RandomEngine random(9);
   const Triangles strip = bent_strip(random, 300, 1, 0.1);
@@ -247,24 +205,6 @@ std::uint32_t height_of(const Triangles& triangles) {
   for (std::size_t i = nodes.size(); i-- > 0;)
     if (!nodes[i].is_leaf()) heights[i] = 1 + std::max(heights[nodes[i].left], heights[nodes[i].right]);
   return heights[0];
-}
-
-TEST_CASE("a node of the binary tree has the cost of its tight box, or of its AABB") {
-  RandomEngine random(12);
-  const Triangles strip = bent_strip(random, 500, 1, 0.1);
-  for (const std::uint32_t fitted : {64u, 500u, 2048u}) {
-    Soup soup = strip.soup();
-    Workers workers(1);
-    const std::vector<BinaryNode> nodes = build_binary_tree(
-        soup, workers, {.fitted = fitted, .effort = {.principal = 1, .tried = 3}, .all_cuts = true});
-    for (const BinaryNode& n : nodes) {
-      const std::uint32_t count = n.end - n.begin;
-      CAPTURE(count);
-      const double expected =
-          count <= fitted ? fitted_cost(soup, soup.listed(n.begin, n.end)) : box_cost(n.box);
-      CHECK(n.cost == doctest::Approx(expected).epsilon(1e-5));
-    }
-  }
 }
 
 TEST_CASE("trees over collinear points and over one point are balanced") {
