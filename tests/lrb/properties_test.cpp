@@ -1,12 +1,8 @@
-// Invariants for any body and pose, on random ones.
-#include <algorithm>
-#include <cmath>
+// A wrapper, however refined, contains the body: exactly, for random sets of regions.
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "bench/cases/families.hpp"
-#include "engine/collide/collide_into.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/lrb/complex.hpp"
 #include "scenarios/bodies/shapes.hpp"
@@ -15,7 +11,7 @@
 #include <lrbscope/wrapper.hpp>
 
 using namespace lrb;
-using namespace lrb::cases;
+using shapes::RandomEngine;
 
 namespace {
 
@@ -64,13 +60,6 @@ bool holds(const Wrapper& w, const Eigen::Vector3d& p) {
   return crossings % 2 != 0;
 }
 
-std::vector<RegionId> shuffled_regions(RandomEngine& random, const LrbRep& rep) {
-  std::vector<RegionId> order(rep.region_count());
-  for (RegionId r = 0; r < order.size(); ++r) order[r] = r;
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
-  return order;
-}
-
 }  // namespace
 
 TEST_CASE("refining and then coarsening is the identity") {
@@ -97,32 +86,6 @@ TEST_CASE("refining and then coarsening is the identity") {
       w.reset();
       CHECK(w.boundary() == outermost);
     }
-}
-
-TEST_CASE(
-    "any order of refinement reaches the same solid, and every state on the way is closed and encloses it") {
-  RandomEngine random(4);
-  for (const LrbRep& rep : built()) {
-    CAPTURE(rep.name());
-    std::vector<FaceId> real(rep.real_face_count());
-    for (FaceId f = 0; f < real.size(); ++f) real[f] = f;
-    for (int round = 0; round < 3; ++round) {
-      Wrapper w(rep);
-      const std::vector<RegionId> order = shuffled_regions(random, rep);
-      const std::size_t every = 1 + order.size() / 8;
-      for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i % every == 0) {
-          REQUIRE(is_closed(w));
-          for (int k = 0; k < 10; ++k) {
-            const auto corners = rep.face(static_cast<FaceId>(random() % rep.real_face_count()));
-            REQUIRE(holds(w, rep.vertices()[corners[random() % corners.size()]]));
-          }
-        }
-        REQUIRE(w.refine(order[i]));
-      }
-      CHECK(w.boundary() == real);
-    }
-  }
 }
 
 namespace {
