@@ -38,14 +38,13 @@ NOT_RUN = [
     ("docs/profiling.md", r"out/fcl", "needs FCL; tests/examples/capture.sh"),
     ("docs/profile_your_engine.md", r"", "tests/examples/capture.sh, in order, with their output"),
     ("", r"\.lrbcap\b", "needs another engine's program; profile_tests"),
-    ("docs/meshes.md", r"\b(twin|cow)2?\.(obj|lrb)", "tests/docs/bodies.sh, with their output"),
     (
         "docs/scenarios.md",
         r"--dpi 300|--format svg|--frames refinement|--events nodes",
         "draws for a minute or more; tests of cli and render",
     ),
-    ("docs/figures.md", r"out/mine", "tests/docs/figures.sh, with their widths"),
     ("docs/golden.md", r"\b(bolt|hinge|lid|valve)\b", "tests/docs/goldens.sh, with their output"),
+    ("docs/figures.md", r"out/mine", "tests/docs/figures.sh, with their widths"),
     (
         "CONTRIBUTING.md",
         r"golden (report|approve) --goldens tests/golden",
