@@ -14,7 +14,6 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/record/engine_run.hpp"
-#include "tests/support/program.hpp"
 #include "tests/support/toy_engine.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace_json.hpp>

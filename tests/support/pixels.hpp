@@ -28,14 +28,6 @@ inline Outcome succeed(const Folder& folder, const std::vector<std::string>& com
   return o;
 }
 
-/// Runs a command, which must succeed, and reads a picture that it wrote.
-inline render::DecodedPng drawn(const Folder& folder, const std::string& file,
-                                const std::vector<std::string>& command,
-                                const std::vector<std::string>& more = {}) {
-  succeed(folder, command, more);
-  return render::read_png(folder / file);
-}
-
 /// A part of a picture, as shares of its width and height.
 struct Part {
   double left = 0, top = 0, right = 1, bottom = 1;
@@ -52,10 +44,6 @@ std::size_t count_pixels(const render::Image& image, const Part& part, Is&& is) 
   return count;
 }
 
-inline bool is_painted(render::Rgba p) {
-  return p != render::kWhite;
-}
-
 /// Returns a predicate for pixels of a colour, as it is or shaded: lit faces keep the proportions of its
 /// channels.
 inline auto like(render::Rgba colour) {
@@ -64,19 +52,6 @@ inline auto like(render::Rgba colour) {
     const double dot = p.r * colour.r + p.g * colour.g + p.b * colour.b;
     return p == colour || (size > 0 && other > 0.5 * size && dot > 0.998 * size * other);
   };
-}
-
-/// Returns the largest difference of a channel between two pictures of one size. `back`: the background of
-/// transparent pixels of `a`.
-inline int largest_difference(const render::Image& a, const render::Image& b,
-                              render::Rgba back = render::kWhite) {
-  REQUIRE(a.pixels().size() == b.pixels().size());
-  int largest = 0;
-  for (std::size_t i = 0; i < a.pixels().size(); ++i) {
-    const render::Rgba p = render::over(a.pixels()[i], back), q = b.pixels()[i];
-    largest = std::max({largest, std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)});
-  }
-  return largest;
 }
 
 }  // namespace lrb::test

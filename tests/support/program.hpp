@@ -55,21 +55,4 @@ inline Outcome run(const Folder& folder, const std::vector<std::string>& argumen
   return o;
 }
 
-/// Runs the program with arguments that it refuses, in one line, before it writes anything.
-inline Outcome check_rejected(const Folder& folder, const std::vector<std::string>& arguments) {
-  const std::vector<std::string> before = folder.tree();
-  Outcome o = run(folder, arguments);
-  CAPTURE(o.err);
-  CHECK(o.code == 2);
-  CHECK(o.error_lines() == 1);
-  CHECK(o.out.empty());
-  CHECK(folder.tree() == before);
-  return o;
-}
-
-inline const char* const kCube =
-    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-inline const char* const kApart = "1 0 0 3 0 1 0 0 0 0 1 0\n";
-
 }  // namespace lrb::test
