@@ -107,7 +107,7 @@ TEST_CASE("decompression bombs and damaged pictures are rejected with a reason")
       {rejection(png_of(64, 64, 64 * kRow - 1)), bad + "Not enough image data)"},
       {rejection(good.substr(0, good.size() - 13)), bad + "the file is truncated)"},
       {rejection(good.substr(0, 40)), bad + "the file is truncated)"}};
-  for (const auto& [found, expected] : table) CHECK_MESSAGE(found.find(expected) != std::string::npos, found);
+  for (const auto& row : table) CHECK_MESSAGE(row.first.find(row.second) != std::string::npos, row.first);
   // Texts have a size limit.
   const auto with_text = [&](const std::string& value, int times) {
     std::string png = png_of(1, 1, 4);
@@ -119,19 +119,6 @@ TEST_CASE("decompression bombs and damaged pictures are rejected with a reason")
   CHECK(rejection(with_text("value", 50)).empty());
   CHECK(rejection(with_text("value", 1000)) == bad + "tEXt: no space in chunk cache)");
   CHECK(rejection(with_text(std::string(2 * kMega, 'v'), 1)).find(bad + "tEXt: ") == 0);
-}
-
-TEST_CASE("files appear complete or not at all") {
-  const test::Folder folder;
-  const render::Image image = noise(30, 20, true);
-  render::write_png(image, folder / "a.png", {{{"k", "v"}}, 0});
-  CHECK(render::read_png(folder / "a.png").image == image);
-  CHECK(folder.tree().size() == 1);
-  CHECK_THROWS_AS(render::write_png(image, folder / "missing/a.png"), InputError);
-  fs::create_directories(folder / "taken.png");
-  CHECK_THROWS_AS(render::write_png(image, folder / "taken.png"), InputError);
-  CHECK(folder.tree().size() == 2);
-  CHECK_THROWS_AS(render::read_png(folder / "absent.png"), InputError);
 }
 
 TEST_CASE("the frame writer writes all frames and reports its errors") {
