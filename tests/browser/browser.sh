@@ -64,14 +64,6 @@ sed 's/"frequency": 8 }/&, "build": { "patch_interior": 6 }/' "$here/build.json"
 "$lrbscope" --quiet compare "$work/out" "$work/other" -o "$work/compare" >/dev/null || [ $? = 1 ]
 with_scripts "$work/compare/index.html" drive_compare.js >"$work/compare/page.html"
 drive 1400 1000 compare/page.html "${webgl[@]}" --allow-file-access-from-files
-# Another engine's run: of the sample engine.
-if cc -O1 -DLRBCAP_ENABLE -I"$here/../../trace/include" "$here/../../examples/capture/aabb.c" -o "$work/aabb" -lm 2>/dev/null; then
-  printf '1 0 0 %s  0 1 0 %s  0 0 1 %s\n' 0.7 0.1 -0.1 3 0 0 >"$work/poses.txt"
-  LRBCAP_OUT="$work/run.lrbcap" "$work/aabb" "$here/../data/gear.obj" "$here/../data/l_block.obj" "$work/poses.txt" >/dev/null
-  "$lrbscope" --quiet import "$work/run.lrbcap" -o "$work/import" >/dev/null
-  with_scripts "$work/import/index.html" drive.js >"$work/page.html"
-  drive 1400 900 'page.html?drive=engine' "${webgl[@]}"
-fi
 page "$here/plane.json"
 drive 1400 1000 'page.html?drive=plane' "${webgl[@]}"
 page "$here/near.json"

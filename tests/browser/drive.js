@@ -333,24 +333,6 @@
     equal(selection.picked && selection.picked.vertex, busiest, "an address leads to a vertex");
   }
 
-  /** The page of another engine's run has no word of what only lrbscope has, in texts or tooltips. */
-  async function namesOnlyItsOwn() {
-    const ours = String.raw`wrapper|pseudo|refine|\blids?\b|real face|\blayers?\b|\bplanes? of faces|region`,
-      strange = new RegExp(`.{0,30}(${ours}).{0,30}`, "i"),
-      isLeftOut = (part) => part.closest("script, style, .of-regions[hidden], [data-tab=Contacts]");
-    check(events.engine, "another engine was recorded");
-    selection.goTo(firstContact());
-    selection.pickFace(0, events.faces(selection.event)[0].face);
-    await frame();
-    for (const part of [...document.querySelectorAll("body *")].filter((p) => !isLeftOut(p))) {
-      const own = [...part.childNodes].filter((n) => n.nodeType === Node.TEXT_NODE).map((n) => n.data);
-      for (const words of [...own, part.title || "", part.getAttribute("aria-label") || ""]) {
-        const found = strange.exec(words.replace(/contact regions?/gi, ""));
-        if (found) check(false, "no word of wrappers, regions and their faces", found[0].trim());
-      }
-    }
-  }
-
   /** Bodies of the plane are seen from above, and cannot be turned. */
   async function liesFlat() {
     const { camera } = view,
@@ -409,7 +391,6 @@
     open: [opensAtFirstContact, showsTheOpenBody],
     plane: [opensAtFirstContact, replaysAsRecorded, liesFlat],
     build: [replaysAsRecorded, buildsPassByPass, listsAttempts],
-    engine: [namesOnlyItsOwn],
     reload: [opensAtItsAddress],
     screen: [fitsOneScreen],
     all: [

@@ -144,22 +144,6 @@ TEST_CASE("pairs are listed by their cost, with the sums over all steps") {
   CHECK(summary["pairs_by_cost"][0]["face_tests"] == pairs[0].face_tests);
 }
 
-TEST_CASE("bodies stay in the arena if they fit") {
-  for (const json& j : {good(), good_2d()}) {
-    spec::Crowd crowd = crowd_of(j);
-    crowd.speed = {0.5, 2};
-    crowd.steps = 1;
-    const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
-    for (std::uint32_t step = 0; step < 40; ++step)
-      for (std::uint32_t i = 0; i < run.motion.body_count(); ++i)
-        for (FaceId f = 0; f < run.rep(i).real_face_count(); ++f)
-          for (const VertexId v : run.rep(i).face(f)) {
-            const Eigen::Vector3d x = run.motion.pose(i, step).apply(run.rep(i).vertices()[v]);
-            REQUIRE(((x.cwiseAbs() - crowd.room / 2).array() <= 0x1p-40).all());
-          }
-  }
-}
-
 TEST_CASE("the shipped crowd is valid and has about forty bodies") {
   const spec::Crowd crowd = spec::open_crowd("crowd");
   CHECK((spec::shipped_crowds() == std::vector<std::string>{"crowd"}));
@@ -348,11 +332,12 @@ TEST_CASE("two bodies of a crowd are a run of their own, with the same answers")
               (query == queries.end() ? fingerprint({}) : query->result.fingerprint));
       }
     }
-    for (const auto& [names, expected] :
+    for (const auto& [given, expected] :
          {std::pair{std::string("ball 1"), "expected the names of two bodies"},
           {"", "expected the names of two bodies"},
           {run.names[1] + "," + run.names[1], "twice"},
           {run.names[1] + ",cat 1", "has no body cat 1"}}) {
+      const std::string names = given;  // clang 14 captures no structured binding
       CAPTURE(names);
       CHECK_THROWS_WITH_AS(static_cast<void>(crowd::find_pair(crowd, names)), doctest::Contains(expected),
                            InputError);

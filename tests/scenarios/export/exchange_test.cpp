@@ -193,20 +193,6 @@ TEST_CASE("PLY: lrbscope's reader finds the same mesh, to the last bit") {
   CHECK(read.face_vertices == expected.face_vertices);
 }
 
-TEST_CASE("PLY: faces with more than 255 corners keep them all") {
-  Mesh mesh;
-  std::vector<VertexId> round;
-  for (std::uint32_t i = 0; i < 300; ++i) {
-    mesh.vertices.emplace_back(std::cos(i * 0.0209), std::sin(i * 0.0209), 0);
-    round.emplace_back(i);
-  }
-  mesh.add_face(round);
-  const LrbRep rep = LrbRep::without_regions(mesh, false, false);
-  const test::Folder folder;
-  save_model(make_model(moment_of(rep, nullptr), {true, false, false, {true, true}}), folder / "b.ply");
-  CHECK(read_mesh(folder / "b.ply").face_vertices.size() == 300);
-}
-
 /// The JSON of a GLB's first chunk, and the bytes of its second.
 std::pair<nlohmann::json, std::string> open_glb(const std::string& bytes) {
   const auto word = [&](std::size_t at) {

@@ -178,21 +178,3 @@ TEST_CASE("a close-up is the recorded collision, event by event; records of anot
   CHECK_THROWS_WITH_AS(paper::close_up(pair, 1, other, records), doctest::Contains("another experiment"),
                        InputError);
 }
-
-TEST_CASE("the icicle chart has a box for each visited region") {
-  const auto objects = small_objects();
-  paper::SweepOptions sweep;
-  sweep.protocol.collisions = 1;
-  const auto records = paper::run_sweep(objects, sweep);
-  const paper::PaperPair pair{objects[0], objects[1]};
-  const paper::CloseUp c = paper::close_up(pair, 0, sweep.protocol, records);
-  const std::string svg = paper::icicle_svg(pair, c);
-  CHECK(svg.starts_with("<svg "));
-  CHECK(svg.ends_with("</svg>\n"));
-  const std::size_t refined = c.steps[paper::busiest_step(c)].counts[0].refinements;
-  CHECK(refined > 0);
-  CHECK(count(svg, ", refined: ") == refined);
-  for (const paper::ContactStep& s : c.steps)
-    CHECK(s.counts[0].comparisons <= c.steps[paper::busiest_step(c)].counts[0].comparisons);
-  CHECK(count(svg, "<rect") == count(svg, "</rect>") + 5);  // the background and four colours of the legend
-}

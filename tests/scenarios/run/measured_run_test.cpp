@@ -41,14 +41,6 @@ bool draws_line(const render::DrawList& list, render::Rgba colour) {
   });
 }
 
-/// Returns a key figure and its note as the page has them.
-std::string number(const std::string& page, const std::string& label) {
-  const std::string head = "<dt>" + label + "</dt><dd>";
-  const std::size_t at = page.find(head);
-  if (at == std::string::npos) return {};
-  return page.substr(at + head.size(), page.find("</dd>", at) - at - head.size());
-}
-
 /// The state at the end of a step.
 run::FrameState at_end(const run::Recording& r, std::size_t step, const render::FrameSpec& spec) {
   run::RecordedRun run;
@@ -183,20 +175,6 @@ TEST_CASE("measured runs: a negative or infinite distance of near pairs or manif
   for (const char* query :
        {R"({"near": -1})", R"({"manifold": -0.5})", R"({"near": 1e999})", R"({"near": "far"})"})
     CHECK_THROWS_AS(recorded(query), InputError);
-}
-
-TEST_CASE("B2: frames and page state the reason of an undecided contact kind") {
-  run::Recording r = recorded(R"({"clash": true})");
-  trace::MeasuredClash& last = *r.trace.steps.back().result.clash;
-  last.kind = ClashKind::undecided;
-  last.reason = ClashReason::b_overlaps;
-  last.volume.reset();
-  CHECK(at_end(r, 6, {}).caption().find("undecided: B intersects itself, ") != std::string::npos);
-  const std::string page = page_of(r);
-  CHECK(number(page, "Contact kind") == "undecided<small>at step " +
-                                            std::to_string(r.trace.steps.back().index) +
-                                            "; B intersects itself</small>");
-  CHECK(count(page, "<td class=\"prose\">undecided: B intersects itself</td>") == 1);
 }
 
 TEST_CASE("measured runs: a clash of 2D bodies is rejected by step") {
