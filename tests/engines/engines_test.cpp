@@ -334,25 +334,4 @@ TEST_CASE(
   CHECK_FALSE(answer_of(query(1, 2, {}), names, false).tests);
 }
 
-TEST_CASE("equal queries of a capture are rounds of one pose") {
-  using capture::EventKind;
-  capture::Capture c;
-  c.engine = "toy";
-  c.queries = {query(1, 5, {}, 1), query(2, 9, {event(EventKind::nodes, 0, 0, 0)}, 2),
-               query(3, 7, {event(EventKind::nodes, 0, 0, 0), event(EventKind::nodes, 1, 0, 0)}, 1),
-               query(4, 8, {event(EventKind::nodes, 0, 0, 0)}, 2), query(5, 1, {}, 3)};
-  c.queries[4].ended = false;
-  const Samples samples = samples_of(c, "run.lrbcap");
-  REQUIRE(samples.answers.size() == 2);
-  CHECK(samples.rounds == 2);
-  CHECK(samples.with_events);
-  CHECK(samples.answers[0].us == 5);
-  CHECK(samples.answers[0].tests == 2);
-  CHECK(samples.answers[1].us == 8);
-  CHECK(samples.poses[1].t.x() == 2);
-  c.queries = {c.queries[4]};
-  CHECK_THROWS_WITH_AS(samples_of(c, "run.lrbcap"), "run.lrbcap: expected queries that ended, found none",
-                       InputError);
-}
-
 }  // namespace lrb::test

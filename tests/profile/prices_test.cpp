@@ -192,41 +192,6 @@ TEST_CASE("Tests of triangles for nothing are counted, in crowded leaves apart")
   }
 }
 
-TEST_CASE("The gain of larger leaves is what a tree with these leaves saves") {
-  // One binary tree, and the same with the nodes of at most 4 triangles as leaves.
-  std::mt19937_64 random(6);
-  FaultyEngine engine;
-  const std::uint32_t mesh = engine.add(soup_mesh(random, 64, 0.2));
-  const std::uint32_t fine = engine.grow(mesh, random, 1);
-  const capture::Tree& t = engine.capture.trees[fine];
-  const TreeIndex index(t, 64);
-  capture::Tree cut = t;
-  cut.first_child = cut.first_triangle = {0};
-  cut.child.clear();
-  cut.triangle.clear();
-  for (std::uint32_t n = 0; n < t.size(); ++n) {
-    if (index.triangles_below[n] > 4)
-      cut.child.insert(cut.child.end(), t.children(n).begin(), t.children(n).end());
-    else
-      for (std::uint32_t f = 0; f < 64; ++f)
-        for (std::uint32_t up = index.leaf[f]; up != kNull; up = index.parent[up])
-          if (up == n) cut.triangle.push_back(f);
-    cut.first_child.push_back(static_cast<std::uint32_t>(cut.child.size()));
-    cut.first_triangle.push_back(static_cast<std::uint32_t>(cut.triangle.size()));
-  }
-  engine.capture.trees.push_back(cut);
-  // Against a single triangle, all descents open the same nodes.
-  const std::uint32_t one = engine.grow(
-      engine.add(triangle_mesh({Eigen::Vector3d(0, 0, 0.5), {1, 0, 0.4}, {0.4, 1, 0.6}})), random);
-  engine.ask(fine, {}, one, {});
-  engine.ask(fine + 1, {}, one, {});
-  const Prices before = Priced(engine.capture, 0).prices, after = Priced(engine.capture, 1).prices;
-  const auto tests = [](const Prices& p) { return static_cast<std::int64_t>(p.visits + p.triangle_tests); };
-  CHECK(before.saved_by_leaves[1] == tests(before) - tests(after));
-  CHECK(before.saved_by_leaves[1] != 0);
-  CHECK(after.saved_by_leaves[1] == 0);
-}
-
 TEST_CASE("A query of kind any needs the path to its pair, and all else is order") {
   std::mt19937_64 random(8);
   FaultyEngine engine;

@@ -1,5 +1,5 @@
-/// Speed and accuracy: data sets, records, and what is computed from them. The commands:
-/// tests/commands/bench.txt.
+/// Speed and accuracy: data sets, records, and the numbers computed from them. The commands:
+/// tests/commands/bench.txt. tests/commands/bench.txt.
 
 #include <algorithm>
 #include <cmath>
