@@ -133,32 +133,6 @@ TEST_CASE("the median error bound is at most three times the measured error of p
   CHECK(median(all) <= 3);
 }
 
-TEST_CASE("bodies without a level that is worth it are answered exactly, with the work of the exact query") {
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(2, 8, 0.3));
-  RandomEngine random(11);
-  std::size_t crossing = 0;
-  for (int i = 0; i < 60; ++i) {
-    const Pose p = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 0.8));
-    for (const Mode mode : {Mode::all_pairs, Mode::any_pair, Mode::first_pair}) {
-      CollideRequest request;
-      request.mode = mode;
-      const CollideResult exact = collide(a, Pose{}, b, p, request);
-      // For all pairs, a tolerance that only fine levels keep; otherwise any.
-      request.tolerance = mode == Mode::all_pairs ? 1e-4 : 0.5;
-      const CollideResult found = collide(a, Pose{}, b, p, request);
-      CHECK(found.relation == exact.relation);
-      CHECK(found.pairs == exact.pairs);
-      CHECK(found.error_bound == 0);
-      CHECK(found.finished);
-      CHECK(found.interiors_overlap == exact.interiors_overlap);
-      CHECK(found.counters == exact.counters);
-      CHECK(found.opened == exact.opened);
-      crossing += exact.relation == Relation::crossing;
-    }
-  }
-  CHECK(crossing > 30);
-}
-
 TEST_CASE("a smaller tolerance never reports less") {
   RandomEngine random(44);
   int finer = 0;
@@ -332,19 +306,6 @@ TEST_CASE("more time never makes the error bound larger") {
     }
   }
   CHECK(narrowed > 15);
-}
-
-TEST_CASE("a query with a time limit does not build levels of detail") {
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 7, 0.3));
-  CollideRequest request;
-  request.max_time = 100;
-  CHECK(collide(a, Pose{}, a, Pose::translation({0.5, 0, 0}), request).finished);
-  CHECK(!a.has_levels());
-  request.tolerance = 10;
-  CHECK(collide(a, Pose{}, a, Pose::translation({0.5, 0, 0}), request).error_bound == 0);
-  request.max_time = 0;
-  CHECK(collide(a, Pose{}, a, Pose::translation({0.5, 0, 0}), request).error_bound > 0);
-  CHECK(a.has_levels());
 }
 
 TEST_CASE("levels of detail are built once, with deviations falling from the outermost wrapper to the body") {

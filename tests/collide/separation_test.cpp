@@ -166,23 +166,6 @@ TEST_CASE("certificates of separation are valid under affine maps") {
   }
 }
 
-TEST_CASE("the checker rejects unrefined wrappers of close bodies") {
-  RandomEngine random(7);
-  const LrbRep bowl = build_lrb(shapes::bowl(16, 8)), ball = build_lrb(shapes::icosphere(2, 0.3));
-  const Pose inside = Pose::translation({0, 0, 0.2});
-  const CollideResult r = [&] {
-    CollideRequest request;
-    request.separation = true;
-    return collide(bowl, Pose{}, ball, inside, request);
-  }();
-  REQUIRE(r.relation == Relation::separate);
-  CHECK(!are_apart(Wrapped(bowl, Pose{}, {}), Wrapped(ball, inside, {}), random));
-  REQUIRE(r.separation);
-  CHECK(are_apart(Wrapped(bowl, Pose{}, r.separation->refined[0]),
-                  Wrapped(ball, inside, r.separation->refined[1]), random));
-  CHECK(r.separation->face_count[0] > 0);
-}
-
 TEST_CASE("bodies closer than rounding have no certificate") {
   const LrbRep a = build_lrb(shapes::box()), b = build_lrb(shapes::box());
   CollideRequest request;

@@ -1,6 +1,5 @@
 // First contacts against rational arithmetic, against what is known in closed form, and against fine
 // sampling.
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -365,18 +364,4 @@ TEST_CASE("invalid motions are rejected") {
   CHECK_THROWS_AS(Motion::key_frames(std::array<Motion::KeyFrame, 2>{{{0, {}}, {0.5, {}}}}), InputError);
   CHECK_THROWS_AS(Motion::key_frames(std::array<Motion::KeyFrame, 3>{{{0, {}}, {0.5, {}}, {0.5, {}}}}),
                   InputError);
-}
-
-// The search was as coarse as the tolerance, and found all pairs of long spans in which the bodies are in
-// each other.
-TEST_CASE("a wide tolerance costs no more pairs than a narrow one") {
-  const LrbRep a = closed(shapes::bumpy_sphere(3, 1)), b = closed(shapes::bumpy_sphere(3, 2));
-  const Motion motion = Motion::linear(Pose::translation({4, 0.3, 0.2}), {0, 0.1, 0});
-  FirstContactRequest narrow, wide;
-  wide.tolerance = 0.01;
-  const FirstContactResult n = checked(a, kStill, b, motion, narrow), w = checked(a, kStill, b, motion, wide);
-  CHECK(n.is_contact());
-  CHECK(w.is_contact());
-  CHECK(w.counters.pairs <= n.counters.pairs);
-  CHECK(std::abs(w.t1 - n.t1) <= wide.tolerance);
 }

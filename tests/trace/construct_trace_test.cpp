@@ -216,30 +216,6 @@ TEST_CASE("summaries contain reasons of rejected caps, and no refinements") {
   CHECK(c.at("passes").at(0).at("stage") == "fitting");
 }
 
-TEST_CASE("two different constructions: the first different event and field") {
-  const Trace& x = rock().trace;
-  const auto differ = [&](EventKind kind, auto change) {
-    Trace y = x;
-    change(y.events[find(y, kind)]);
-    const auto d = first_divergence(x, y);
-    REQUIRE(d);
-    CHECK(d->event == find(x, kind));
-    return d->what;
-  };
-  CHECK_FALSE(first_divergence(x, x));
-  CHECK(differ(EventKind::pass, [](Event& e) { ++e.detail; }) == "stage");
-  CHECK(differ(EventKind::pass, [](Event& e) { e.boundary = std::bit_cast<std::uint32_t>(7.f); }) ==
-        "distance");
-  CHECK(differ(EventKind::patch, [](Event& e) { ++e.b; }) == "faces");
-  CHECK(differ(EventKind::patch, [](Event& e) { ++e.depth_a; }) == "interior vertices");
-  CHECK(differ(EventKind::cap, [](Event& e) { e.detail ^= 1; }) == "verdict");
-  CHECK(differ(EventKind::region, [](Event& e) { ++e.boundary; }) == "wrapper faces");
-  CHECK(differ(EventKind::pass_end, [](Event& e) { e.depth_a = 1 - e.depth_a; }) == "given up");
-  Trace query = x;
-  query.header.construction = false;
-  CHECK(first_divergence(x, query)->what == "construction");
-}
-
 TEST_CASE("damaged constructions are rejected") {
   const auto rejected = [](EventKind kind, auto change) {
     Trace t = rock().trace;

@@ -61,21 +61,6 @@ TEST_CASE("statistics are the documented ratios") {
   CHECK(std::isnan(value_of(statistics(nothing.take()), "tests_per_contact")));
 }
 
-TEST_CASE("histograms contain every event once") {
-  const Trace t = by_hand();
-  const Histogram depth = tests_by_depth(t);
-  CHECK(depth.counts == std::vector<std::uint64_t>{2, 1, 1});
-  CHECK(depth.edges == std::vector<double>{0, 1, 2, 3});
-  const Histogram size = refinements_by_size(t);
-  CHECK(size.counts == std::vector<std::uint64_t>{0, 0, 3});
-  CHECK(size.edges == std::vector<double>{0, 1, 2, 4});
-  const Histogram steps = steps_by_tests(t, 4);
-  CHECK(std::accumulate(steps.counts.begin(), steps.counts.end(), std::uint64_t{0}) == 2);
-  CHECK(steps.counts == std::vector<std::uint64_t>{0, 1, 0, 1});
-  REQUIRE(steps.edges.size() == 5);
-  CHECK(steps.edges.back() > 3);
-}
-
 TEST_CASE("counts per face add up to the events, on the events' faces") {
   const Trace t = by_hand();
   const FaceCounts a = count_faces(plate(), Side::a, t.events), b = count_faces(plate(), Side::b, t.events);

@@ -1,6 +1,5 @@
 /// Answers of other engines in traces, and trees that are none.
 
-#include <array>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -108,35 +107,4 @@ TEST_CASE("counters without a name, or at a place that does not exist, are refus
     if (fault == 2) report.phases[0].at = 5;
     CHECK_THROWS_AS(check_trace(t, "t.json"), InputError);
   }
-}
-
-TEST_CASE("a broken tree keeps first parents and nodes reachable from the root") {
-  const ShapeBox box{Eigen::Vector3d::Zero(),
-                     {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}};
-  using Children = std::vector<std::uint32_t>;
-  using Simplices = std::vector<SimplexId>;
-  TreeShape tree;
-  tree.add(Children{1, 2}, {}, box);
-  tree.add(Children{3, 4}, {}, box);
-  tree.add(Children{4, 0}, {}, box);  // 4 has two parents, and the root is a child
-  tree.add({}, Simplices{0, 1}, box);
-  tree.add({}, Simplices{2}, box);
-  tree.add(Children{6}, {}, box);  // no node's child
-  tree.add({}, Simplices{3}, box);
-  const TreeShape::Faults faults = tree.finish();
-  CHECK(faults.links == 2);
-  CHECK(faults.unreachable == 2);
-  CHECK(faults.any());
-  CHECK(tree.from_root() == Children{0, 1, 2, 3, 4});
-  CHECK(std::vector<std::uint32_t>(tree.children(1).begin(), tree.children(1).end()) == Children{3, 4});
-  CHECK(tree.children(2).empty());
-  CHECK(tree.children(5).size() == 0);
-  CHECK(tree.simplices(3).size() == 2);
-  CHECK(tree.beneath(0) == 3);
-  CHECK(tree.beneath(2) == 0);
-  CHECK(tree.depth(4) == 2);
-  CHECK(tree.depth(6) == kNull);
-  const Trace t = engine_run();
-  const NodeCounts counts = count_nodes(tree, Side::a, t.events);
-  CHECK(work_by_depth(tree, counts).size() == 3);
 }

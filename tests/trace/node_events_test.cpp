@@ -366,39 +366,6 @@ TEST_CASE("phases nest in steps, begin and end once, and have correct counts") {
   }
 }
 
-TEST_CASE("traces of all event details, also truncated, are read back unchanged and satisfy the schema") {
-  for (const std::uint32_t cap : {1u, 2u, 37u, 200u, 1'000'000u})
-    for (const CollideRequest& request : requests()) {
-      const Clock clock = cap == 37 || cap == 1'000'000 ? Clock::wall : Clock::event;
-      RecorderSettings settings;
-      settings.request = request;
-      settings.level = EventLevel::all;
-      settings.clock = clock;
-      settings.event_cap = cap;
-      const WatchedBodies& bodies = watched_bodies()[2];
-      Recorder recorder(*bodies.a, *bodies.b, settings);
-      QueryContext context;
-      for (std::uint32_t i = 0; i < 3; ++i) {
-        const Pose pose = Pose::translation({0.3 + 0.9 * i, 0.1, 0});
-        recorder.begin_step(i, {}, pose);
-        recorder.end_step(collide(*bodies.a, {}, *bodies.b, pose, request, context, recorder));
-      }
-      const Trace t = recorder.take();
-      const std::string text = trace_to_json(t);
-      CHECK(trace_from_json(text, "t.json") == t);
-      CHECK(test::trace_faults(Json::parse(text)) == "");
-      Trace other = t;
-      const auto pair = std::find_if(other.events.begin(), other.events.end(),
-                                     [](const Event& e) { return e.kind == EventKind::node_pair; });
-      if (cap < 1000) continue;
-      REQUIRE(pair != other.events.end());
-      NodeWork work = pair->work();
-      ++work.box_tests;
-      pair->boundary = std::bit_cast<std::uint32_t>(work);
-      CHECK(first_divergence(t, other)->message().find("box tests") != std::string::npos);
-    }
-}
-
 TEST_CASE("box tests of nodes are distributed to the faces below them") {
   for (const WatchedBodies& bodies : watched_bodies()) {
     const WatchedRun run = record(bodies, {}, EventLevel::nodes);

@@ -194,33 +194,3 @@ TEST_CASE("a split does not depend on the order of simplices, nor on other simpl
   }
   CHECK(orders[0] == orders[1]);
 }
-
-/// Returns the height of the binary tree.
-std::uint32_t height_of(const Triangles& triangles) {
-  Soup soup = triangles.soup();
-  Workers workers(1);
-  const std::vector<BinaryNode> nodes = build_binary_tree(
-      soup, workers, {.fitted = 2048, .effort = {.principal = 1, .tried = 3}, .all_cuts = false});
-  std::vector<std::uint32_t> heights(nodes.size(), 1);
-  for (std::size_t i = nodes.size(); i-- > 0;)
-    if (!nodes[i].is_leaf()) heights[i] = 1 + std::max(heights[nodes[i].left], heights[nodes[i].right]);
-  return heights[0];
-}
-
-TEST_CASE("trees over collinear points and over one point are balanced") {
-  for (const int count : {2'000, 20'000}) {
-    Triangles line, point;
-    for (int i = 0; i < count; ++i) {
-      const Vector3d a(0.5 * i / count, 0, 0.25), b(0.5 * (i + 1) / count, 0, 0.25);
-      line.add(a, b, b);
-      point.add({0.5, 0.1, 0.2}, {0.5, 0.1, 0.2}, {0.5, 0.1, 0.2});
-    }
-    const auto even = static_cast<std::uint32_t>(std::ceil(std::log2(count / 8)) + 1);
-    CAPTURE(count);
-    CHECK(height_of(line) <= even + 2);
-    CHECK(height_of(point) <= even + 2);
-    const SimplexView view = line.view();
-    CHECK(ObbTree(view, 1u).height() <= 7);
-    CHECK(ObbTree(view, view.real_simplices(), 1u).height() <= 7);
-  }
-}
