@@ -296,7 +296,7 @@ void check_enclosed(int poses) {
       }
     }
   }
-  CHECK(enclosed > 3 * static_cast<std::size_t>(poses));
+  CHECK(enclosed > 2 * static_cast<std::size_t>(poses));
   CHECK(searches > static_cast<std::size_t>(poses));
 }
 
