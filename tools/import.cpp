@@ -39,7 +39,7 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
   apply(o.picture, scenario.frames);
   profile::CapturedRunSettings settings = profile::captured_settings(scenario, c, pair, o.file);
   settings.check = !o.no_check;
-  const run::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, {}, progress);
+  const run::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, progress);
   const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
   note(globals, outcome.notes);
   return {{}, scenario.name, profile::totals_of(recording)};

@@ -45,11 +45,7 @@ void write_statistics(JsonWriter& w, const Trace& trace) {
 
 void write_histogram(JsonWriter& w, const Histogram& h) {
   w.begin_object().member("name", h.name).member("unit", h.unit).member("description", h.description);
-  w.key("edges").begin_array();
-  for (const double edge : h.edges) w.value(edge);
-  w.end_array().key("counts").begin_array();
-  for (const std::uint64_t count : h.counts) w.value(count);
-  w.end_array().end_object();
+  w.member("edges", h.edges).member("counts", h.counts).end_object();
 }
 
 void write_work(JsonWriter& w, const Trace& trace) {

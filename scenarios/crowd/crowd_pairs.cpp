@@ -222,9 +222,7 @@ std::string crowd_summary(const spec::Crowd& crowd, const CrowdRun& run) {
     trace::write_json(w, crowd.request);
     w.member("bodies", n).member("pairs_of_bodies", n * (n - 1) / 2);
     write_kinds(w, crowd, run);
-    w.key("names").begin_array();
-    for (const std::string& name : run.names) w.value(name);
-    w.end_array();
+    w.member("names", run.names);
     write_pairs(w, run);
     w.key("steps").begin_array();
     for (std::size_t i = 0; i < run.steps.size(); ++i) write_step(w, run.steps[i], i, n);

@@ -225,7 +225,7 @@ GoldenRun record_capture(const CapturedQueries& source, const GoldenSpec& spec,
   const profile::CapturedRunSettings settings =
       profile::captured_settings(run.scenario, c, pair, without_folder(source.file));
   for (std::size_t side = 0; side < 2; ++side) run.scenario.bodies[side].file = settings.sources[side];
-  run.recording = profile::captured_run(c, pair, std::move(bodies), settings, {}, progress);
+  run.recording = profile::captured_run(c, pair, std::move(bodies), settings, progress);
   // Times and the numbers of threads differ from recording to recording.
   for (trace::Step& step : run.recording.trace.steps)
     if (std::optional<trace::EngineReport>& report = step.result.engine)

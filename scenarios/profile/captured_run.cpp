@@ -219,8 +219,8 @@ std::uint32_t saturated(std::uint64_t value) {
 class QueryReplay {
  public:
   /// The indices of both trees must outlive this object.
-  QueryReplay(trace::Recorder& recorder, const TreeIndex& a, const TreeIndex& b, bool reports)
-      : recorder_(recorder), a_(a), b_(b), reports_(reports) {}
+  QueryReplay(trace::Recorder& recorder, const TreeIndex& a, const TreeIndex& b)
+      : recorder_(recorder), a_(a), b_(b) {}
 
   /// Returns the engine's answer, and adds its counters and phases to `report`.
   CollideResult replay(const capture::Query& query, trace::EngineReport& report) {
@@ -252,7 +252,7 @@ class QueryReplay {
     result.counters.real_tests = result.counters.face_tests;
     result.pairs = pairs_of(query);
     // The engine's verdict; without one, the pairs that it found.
-    const bool meets = reports_ && query.verdict != capture::Verdict::unreported
+    const bool meets = query.verdict != capture::Verdict::unreported
                            ? query.verdict == capture::Verdict::intersecting
                            : !result.pairs.empty();
     result.relation = meets ? Relation::crossing : Relation::separate;
@@ -269,7 +269,7 @@ class QueryReplay {
                              .step = v.step.value_or(NodeStep::descend_both),
                              .box_tests = e.tests,
                              .met = v.children > 0 && v.step != NodeStep::leaves ? v.children : e.met});
-    if (reports_ && e.axis != capture::kNoAxis) recorder_.set_engine_axis(e.axis);
+    if (e.axis != capture::kNoAxis) recorder_.set_engine_axis(e.axis);
     return id;
   }
 
@@ -281,7 +281,6 @@ class QueryReplay {
 
   trace::Recorder& recorder_;
   const TreeIndex &a_, &b_;
-  bool reports_;
 };
 
 trace::RecorderSettings recorder_settings(const capture::Capture& capture,
@@ -293,7 +292,7 @@ trace::RecorderSettings recorder_settings(const capture::Capture& capture,
   out.event_cap = settings.event_cap;
   out.level = EventLevel::nodes;
   out.engine = capture.engine.empty() ? "another engine" : capture.engine;
-  if (settings.reports) out.names = capture.names;
+  out.names = capture.names;
   return out;
 }
 
@@ -301,10 +300,9 @@ trace::RecorderSettings recorder_settings(const capture::Capture& capture,
 
 run::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
                             std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
-                            std::vector<CollideResult> exact, const run::ProgressReport& progress) {
+                            const run::ProgressReport& progress) {
   run::Recording out;
   out.bodies = std::move(bodies);
-  out.results = std::move(exact);
   std::vector<TreeIndex> indices;
   for (std::size_t side = 0; side < 2; ++side) {
     const capture::Tree& tree = capture.trees[pair.trees[side]];
@@ -314,8 +312,7 @@ run::Recording captured_run(const capture::Capture& capture, const TreePair& pai
     indices.emplace_back(tree, triangles);
   }
   trace::Recorder recorder(out.bodies[0].rep, out.bodies[1].rep, recorder_settings(capture, settings));
-  QueryReplay replay(recorder, indices[0], indices[1], settings.reports);
-  const bool is_known = !out.results.empty();
+  QueryReplay replay(recorder, indices[0], indices[1]);
   const bool of_shapes = std::all_of(pair.queries.begin(), pair.queries.end(), [&](std::size_t i) {
     return capture.queries[i].kind == capture::QueryKind::shape;
   });
@@ -328,30 +325,27 @@ run::Recording captured_run(const capture::Capture& capture, const TreePair& pai
   for (std::size_t i = 0; i < pair.queries.size(); ++i) {
     progress("query", i, pair.queries.size());
     const capture::Query& query = capture.queries[pair.queries[i]];
-    recorder.begin_step(settings.reports ? query.number : static_cast<std::uint32_t>(i), query.poses[0],
-                        query.poses[1]);
+    recorder.begin_step(query.number, query.poses[0], query.poses[1]);
     std::optional<trace::EngineReport> report = report_of(query);
     report->complete = report->complete && records_triangles;
     const CollideResult answer = replay.replay(query, *report);
-    if (!settings.reports) report.reset();
-    if (!is_known && settings.check && !of_shapes) {
+    if (settings.check && !of_shapes) {
       out.results.push_back(run::exact_answer(
           {out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]}, {}, report, answer.pairs));
-      if (report && report->query == trace::EngineQuery::distance)
+      if (report->query == trace::EngineQuery::distance)
         recorder.add(trace::measured(
             distance(out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]), {}));
     }
     if (i < out.results.size())
       out.wrong.push_back(run::wrong_pairs(answer.pairs, out.results[i].pairs, report));
-    if (report) recorder.add(std::move(*report));
+    recorder.add(std::move(*report));
     recorder.end_step(answer);
   }
   out.trace = recorder.take();
   if (out.trace.truncated())
     out.notes.push_back(out.trace.header.engine + ": the trace contains only the first " +
                         std::to_string(out.trace.events.size()) + " of " +
-                        std::to_string(out.trace.events_seen) + " events" +
-                        (settings.reports ? "; choose fewer queries (--queries)" : ""));
+                        std::to_string(out.trace.events_seen) + " events; choose fewer queries (--queries)");
   return out;
 }
 

@@ -54,21 +54,18 @@ struct CapturedRunSettings {
   std::array<std::string, 2> sources;
   std::uint32_t event_cap = 1'000'000;
   bool check = true;  ///< compute the exact answers
-  /// Number the steps as the capture's queries, and store the engine's own answers in the trace. false: from
-  /// 0, and without them.
-  bool reports = true;
 };
 
 /// Returns a recording of the queries of a pair of trees, one for each step. `bodies`: of both meshes, with
-/// their triangles as first simplices. `exact`: known exact answers of the steps; empty: they are computed,
-/// if the settings say so.
+/// their triangles as first simplices. Steps have the numbers of the queries, and the engine's own answers;
+/// the exact ones are computed if the settings say so.
 ///
 /// A test of two bounding volumes becomes a node pair. Its `met` is the number of pairs that the engine
 /// descended to from there, and its predecessor is found by visits_of(). The results are the exact ones, so
 /// that pictures show the actual intersections; the engine's answer is in the trace.
 run::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
                             std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
-                            std::vector<CollideResult> exact, const run::ProgressReport& progress);
+                            const run::ProgressReport& progress);
 
 /// Returns sentences about the pictures of a pair's run: volumes drawn as boxes, queries of one body
 /// with itself, queries that were not kept or not compared. Empty if there is nothing to say.

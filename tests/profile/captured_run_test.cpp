@@ -66,7 +66,7 @@ run::Recording recorded(const capture::Capture& c, const profile::TreePair& pair
   std::vector<bodies::LoadedBody> bodies;
   for (const std::uint32_t tree : pair.trees)
     bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
-  return profile::captured_run(c, pair, std::move(bodies), settings, {}, run::kSilent);
+  return profile::captured_run(c, pair, std::move(bodies), settings, run::kSilent);
 }
 
 run::Recording recorded(const capture::Capture& c) {

@@ -90,7 +90,6 @@ class Projection {
   /// times the picture's height at that depth.
   double nearer(double depth, double heights) const;
   double near_depth() const { return near_; }
-  double far_depth() const { return far_; }
   double focal() const { return focal_; }  ///< pixels per unit of x / z (orthographic: of x)
   /// Returns the size of a pixel in world units at a point.
   double unit_per_pixel(const Eigen::Vector3d& world) const;

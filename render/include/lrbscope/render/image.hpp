@@ -36,9 +36,6 @@ inline glm::vec3 to_float(const Eigen::Vector3d& v) {
 inline ByteColour to_bytes(Rgba c) {
   return {c.r, c.g, c.b, c.a};
 }
-inline Rgba to_rgba(const ByteColour& c) {
-  return {c.r, c.g, c.b, c.a};
-}
 /// Returns the colour with channels in [0, 1].
 inline glm::vec4 to_unit(Rgba c) {
   return glm::vec4(to_bytes(c)) / 255.0F;

@@ -112,9 +112,6 @@ constexpr Rgba edge_of(Rgba c) {
 constexpr Rgba solid_2d(Rgba c) {
   return mix(c, kSolidInk, kSolidShare);
 }
-constexpr Rgba region_2d(Rgba c) {
-  return mix(c, kWhite, 0.62);
-}
 
 /// Returns the colour of a kind of event.
 constexpr Rgba event(EventKind kind) {

@@ -152,7 +152,6 @@ class Recorder final : public CollideProbe {
 
   std::uint64_t events_seen() const { return seen_; }
   std::uint64_t events_of_step() const { return seen_ - seen_before_step_; }
-  std::uint64_t events_stored() const { return trace_.events.size(); }
 
   /// Replays the recording to fill in wrapper sizes and the ends of node pairs, and returns the trace. The
   /// recorder is then empty and can record another run with the same settings. Throws std::logic_error if
