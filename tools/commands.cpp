@@ -1,7 +1,6 @@
 /// The list of all commands.
 #include "tools/commands.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace lrb::cli {
@@ -67,17 +66,6 @@ std::string shell_line(const std::vector<std::string>& words) {
   std::string out = "lrbscope";
   for (const std::string& word : words) out += " " + shell_word(word);
   return out;
-}
-
-int run_command(const std::vector<std::string>& words, const Globals& globals) {
-  Globals own = globals;
-  own.command_line = shell_line(words);
-  App app("", "lrbscope");
-  const std::vector<Command> commands = add_commands(app, own);
-  app.parse(words);
-  const auto named =
-      std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });
-  return named->run();
 }
 
 }  // namespace lrb::cli

@@ -29,9 +29,6 @@ struct Command {
 /// Adds all commands to the program, in their order in --help. They are listed in commands.cpp.
 std::vector<Command> add_commands(App& root, const Globals& globals);
 
-/// Runs another command, given by its words without `lrbscope`. Returns its exit code.
-int run_command(const std::vector<std::string>& words, const Globals& globals);
-
 /// Prints completions of the last of these words of a command line, for the scripts of `completion`: "words",
 /// "files" or "folders" (names of files or folders are completions, too), then on each line a word, a tab and
 /// its help.

@@ -63,11 +63,6 @@ RightAnswer expected_from(const std::string& line) {
   return io::record_from_json<RightAnswer>(nlohmann::json::parse(line));
 }
 
-Relation relation_from(const std::string& word) {
-  if (const auto r = from_name<Relation>(word); r && *r != Relation::unresolved) return *r;
-  throw InputError("'" + word + "': unknown relation");
-}
-
 namespace {
 
 using methods::MethodAnswer;

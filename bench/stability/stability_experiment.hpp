@@ -35,9 +35,6 @@ nlohmann::ordered_json to_json(const RightAnswer& e);
 /// Reads it from a line. Throws InputError, or nlohmann's exceptions if it is not JSON.
 RightAnswer expected_from(const std::string& line);
 
-/// Returns the relation with this name. Throws InputError for an unknown name.
-Relation relation_from(const std::string& word);
-
 /// Sets outcome, counts and relations of the record. For a method that lists no pairs, counts are of contacts
 /// (0 or 1), and relations are "contact", "inside", "separate".
 void judge(Record& record, const methods::MethodInfo& info, const methods::MethodAnswer& answer,

@@ -590,17 +590,6 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-json real_body_json(const LrbRep& rep, const SceneFrame& frame) {
-  const std::string none = packed(Numbers());
-  return {{"name", rep.name()},
-          {"faces", rep.real_face_count()},
-          {"realFaces", rep.real_face_count()},
-          {"regions", 0},
-          {"geometry", geometry(rep, frame, rep.real_face_count())},
-          {"boxes", boxes_json(rep, frame, {})},
-          {"counts", {{"tests", none}, {"hits", none}}}};
-}
-
 json scene_colours() {
   namespace palette = render::palette;
   using render::css;

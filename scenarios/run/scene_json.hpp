@@ -21,9 +21,6 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame);
 /// Returns the centre of a body in its own frame. A page has vertices and poses relative to it.
 Eigen::Vector3d body_centre(const LrbRep& rep);
 
-/// Returns a body for a page's view: its real faces, without wrapper and tree.
-nlohmann::json real_body_json(const LrbRep& rep, const SceneFrame& frame);
-
 /// Appends a pose in the page's frame: rows of [R | t], for vertices relative to the body's centre.
 void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& centre,
               const SceneFrame& frame);
