@@ -125,9 +125,10 @@ QueryWalk::QueryWalk(CapturedBodies& bodies, const capture::Query& query,
     if (e.kind != capture::EventKind::nodes) continue;
     ++visit_count_;
     wide_ = wide_ || e.tests > 1;
-    first_.insert(e.a, e.b, i);
+    if (first_.insert(e.a, e.b, i) == i) by_a_.push_back(i);
     if (depth_of(i) != kNone) order_.push_back(i);
   }
+  std::ranges::sort(by_a_, {}, [&](std::uint32_t i) { return query.events[i].a; });
   visits_roots_ = visit_of(0, 0) != kNone;
   // If a pair was visited repeatedly, its first visit is the parent.
   parent_.assign(visits_.size(), kNone);
@@ -169,14 +170,29 @@ template <class Accept>
 std::uint32_t QueryWalk::deepest_from(std::uint32_t a, std::uint32_t b, const Accept& accept) const {
   std::uint32_t best = kNone, best_depth = 0;
   const std::uint32_t depth_b = index_[1]->depth[b];
+  std::vector<std::uint32_t> above_b;  // and b itself, from the root downward
+  for (std::uint32_t y = b; y != kNull; y = index_[1]->parent[y]) above_b.push_back(y);
+  std::ranges::reverse(above_b);
+  const auto consider = [&](std::uint32_t visit) {
+    if (visit == kNone || !accept(query_->events[visit])) return false;
+    const std::uint32_t depth = depth_of(visit);
+    if (best == kNone || depth > best_depth) best = visit, best_depth = depth;
+    return true;
+  };
   for (std::uint32_t x = a; x != kNull; x = index_[0]->parent[x]) {
     if (best != kNone && index_[0]->depth[x] + depth_b <= best_depth) break;  // the rest is less deep
-    for (std::uint32_t y = b; y != kNull; y = index_[1]->parent[y]) {
-      const std::uint32_t visit = visit_of(x, y);
-      if (visit == kNone || !accept(query_->events[visit])) continue;
-      const std::uint32_t depth = depth_of(visit);
-      if (best == kNone || depth > best_depth) best = visit, best_depth = depth;
-      break;  // pairs with the same x are less deep
+    // The visits of x, or the nodes above b, whichever are fewer: in trees like lists both may be many.
+    const auto visits =
+        std::ranges::equal_range(by_a_, x, {}, [&](std::uint32_t i) { return query_->events[i].a; });
+    if (visits.size() < above_b.size()) {
+      for (const std::uint32_t visit : visits) {
+        const std::uint32_t y = query_->events[visit].b, depth_y = index_[1]->depth[y];
+        if (depth_y < above_b.size() && above_b[depth_y] == y) consider(visit);
+      }
+    } else {
+      // Pairs with the same x are less deep after the first.
+      std::any_of(above_b.rbegin(), above_b.rend(),
+                  [&](std::uint32_t y) { return consider(visit_of(x, y)); });
     }
   }
   return best;

@@ -204,6 +204,7 @@ class QueryWalk {
   std::vector<Visit> visits_;
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> by_a_;  ///< the first visits of their nodes, by the node of A
   PairMap first_;
   std::uint64_t visit_count_ = 0;
   bool wide_ = false, visits_roots_ = false;

@@ -19,26 +19,26 @@ Subtrees::Subtrees(const capture::Tree& tree, const TreeIndex& index, std::size_
       first_triangle(tree.size(), 0),
       last_triangle(tree.size(), 0) {
   // Numbers of nodes by subtree, from the leaves upward; then the places in preorder, from the root downward.
-  std::vector<std::uint32_t> nodes(tree.size(), 1);
+  std::vector<std::uint32_t> count(tree.size(), 1);
   for (auto i = index.from_root.rbegin(); i != index.from_root.rend(); ++i)
-    if (index.parent[*i] != kNull) nodes[index.parent[*i]] += nodes[*i];
+    if (index.parent[*i] != kNull) count[index.parent[*i]] += count[*i];
   std::vector<std::uint32_t> next(tree.size(), 0);  // place of the next child's subtree
   for (const std::uint32_t n : index.from_root) {
     const std::uint32_t parent = index.parent[n];
     position[n] = parent == kNull ? 0 : next[parent];
-    if (parent != kNull) next[parent] += nodes[n];
+    if (parent != kNull) next[parent] += count[n];
     next[n] = position[n] + 1;
-    end[n] = position[n] + nodes[n];
+    end[n] = position[n] + count[n];
   }
-  std::vector<std::uint32_t> preorder(index.from_root.size());
-  for (const std::uint32_t n : index.from_root) preorder[position[n]] = n;
-  for (const std::uint32_t n : preorder) {
+  nodes.resize(index.from_root.size());
+  for (const std::uint32_t n : index.from_root) nodes[position[n]] = n;
+  for (const std::uint32_t n : nodes) {
     first_triangle[n] = static_cast<std::uint32_t>(triangles.size());
     for (const std::uint32_t t : tree.triangles(n))
       if (t < triangle_count) triangles.push_back(t);
     last_triangle[n] = static_cast<std::uint32_t>(triangles.size());
   }
-  for (auto i = preorder.rbegin(); i != preorder.rend(); ++i)
+  for (auto i = nodes.rbegin(); i != nodes.rend(); ++i)
     if (const std::uint32_t p = index.parent[*i]; p != kNull)
       last_triangle[p] = std::max(last_triangle[p], last_triangle[*i]);
 }
@@ -383,18 +383,14 @@ class Surface {
   /// Calls `at` with each node other than the triangle's own whose branch the box may touch. Returns the
   /// number of nodes looked at.
   template <class At>
-  std::uint64_t visit(std::uint32_t triangle, const AlignedBox3d& box, const At& at) {
+  std::uint64_t visit(std::uint32_t triangle, const AlignedBox3d& box, const At& at) const {
     std::uint64_t looked = 0;
     const std::uint32_t leaf = index.leaf[triangle];
-    stack_.assign(1, 0);
-    while (!stack_.empty()) {
-      const std::uint32_t n = stack_.back();
-      stack_.pop_back();
-      ++looked;
-      if (!reach_[n].intersects(box)) continue;
-      if (!(leaf != kNull && subtrees.contains(n, leaf))) at(n);
-      for (const std::uint32_t child : tree.children(n))
-        if (index.parent[child] == n) stack_.push_back(child);
+    for (std::uint32_t i = 0; i < subtrees.nodes.size(); ++looked) {
+      const std::uint32_t n = subtrees.nodes[i];
+      const bool is_near = reach_[n].intersects(box);
+      if (is_near && !(leaf != kNull && subtrees.contains(n, leaf))) at(n);
+      i = is_near ? i + 1 : subtrees.end[n];
     }
     return looked;
   }
@@ -414,7 +410,6 @@ class Surface {
 
  private:
   std::vector<AlignedBox3d> reach_;  ///< by node: box of all volumes below
-  std::vector<std::uint32_t> stack_;
 };
 
 SiblingFigures siblings_of(const Volumes& volumes, const TreeIndex& index, std::span<const double> volume) {
@@ -491,7 +486,7 @@ std::vector<NodeFigures> worst_by(const std::vector<NodeFigures>& nodes, double 
 std::optional<Epo> sample_epo(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index,
                               std::uint64_t samples, std::uint64_t seed) {
   constexpr std::uint64_t kMaxTests = 30'000'000, kFewest = 100;
-  Surface surface(volumes, mesh, index);
+  const Surface surface(volumes, mesh, index);
   if (!(surface.area > 0)) return {};
   Epo out;
   out.by_node.assign(volumes.tree().size(), 0);
@@ -526,7 +521,7 @@ std::optional<Epo> sample_epo(const Volumes& volumes, const capture::Mesh& mesh,
 
 std::optional<Epo> exact_epo(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index) {
   if (volumes.tree().volume == VolumeKind::sphere || volumes.tree().volume == VolumeKind::rss) return {};
-  Surface surface(volumes, mesh, index);
+  const Surface surface(volumes, mesh, index);
   if (!(surface.area > 0)) return {};
   std::vector<std::vector<HalfSpace>> half(volumes.tree().size());
   for (const std::uint32_t n : index.from_root) {

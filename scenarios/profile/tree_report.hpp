@@ -84,6 +84,7 @@ std::string text_of(const FoundFault& fault, const capture::Tree& tree, const ca
 /// Nodes that the root does not reach, and triangles that do not exist, are left out.
 struct Subtrees {
   std::vector<std::uint32_t> position, end;  ///< by node: its place in preorder, and that after its subtree
+  std::vector<std::uint32_t> nodes;          ///< in preorder, each once
   std::vector<std::uint32_t> triangles;      ///< by leaf, in preorder
   std::vector<std::uint32_t> first_triangle, last_triangle;  ///< by node: its range in `triangles`
 

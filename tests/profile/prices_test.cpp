@@ -323,6 +323,42 @@ TEST_CASE("The descent of a self query is priced, but not split") {
   CHECK(sum_of(p) == p.visits);
 }
 
+TEST_CASE("Trees too deep to search are not split") {
+  FaultyEngine engine;
+  std::mt19937_64 random(1);
+  const std::uint32_t sheet = engine.add(sheet_mesh(60));
+  // A chain: each node has a leaf and the next node.
+  capture::Tree chain;
+  chain.mesh = sheet;
+  chain.first_child = chain.first_triangle = {0};
+  const std::uint32_t n = 7200;
+  for (std::uint32_t i = 0; i + 1 < n; ++i) {
+    for (const bool leaf : {false, true}) {
+      if (!leaf && i + 2 < n) chain.child.insert(chain.child.end(), {2 * i + 1, 2 * i + 2});
+      if (leaf || i + 2 == n) chain.triangle.push_back(i);
+      chain.first_child.push_back(static_cast<std::uint32_t>(chain.child.size()));
+      chain.first_triangle.push_back(static_cast<std::uint32_t>(chain.triangle.size()));
+      chain.volumes.insert(chain.volumes.end(), {0, 0, 0, 1, 1, 0});
+    }
+  }
+  engine.capture.trees.push_back(chain);
+  const std::uint32_t one =
+      engine.grow(engine.add(triangle_mesh({Eigen::Vector3d(2, 0, 0), {3, 0, 0}, {2, 1, 0}})), random);
+  capture::Query& q = engine.ask(0, {}, one, {});
+  // It goes down a little.
+  q.events = {{.a = 0, .b = 0, .met = 1}, {.a = 1, .b = 0}, {.a = 2, .b = 0}};
+  FaultyEngine::close(q);
+  CHECK(Priced(engine.capture).prices.unsplit == 2);
+  // Nor does the search for the visit above each pair of triangles take the product of their depths.
+  capture::Query own = q;
+  own.trees = {0, 0};
+  own.events = {{.a = 0, .b = 0, .met = 1}};
+  FaultyEngine::close(own);
+  CapturedBodies bodies(engine.capture);
+  const QueryWalk walk(bodies, own, {0, 0});
+  for (std::uint32_t t = 0; t + 1 < n; ++t) REQUIRE(walk.deepest_above({t, t}) == 0);
+}
+
 TEST_CASE("The advice names the change with most to gain, and the next") {
   Prices p;
   p.visits = 800;

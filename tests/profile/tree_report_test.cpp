@@ -437,6 +437,23 @@ TEST_CASE("a chain of 100,000 nodes is measured without recursion") {
   CHECK(broken.faults.first[2].kind == TreeFault::triangle_in_no_leaf);
 }
 
+TEST_CASE("a child that is listed twice, level after level, is measured once") {
+  constexpr std::uint32_t kLevels = 60;
+  capture::Tree tree;
+  tree.first_child = tree.first_triangle = {0};
+  tree.triangle = {0};
+  for (std::uint32_t n = 0; n <= kLevels; ++n) {
+    tree.volumes.insert(tree.volumes.end(), {0, 0, 0, 2, 1, 0});
+    if (n < kLevels) tree.child.insert(tree.child.end(), 2, n + 1);
+    tree.first_child.push_back(static_cast<std::uint32_t>(tree.child.size()));
+    tree.first_triangle.push_back(n < kLevels ? 0 : 1);
+  }
+  const profile::TreeReport report = profile::report_tree(tree, strip(2));
+  CHECK(report.faults.totals[static_cast<std::size_t>(TreeFault::two_parents)] == kLevels);
+  // Half of the surface, in each of the inner nodes and in the leaf of one triangle.
+  CHECK(report.figures.epo->value == doctest::Approx((1.2 * kLevels + 1) / 2).epsilon(0.05));
+}
+
 TEST_CASE("a mesh of one triangle, of none, and a tree of no nodes") {
   const capture::Mesh one = strip(1);
   for (const VolumeKind kind : kAll) {
