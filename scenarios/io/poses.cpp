@@ -490,10 +490,20 @@ PoseList open_poses(const std::string& path) {
   const std::string name = printable_name(path);
   constexpr std::uint64_t kMaxJson = std::uint64_t{64} << 20;
   if (ends_like(path, ".json")) return parse_pose_json(read_text(path, kMaxJson), name);
+  // A pipe has no extension: the content decides.
+  const std::string text = read_text(path);
+  std::size_t at = text.find_first_not_of(" \t\r\n", mark_of(text));
+  if (at != std::string::npos && (text[at] == '[' || text[at] == '{')) {
+    if (text.size() > kMaxJson)
+      throw InputError(name + ": expected at most " + std::to_string(kMaxJson) +
+                       " bytes of JSON, found more; write lines of numbers instead");
+    return parse_pose_json(text, name);
+  }
   PoseList out;
   std::vector<std::size_t> lines;
-  out.poses = ends_like(path, ".csv") ? parse_pose_table(read_text(path), name, &lines)
-                                      : parse_poses(read_text(path), name, &lines);
+  const bool is_table = at != std::string::npos && names_columns(cells_of(next_line(text, at)));
+  out.poses = is_table || ends_like(path, ".csv") ? parse_pose_table(text, name, &lines)
+                                                  : parse_poses(text, name, &lines);
   for (const std::size_t line : lines) out.places.push_back(name + ":" + std::to_string(line));
   return out;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Lists of poses in files: lines of numbers, CSV and JSON, distinguished by file extension.
+/// Lists of poses in files: lines of numbers, CSV and JSON.
 
 #include <array>
 #include <cstddef>
@@ -21,8 +21,9 @@ struct PoseList {
   std::vector<std::string> places;  ///< (|poses|) location of each: "file:line", for messages
 };
 
-/// Reads a list of poses: FILE.csv by parse_pose_table(), FILE.json of at most 64 MiB (250,000 poses in full
-/// precision) by parse_pose_json(), any other file by parse_poses(). Throws InputError.
+/// Reads a list of poses: FILE.json, or text that begins with [ or {, of at most 64 MiB (250,000 poses in
+/// full precision) by parse_pose_json(); FILE.csv, or text that begins with names of columns, by
+/// parse_pose_table(); any other file by parse_poses(). Throws InputError.
 PoseList open_poses(const std::string& path);
 
 /// Reads poses from JSON: an array of poses, or an object with such an array as "poses". A pose is 12 numbers
