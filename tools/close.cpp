@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <sstream>
 
@@ -8,7 +7,6 @@
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
-#include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_repair.hpp>
@@ -81,8 +79,6 @@ std::string as_text(const ClosedHoles& result, std::size_t closed, const MeshRep
 }
 
 int run_close(const CloseOptions& o, const Globals& globals) {
-  if (std::error_code error; std::filesystem::equivalent(o.mesh, o.out, error))
-    throw InputError(printable_name(o.out) + ": expected another file than the mesh itself");
   std::vector<std::string> notes;
   const CheckedMesh mesh = check(bodies::read_body(o.mesh, o.corners, notes));
   note(globals, notes);

@@ -122,7 +122,7 @@ App* App::fallthrough() {
   return this;
 }
 void App::set_version(const std::string& text) {
-  app_->set_version_flag("--version", text);
+  app_->set_version_flag("-V,--version", text);
 }
 void App::footer(const std::string& text) {
   app_->footer(text);
@@ -255,17 +255,19 @@ std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std:
   return in_quotes(word) + " is not a command of " + call_of(*app) + did_you_mean(word, known) + help;
 }
 
-/// Throws InputError for an option or argument with an empty value: usually an unset shell variable.
-void reject_empty_values(const CLI::App& app) {
+template <class Visit>
+void visit_values(const CLI::App& app, const Visit& visit) {
   for (const CLI::Option* option : app.get_options())
-    for (const std::string& value : option->results())
-      if (value.empty())
-        throw InputError(option->get_name() +
-                         ": expected a value, found an empty string; is a shell variable unset?");
-  for (const CLI::App* below : app.get_subcommands()) reject_empty_values(*below);
+    for (const std::string& value : option->results()) visit(option->get_name(), value);
+  for (const CLI::App* below : app.get_subcommands()) visit_values(*below, visit);
 }
 
 }  // namespace
+
+void App::for_each_value(
+    const std::function<void(const std::string& option, const std::string& value)>& visit) const {
+  visit_values(*app_, visit);
+}
 
 std::optional<std::string> App::parse(const std::vector<std::string>& words) {
   try {
@@ -274,7 +276,10 @@ std::optional<std::string> App::parse(const std::vector<std::string>& words) {
     if (e.get_exit_code() == 0) return help_text(*app_, e);
     throw InputError(usage_error(*app_, e, command_word(words)));
   }
-  reject_empty_values(*app_);
+  for_each_value([](const std::string& option, const std::string& value) {
+    if (value.empty())
+      throw InputError(option + ": expected a value, found an empty string; is a shell variable unset?");
+  });
   return std::nullopt;
 }
 

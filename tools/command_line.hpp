@@ -85,6 +85,9 @@ class App {
   void set_version(const std::string& text);
   void footer(const std::string& text);
   bool parsed() const;  ///< the command was given
+  /// Calls visit(option, value) for each value of options and arguments that was given.
+  void for_each_value(
+      const std::function<void(const std::string& option, const std::string& value)>& visit) const;
 
   /// Parses words. Returns the text that --help or --version requests, or nullopt. Throws InputError for a
   /// usage error.

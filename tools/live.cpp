@@ -5,7 +5,6 @@
 #include <cstring>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -205,10 +204,7 @@ class Live {
       throw EnvironmentError(pipe_path_ + ": cannot make a named pipe: " + std::strerror(errno) +
                              "; set TMPDIR");
     fcntl(pipe_, F_SETPIPE_SZ, kPipeBytes);  // rarely makes the program wait; the system may refuse
-    if (!options.record.empty()) {
-      record_.open(options.record, std::ios::binary);
-      if (!record_) throw EnvironmentError(printable_name(options.record) + ": cannot write the file");
-    }
+    if (!options.record.empty()) record_.emplace(options.record);
     serve();
   }
   ~Live() {
@@ -255,7 +251,7 @@ class Live {
       is_over_ = n == 0 && (stream_.has_begun() || has_ended);
       if (n == 0) return;
       const auto bytes = std::span(buffer_).first(static_cast<std::size_t>(n));
-      if (record_.is_open()) record_.write(reinterpret_cast<const char*>(bytes.data()), n);
+      if (record_) record_->write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
       stream_.feed(bytes, [&](capture::Query query) {
         queries_.add(std::move(query), options_.ends_with_program || !is_behind());
       });
@@ -350,8 +346,7 @@ class Live {
       throw InputError(
           name + ": recorded nothing" + (failure.empty() ? "" : " (" + failure + ")") +
           "; compile it with -DLRBCAP_ENABLE, and open the capture with LRBCAP_OPEN(engine, NULL)");
-    if (record_.is_open() && !record_.flush())
-      throw EnvironmentError(printable_name(options_.record) + ": cannot write the file");
+    if (record_) record_->commit();
     if (stream_.descriptions().cut_off)
       note(globals_, {"the capture has no end: the program did not call LRBCAP_CLOSE(), or was ended"});
     const bool failed = !failure.empty() && !stop_.has_arrived();
@@ -372,7 +367,7 @@ class Live {
   const std::string pipe_path_;
   StopSignal stop_;  // before the thread, which must not receive the signals
   int pipe_ = -1, port_ = 0;
-  std::ofstream record_;
+  std::optional<AtomicFile> record_;
   std::vector<std::byte> buffer_ = std::vector<std::byte>(1 << 18);
 
   std::mutex mutex_;  ///< guards the members below, which the server's threads read

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/inputs.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/terminal.hpp"
@@ -92,6 +94,34 @@ void print(const std::string& text) {
 
 namespace {
 
+/// Returns the words of the command line in their usual form: `help COMMAND` and `version` become options,
+/// and - stands for the standard input, but for the words of other programs.
+std::vector<std::string> usual_form(std::vector<std::string> words) {
+  if (words.empty()) return words;
+  if (words[0] == "version") words[0] = "--version";
+  if (words[0] == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  std::replace(words.begin(), std::find(words.begin(), words.end(), "--"), std::string("-"),
+               std::string("/dev/stdin"));
+  return words;
+}
+
+/// Ensures that inputs can be read as often as a command likes, and that outputs do not replace them.
+void prepare_files(const App& app) {
+  static constexpr std::array<std::string_view, 7> kOutputs = {
+      "--output", "--draw", "--draw-separation", "--chart", "--animate", "--junit", "--markdown"};
+  std::vector<std::string> outputs;
+  app.for_each_value([&](const std::string& option, const std::string& value) {
+    if (std::find(kOutputs.begin(), kOutputs.end(), option) != kOutputs.end())
+      return outputs.push_back(value);
+    hold_pipe(value);
+    protect_input(value);
+  });
+  std::for_each(outputs.begin(), outputs.end(), reject_input_as_output);
+}
+
 int parse_and_run(int argc, char** argv) {
   App app(
       "Exact collision detection for pairs of meshes, which can record, draw and explain every step of a "
@@ -102,7 +132,7 @@ int parse_and_run(int argc, char** argv) {
   app.fallthrough();
   app.footer(
       "Exit codes: 0 success, 1 mismatch, 2 usage or input error, 3 missing dependency or resource. See also "
-      "`lrbscope COMMAND --help`.");
+      "`lrbscope help COMMAND`.");
   Globals globals;
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   globals.command_line = shell_line(words);
@@ -114,10 +144,11 @@ int parse_and_run(int argc, char** argv) {
   const std::vector<Command> commands = add_commands(app, globals);
   if (!words.empty() && words[0] == "__complete")
     return print_completions(app, {words.begin() + 1, words.end()});
-  if (const std::optional<std::string> text = app.parse(words)) {
+  if (const std::optional<std::string> text = app.parse(usual_form(words))) {
     print(*text);
     return kOk;
   }
+  prepare_files(app);
   // Before any thread starts. Programs that the command starts share the folder.
   if (!cache.empty()) setenv(bodies::kCacheVariable, cache.c_str(), 1);
   for (const Command& command : commands)

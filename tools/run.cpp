@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 
+#include "engine/core/inputs.hpp"
 #include "scenarios/crowd/crowd_pairs.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
@@ -102,6 +103,7 @@ struct RunCommandOptions {
 
 int run_run(const RunCommandOptions& o, const Globals& globals) {
   spec::Scenario scenario = spec::open_scenario(o.scenario);
+  for (const spec::BodySpec& body : scenario.bodies) protect_input(body.file);
   apply(o.picture, scenario.frames);
   if (o.recursion) scenario.request.recursion = *o.recursion;
   if (o.events) scenario.events = *o.events;

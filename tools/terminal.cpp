@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -12,11 +15,15 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <vector>
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include "engine/platform/platform.hpp"
 #include "tools/commands.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
@@ -238,6 +245,33 @@ void end_as_by_closed_pipe() {
   if (!pipes_end_us) return;
   abandon_atomic_files();
   die_of(SIGPIPE);
+}
+
+void hold_pipe(const std::string& path) {
+  struct stat of_path {};
+  struct stat of_own {};
+  if (stat(path.c_str(), &of_path) != 0 || !S_ISFIFO(of_path.st_mode) || platform::has_name(path.c_str()))
+    return;
+  constexpr int kDescriptors = 1024;
+  int pipe = 0;
+  const auto is_pipe = [&] { return of_own.st_dev == of_path.st_dev && of_own.st_ino == of_path.st_ino; };
+  while (pipe < kDescriptors && !(fstat(pipe, &of_own) == 0 && is_pipe())) ++pipe;
+  if ((fcntl(pipe, F_GETFL) & O_ACCMODE) != O_RDONLY) return;  // none of this process, or to be written to
+  // Copy what it holds to a file without a name, at whose start the descriptor is afterwards.
+  constexpr std::uint64_t kMax = std::uint64_t{4} << 30;  // endless ones must not fill the disk
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> kept(std::tmpfile(), &std::fclose);
+  std::vector<char> buffer(std::size_t{1} << 18);
+  std::uint64_t total = 0;
+  bool is_kept = kept != nullptr;
+  for (ssize_t n; is_kept && (n = read(pipe, buffer.data(), buffer.size())) > 0;) {
+    const auto size = static_cast<std::size_t>(n);
+    errno = EFBIG;
+    is_kept = (total += size) <= kMax && std::fwrite(buffer.data(), 1, size, kept.get()) == size;
+  }
+  if (!is_kept || std::fflush(kept.get()) != 0 || lseek(fileno(kept.get()), 0, SEEK_SET) != 0 ||
+      dup2(fileno(kept.get()), pipe) < 0)
+    throw EnvironmentError(printable_name(path) + ": cannot keep the contents of the pipe (" +
+                           std::strerror(errno) + "); write them to a file, and name it instead");
 }
 
 }  // namespace lrb::cli

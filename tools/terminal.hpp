@@ -1,5 +1,5 @@
 #pragma once
-/// Orderly termination of the program, and its progress.
+/// Orderly termination of the program, its progress, and the pipes that it reads.
 
 #include <chrono>
 #include <cstdint>
@@ -74,5 +74,9 @@ void end_cleanly_on_terminate();
 /// Ends the program silently, as SIGPIPE does, because the reader of its stdout has closed it. Returns if the
 /// caller had that signal ignored.
 void end_as_by_closed_pipe();
+
+/// Replaces an anonymous pipe that this process reads, such as /dev/stdin or that of <(...), by its contents,
+/// so that it can be read repeatedly. Leaves other paths alone. Throws EnvironmentError if there is no room.
+void hold_pipe(const std::string& path);
 
 }  // namespace lrb::cli

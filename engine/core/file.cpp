@@ -12,7 +12,9 @@
 #include <memory>
 #include <mutex>
 #include <set>
+#include <vector>
 
+#include "engine/core/inputs.hpp"
 #include "engine/platform/platform.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
@@ -169,8 +171,31 @@ int create_temporary(const std::string& name) {
 
 }  // namespace
 
+namespace {
+
+std::vector<std::filesystem::path>& inputs() {
+  static auto* const all = new std::vector<std::filesystem::path>;
+  return *all;
+}
+
+}  // namespace
+
+void protect_input(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) inputs().push_back(std::filesystem::absolute(path));
+}
+
+void reject_input_as_output(const std::string& path) {
+  std::error_code ignored;  // also that one of the files does not exist: then they differ
+  for (const std::filesystem::path& input : inputs())
+    if (std::filesystem::equivalent(path, input, ignored))
+      throw InputError(printable_name(path) +
+                       ": expected another file than an input, which the output would replace");
+}
+
 AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(behind_links(path)) {
   namespace fs = std::filesystem;
+  reject_input_as_output(path);
   std::error_code ignored;
   const fs::file_status status = fs::status(target_, ignored);
   const bool exists = fs::exists(status);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
+#include "engine/core/inputs.hpp"
 #include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/engine_run.hpp"
@@ -117,6 +118,8 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
                      const std::string& command, const ProgressReport& progress, bool live) {
   const RecordedRun recorded = recorded_run_of(scenario, recording);
   check(scenario, recorded);
+  for (const char* name : {"a.lrb", "b.lrb", "trace.json", "summary.json", "index.html"})
+    reject_input_as_output(folder + "/" + name);  // before anything is written
   const report::Folder locked(folder);
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + recording.trace.header.lrbscope},
