@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "scenarios/frames/animation.hpp"
+#include "scenarios/frames/frames.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/poses.hpp"
 #include <lrbscope/trace/record_fields.hpp>
@@ -198,6 +199,7 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
   if (options.colour_by) spec.colour_by = *options.colour_by;
   if (options.colour_per) spec.colour_per = *options.colour_per;
   if (options.node_boxes) spec.node_boxes = options.node_boxes;
+  run::check_frame_size(spec);
   apply(options.camera, spec.views);
 }
 

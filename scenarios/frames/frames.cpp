@@ -201,13 +201,15 @@ void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec) {
 }
 
 void check_frame_size(const render::Look& spec) {
-  constexpr int kMax = 8192;
+  // Pictures are drawn in twice the width and height, in buffers that Mesa limits to less than 2 GiB.
+  constexpr int kMax = 8192, kMaxPixels = 48'000'000;
   render::Look in_file = spec;
   to_pixels(in_file);
-  if (in_file.width > kMax || in_file.height > kMax)
-    throw InputError("frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
-                     " would have " + std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
-                     " pixels at this dpi, more than 8192 per side; lower --dpi or --size");
+  if (in_file.width > kMax || in_file.height > kMax || in_file.width * in_file.height > kMaxPixels)
+    throw InputError(
+        "frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " would have " +
+        std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
+        " pixels at this dpi, more than 8192 per side or 48,000,000 in all; lower --dpi or --size");
 }
 
 namespace {
