@@ -77,6 +77,15 @@ void read_value(const TraceNode& node, Separation& s) {
   }
 }
 
+/// Reads a reason, also in the words of earlier versions.
+ClashReason read_reason(const TraceNode& node) {
+  const std::string word = node.string();
+  if (word == "a face that meets the other body has no area in the world") return ClashReason::flat_face;
+  if (word == "faces coincide, and no point beside them is proved to be inside both")  // language: keep
+    return ClashReason::faces_coincide;
+  return node.named<ClashReason>();
+}
+
 /// Reads the members of a record.
 class MemberReader {
  public:
@@ -123,7 +132,9 @@ class MemberReader {
  private:
   template <class T>
   static void read(const TraceNode& node, T& value, Values values) {
-    if constexpr (std::is_enum_v<T>) {
+    if constexpr (std::is_same_v<T, ClashReason>) {
+      value = read_reason(node);
+    } else if constexpr (std::is_enum_v<T>) {
       value = node.named<T>();
     } else if constexpr (std::is_same_v<T, bool>) {
       value = node.boolean();
