@@ -72,8 +72,9 @@ std::string header(const Model& model, bool short_lists) {
   out += "element face " + std::to_string(count(model, Shape::polygons)) + "\nproperty list " +
          (short_lists ? "uchar" : "int") + " int vertex_indices\n" + attribute_lines(model);
   if (const std::size_t edges = count(model, Shape::lines); edges > 0)
+    // trimesh takes every property of an edge for a vertex, so the others are in an element of their own.
     out += "element edge " + std::to_string(edges) + "\nproperty int vertex1\nproperty int vertex2\n" +
-           attribute_lines(model);
+           "element edge_value " + std::to_string(edges) + "\n" + attribute_lines(model);
   return out + "end_header\n";
 }
 
@@ -104,6 +105,7 @@ std::string ply_bytes(const Model& model) {
       append_colour(out, colours[v]);
     }
   }
+  std::string line_values;
   for (const Shape shape : {Shape::polygons, Shape::lines}) {
     std::int32_t first = 0;
     for (const Part& part : model.parts) {
@@ -122,13 +124,13 @@ std::string ply_bytes(const Model& model) {
         for (std::size_t i = 0; i + 1 < cell.size(); ++i) {
           corner(i);
           corner(i + 1);
-          write_attributes(out, model, part, c, quality);
+          write_attributes(line_values, model, part, c, quality);
         }
       }
       first += static_cast<std::int32_t>(part.vertices.size());
     }
   }
-  return out;
+  return out + line_values;
 }
 
 }  // namespace lrb::exchange

@@ -250,8 +250,9 @@ TEST_CASE("2D bodies are exported as lines") {
   REQUIRE(!r.model.parts.empty());
   for (const Part& part : r.model.parts) CHECK(part.shape == Shape::lines);
   const std::string ply = ply_bytes(r.model);
-  CHECK(ply.find("element edge " + std::to_string(r.model.parts[0].cell_count()) + "\n") !=
-        std::string::npos);
+  const std::string lines = std::to_string(r.model.parts[0].cell_count()) + "\n";
+  CHECK(ply.find("element edge " + lines + "property int vertex1\nproperty int vertex2\nelement edge_value " +
+                 lines) != std::string::npos);  // trimesh reads no other properties
   CHECK(ply.find("element face 0\n") != std::string::npos);
 }
 
