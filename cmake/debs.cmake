@@ -1,7 +1,7 @@
-# Debian packages: `cmake --build --preset release --target package`, or `cd build/release && cpack`, writes them to
-# build/release/debs. One package per installed component:
+# Debian packages: `cd build/release && cpack` writes them to build/release/debs. Configure with -DCMAKE_INSTALL_PREFIX=/usr, as ./check
+# debs does, so that libraries are in Debian's folder for the processor. One package per installed component:
 #   program   lrbscope           the program, its manual pages and completions
-#   library   liblrbscopeN       the shared library, if it is built (install(... COMPONENT library); N: its soname's version)
+#   library   liblrbscopeX.Y     the shared libraries, if they are built (install(... COMPONENT library); X.Y: the sonames' version)
 #   dev       liblrbscope-dev    headers, the static library, CMake's and pkg-config's files: all files without a component
 #   python    python3-lrbscope   the Python module, if it is built (install(... COMPONENT python))
 # dpkg-shlibdeps finds the dependencies on shared libraries.
@@ -58,7 +58,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "${lrb_draws}")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "${lrb_about}This package contains the headers and the library for find_package(lrbscope).")
 
 if(library IN_LIST CPACK_COMPONENTS_ALL)
-  set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME liblrbscope${PROJECT_VERSION_MAJOR})
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME liblrbscope${lrb_soversion})
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "${lrb_draws}")
   set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${lrb_about}This package contains the shared library.")

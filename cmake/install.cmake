@@ -104,7 +104,8 @@ if(BUILD_SHARED_LIBS)
   set(LRB_STATIC OFF)
 endif()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/lrbscopeConfig.cmake.in
-                              ${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfig.cmake INSTALL_DESTINATION ${LRB_CMAKE_DIR})
+                              ${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfig.cmake INSTALL_DESTINATION ${LRB_CMAKE_DIR}
+                              PATH_VARS CMAKE_INSTALL_INCLUDEDIR)
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/lrbscopeConfigVersion.cmake
         DESTINATION ${LRB_CMAKE_DIR})

@@ -61,7 +61,7 @@ part_wheel() {
 }
 part_debs() {
   ./check debs >"$work/debs.log" 2>&1 || { tail -n 40 "$work/debs.log" >&2 && return 1; }
-  cp build/release/debs/*.deb "$out/"
+  cp build/debs-shared-OFF/debs/*.deb "$out/"
 }
 part_site() {
   ! command -v doxygen >/dev/null || ./check api >"$work/api.log" 2>&1 || { tail -n 20 "$work/api.log" >&2 && return 1; }

@@ -223,7 +223,7 @@ step_user() {
 # Installs the packages of the clone in a new root.
 step_debs() {
   inside ./check debs
-  local made=$root$home/build/release/debs root=$work/fresh home=/root
+  local made=$root$home/build/debs-shared-OFF/debs root=$work/fresh home=/root
   make_root "$root" && mount_parts "$root"
   cp "$made"/*.deb "$root/root/"
   inside bash -c 'apt-get update -q && apt-get install -y -q --no-install-recommends ./lrbscope_*.deb'

@@ -43,6 +43,12 @@ else()
   run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}")
   run("${prefix}/bin/lrbscope" --version)
   run(cc -std=c99 -fsyntax-only -x c "${prefix}/include/lrbscope_capture.h")
+  # The header for other engines is found without the libraries that the engine needs.
+  file(WRITE "${place}/capture/CMakeLists.txt" "cmake_minimum_required(VERSION 3.22)\nproject(c LANGUAGES C)\n\
+find_package(lrbscope REQUIRED COMPONENTS capture)\nadd_library(c c.c)\ntarget_link_libraries(c lrb::capture)\n")
+  file(WRITE "${place}/capture/c.c" "#include <lrbscope_capture.h>\n")
+  run(${CMAKE_COMMAND} -S "${place}/capture" -B "${place}/capture" "-DCMAKE_PREFIX_PATH=${prefix}" -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON)
+  run(${CMAKE_COMMAND} --build "${place}/capture")
   set(more -DLRB_WITH_PROGRAM=ON)
 endif()
 
