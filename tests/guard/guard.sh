@@ -3,7 +3,7 @@
 # that add work, independently of the load of the machine. Counts depend on the compiler, its flags and AVX2;
 # guard.txt has separate lines for each combination.
 #   tests/guard/guard.sh [BUILD] [--tolerance PERCENT] [--approve]      BUILD: a build folder [build/release]
-# Exit codes: 0 within the tolerance (or approved), 1 more instructions than it allows, 2 bad usage, 3 cannot count.
+# Exit codes: 0 within the tolerance (or approved), 1 more, or no approved count, 2 bad usage, 3 cannot count.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 known=$here/guard.txt
@@ -43,15 +43,17 @@ if [ -n "$approve" ]; then
   echo "guard: approved for $key"
   exit 0
 fi
-awk -v tolerance="$tolerance" '
+awk -v tolerance="$tolerance" -v compiler="$key" '
   FNR == NR { known[$1 " " $2] = $3; next }
   { key = $1 " " $2
     counted[$2] = $3
-    if (!(key in known)) { printf "%-18s %12d  no count for %s: use --approve\n", $2, $3, $1; next }
+    if (!(key in known)) { printf "%-18s %12d  NO approved count for %s: use --approve\n", $2, $3, $1; bad = 1; next }
     change = 100 * ($3 / known[key] - 1)
     printf("%-18s %12d  %+.2f %%%s\n", $2, $3, change, (change > tolerance ? "  MORE than " tolerance " %" : ""))
     if (change > tolerance) bad = 1 }
   END {
+    for (k in known)
+      if (index(k, compiler " ") == 1 && !(substr(k, length(compiler) + 2) in counted)) { print k ": NOT counted: use --approve"; bad = 1 }
     if (counted["shallow"] > 0) {
       cost = 100 * (counted["shallow_watched"] / counted["shallow"] - 1)
       printf("overhead of events without a recorder: %+.2f %%, at most 1 %%%s\n", cost, (cost > 1 ? ": MORE" : ""))

@@ -134,7 +134,7 @@ def read_with_vtk(vtp_file, ply_file, glb_file, vtp):
         from vtkmodules.vtkIOPLY import vtkPLYReader
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
     except ImportError:
-        print("VTK is missing (Debian's python3-vtk9): skipped")
+        print("skipped: VTK is not installed (Debian's python3-vtk9)")
         return
 
     def read(reader, path):
