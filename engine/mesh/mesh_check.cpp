@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/nesting.hpp"
@@ -177,6 +178,46 @@ void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshRep
   }
 }
 
+/// Notes the pairs of faces that intersect, and calls found(f) for each of these faces. Thousands of copies
+/// of a triangle have millions of pairs: only the first of them is compared with other faces, and the pairs
+/// of the others are counted.
+template <class Found>
+void note_intersections(const Mesh& mesh, std::vector<FaceUse> use, MeshReport& report, const Found& found) {
+  std::unordered_map<FaceId, std::vector<FaceId>> copies_of;  // ascending, with the first one
+  if (report[MeshFault::duplicate_face].count > 0) {
+    const CornerSets sets(mesh, use);
+    const auto& order = sets.order();
+    for (std::size_t first = 0, i = 1; i < order.size(); ++i) {
+      if (!sets.same(order[first], order[i])) {
+        first = i;
+      } else if (use[order[i]] >= FaceUse::area && mesh.face(order[i]).size() <= 3) {
+        copies_of.try_emplace(order[first], 1, order[first]).first->second.push_back(order[i]);
+        use[order[i]] = FaceUse::nothing;
+      }
+    }
+  }
+  std::uint64_t& count = report.findings[static_cast<std::size_t>(MeshFault::self_intersection)].count;
+  // The pairs of two sets of copies, or within one. The first pairs, which are kept, are among the first
+  // copies.
+  const auto add = [&](std::span<const FaceId> x, std::span<const FaceId> y, bool within) {
+    const std::size_t m = std::min(x.size(), report.kept + 1), n = std::min(y.size(), report.kept + 1);
+    for (std::size_t i = 0; i < m; ++i)
+      for (std::size_t j = within ? i + 1 : 0; j < n; ++j)
+        note(report, MeshFault::self_intersection, std::min(x[i], y[j]), std::max(x[i], y[j]));
+    count += within ? x.size() * (x.size() - 1) / 2 - m * (m - 1) / 2 : x.size() * y.size() - m * n;
+    for (const FaceId f : x) found(f);
+    for (const FaceId f : y) found(f);
+  };
+  const auto all_of = [&](const FaceId& f) {
+    const auto copies = copies_of.find(f);
+    return copies == copies_of.end() ? std::span(&f, 1) : std::span<const FaceId>(copies->second);
+  };
+  for (const auto& [first, copies] : copies_of) add(copies, copies, true);
+  find_self_intersections(mesh, use, [&](FaceId f, FaceId g) { add(all_of(f), all_of(g), false); });
+  sort_elements(report);
+  report.self_intersections_checked = true;
+}
+
 void check_vertices(const Mesh& mesh, MeshReport& report) {
   // Unused vertices. Those merged into others are not reported.
   std::vector<bool> used(mesh.vertices.size());
@@ -216,12 +257,7 @@ std::uint32_t CheckedMesh::turn_outward() {
 void CheckedMesh::find_self_intersections() {
   if (meeting_) return;
   std::vector<bool> meets(mesh_.face_count(), false);
-  lrb::find_self_intersections(mesh_, found_.use, [&](FaceId f, FaceId g) {
-    note(found_.report, MeshFault::self_intersection, f, g);
-    meets[f] = meets[g] = true;
-  });
-  sort_elements(found_.report);
-  found_.report.self_intersections_checked = true;
+  note_intersections(mesh_, found_.use, found_.report, [&](FaceId f) { meets[f] = true; });
   meeting_.emplace();
   for (FaceId f = 0; f < meets.size(); ++f)
     if (meets[f]) meeting_->push_back(f);
@@ -340,12 +376,7 @@ MeshFindings examine(const Mesh& mesh, std::size_t kept) {
 
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections) {
   MeshFindings found = examine(mesh);
-  if (self_intersections) {
-    find_self_intersections(
-        mesh, found.use, [&](FaceId f, FaceId g) { note(found.report, MeshFault::self_intersection, f, g); });
-    sort_elements(found.report);
-    found.report.self_intersections_checked = true;
-  }
+  if (self_intersections) note_intersections(mesh, found.use, found.report, [](FaceId) {});
   return std::move(found.report);
 }
 

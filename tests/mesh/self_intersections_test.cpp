@@ -206,6 +206,24 @@ TEST_CASE("self-intersections agree with an oracle over all pairs") {
   }
 }
 
+TEST_CASE("copies of triangles are counted with all their pairs, in time that grows with the faces") {
+  Mesh m = random_soup(2, 12, 3);
+  const auto copy = [&](std::size_t f) {
+    const std::vector<VertexId> corners(m.face(FaceId(f)).begin(), m.face(FaceId(f)).end());
+    m.add_face(corners);
+  };
+  for (std::size_t i = 0; i < 60; ++i) copy(i % 5);
+  const std::vector<SelfIntersection> all = self_intersections(check(m), 1).pairs;
+  const MeshFinding found = check_mesh(m)[MeshFault::self_intersection];
+  CHECK(found.count == all.size());
+  REQUIRE(found.first.size() == MeshFinding::kShown);
+  for (std::size_t i = 0; i < found.first.size(); ++i)
+    CHECK(found.first[i] == std::array<std::uint32_t, 2>{all[i].a, all[i].b});
+  constexpr std::uint64_t kCopies = 300'000;
+  for (std::uint64_t i = 0; i < kCopies; ++i) copy(0);
+  CHECK(check_mesh(m)[MeshFault::self_intersection].count > kCopies * (kCopies - 1) / 2);
+}
+
 TEST_CASE("self-intersections of polygons are counted by face") {
   const Mesh cubes = several({quad_box(), translated(quad_box(), {0.5, 0.5, 0.5})});
   CHECK(check_mesh(cubes)[MeshFault::self_intersection].count ==
