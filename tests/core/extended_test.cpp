@@ -81,6 +81,8 @@ TEST_CASE("software computes what x87 computes, with signed zeros and numbers be
     REQUIRE(same(sqrt(abs(a.soft)), std::sqrt(std::abs(a.hard))));
     REQUIRE((a.soft < b.soft) == (a.hard < b.hard));
   }
+  // A tie but for the last bit, which is shifted out.
+  CHECK(same(SoftExtended(1) + (SoftExtended(0x1p-64) + SoftExtended(0x1p-127)), 1 + (0x1p-64L + 0x1p-127L)));
   for (const double x : {0.0, -0.0, 1.0, -2.0, 0x1p-1074, -0x1.8p-1073})
     for (const double y : {0.0, -0.0, 1.0, -2.0, 0x1p-1074, -0x1.8p-1073}) {
       const long double hard = x;

@@ -55,6 +55,7 @@ TEST_CASE("invalid poses are rejected with a reason") {
         "pose: expected a matrix of 3 x 4 or 4 x 4, found 3 x 3");
   CHECK(poses_of_rows(rows, 3).error().reason ==
         "3 poses: expected 12 numbers (3 x 4) or 16 (4 x 4) for each, row by row, found 32 in all");
+  CHECK(!poses_of_rows(std::vector<double>(37), 3));  // 12 for each, and one more
   CHECK(!poses_of_rows({}, 2));
   CHECK(!poses_of_rows(rows, 0));
   rows[31] = 2;

@@ -206,6 +206,13 @@ TEST_CASE("two nested loops in one plane are closed by the ring between them") {
     CHECK(report.genus == holes);
     CHECK(volume(out.mesh) == doctest::Approx(3 * (2 * holes + 1) - holes));
   }
+  // Loops in loops: each is joined to the smallest around it.
+  const ClosedHoles rings = close(without(
+      voxels(7, 7, 1, [](int x, int y, int) { return std::max(std::abs(x - 3), std::abs(y - 3)) % 2 == 1; }),
+      [](const Point3& x) { return x.z() == 1; }));
+  REQUIRE(rings.holes.size() == 4);
+  for (const Hole& hole : rings.holes) CHECK(hole.state == HoleState::closed_as_ring);
+  CHECK(volume(rings.mesh) == doctest::Approx(24 + 8));
   // One pot in another: the inner one can be closed, the outer one's lid would lie on it.
   const ClosedHoles pots = close(several({open_box({0, 0, 0}, {3, 3, 1}), open_box({1, 1, 0.5}, {2, 2, 1})}));
   CHECK(pots.holes[0].state == HoleState::meets_surface);

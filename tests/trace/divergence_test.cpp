@@ -63,6 +63,22 @@ TEST_CASE("the first divergent event is reported, with the field and both values
                             std::to_string(y.events[refine].a));
 }
 
+TEST_CASE("the last event of a step, and the vertices of a patch in a later one, are compared") {
+  const Trace x = diverging_run();
+  Trace y = x, z = x;
+  const EventId next = x.steps[1].first_event;
+  y.events[next - 1].cause ^= 1;
+  CHECK(first_divergence(x, y)->event == next - 1);
+  for (Trace* t : {&y, &z}) {
+    *t = x;
+    t->events[next].kind = EventKind::patch;
+    t->events[next].depth_a = 1;
+    t->events[next].boundary = 0;
+    t->patch_vertices.assign(1, VertexId(t == &y ? 5 : 6));
+  }
+  CHECK(difference(y, z).ends_with("vertices: expected 5, found 6"));
+}
+
 TEST_CASE("metadata of events is compared") {
   const Trace x = diverging_run();
   Trace y = x;
