@@ -403,13 +403,18 @@ class HoleCloser {
 
   /// Returns an attempt for each planar hole that contains planar holes of opposite orientation.
   std::vector<Attempt> rings() const {
-    // Assign each hole to the smallest one around it.
+    // Assign each hole to the smallest one around it. Of holes in holes, every second one is outside a ring.
     std::vector<std::vector<std::size_t>> inner(rims_.size());
+    std::vector<std::optional<std::size_t>> homes;
     for (std::size_t i = 0; i < rims_.size(); ++i)
-      if (const auto home = home_of(i)) inner[*home].push_back(i);
+      if (const auto home = homes.emplace_back(home_of(i))) inner[*home].push_back(i);
+    std::vector<bool> is_inner(rims_.size(), false);
+    for (std::size_t i = 0; i < rims_.size(); ++i)
+      for (auto [up, n] = std::pair(homes[i], std::size_t{0}); up && n < rims_.size(); up = homes[*up], ++n)
+        is_inner[i] = !is_inner[i];
     std::vector<Attempt> out;
     for (std::size_t i = 0; i < rims_.size(); ++i) {
-      if (inner[i].empty()) continue;
+      if (inner[i].empty() || is_inner[i]) continue;
       std::vector<std::vector<VertexId>> holes;
       for (const std::size_t k : inner[i]) holes.push_back(rims_[k]);
       // Connect the inner loops to the outer one by bridges. The result is one polygon that may visit
