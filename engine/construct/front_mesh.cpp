@@ -182,16 +182,4 @@ std::vector<FrontMesh::Slot> FrontMesh::alive_slots() const {
   return slots;
 }
 
-double FrontMesh::volume_sixfold(std::span<const Slot> slots) const {
-  if (slots.empty()) return 0;
-  // Divergence theorem, relative to a vertex to limit cancellation.
-  const Eigen::Vector3d origin = x(triangles_[slots[0]].v[0]);
-  double sum = 0;
-  for (const Slot s : slots) {
-    const auto& v = triangles_[s].v;
-    sum += dot3(x(v[0]) - origin, (x(v[1]) - origin).cross(x(v[2]) - origin));
-  }
-  return sum;
-}
-
 }  // namespace lrb::construct

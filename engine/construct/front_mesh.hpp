@@ -101,8 +101,6 @@ class FrontMesh {
   void set_component(Slot s, std::uint32_t component) { triangles_[s].component = component; }
 
   std::vector<Slot> alive_slots() const;
-  /// Returns six times the volume enclosed by a closed set of triangles.
-  double volume_sixfold(std::span<const Slot> slots) const;
 
  private:
   void add_faces(const Mesh& mesh);

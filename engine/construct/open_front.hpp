@@ -128,7 +128,6 @@ class OpenFront {
   /// Adds a face that a collapse would remove.
   void unite(Index f, float limit, Union& with) const;
   Index leader(Index component) const;
-  std::uint32_t floor_size(Index component) const { return components_[component].size; }
   const std::vector<Index>& floor(Index component) const { return components_[component].floor; }
   bool is_careful(Index component) const { return components_[component].careful; }
   Index component_count() const { return static_cast<Index>(components_.size()); }

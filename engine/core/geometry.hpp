@@ -21,9 +21,6 @@ double cross_2d(const A& a, const B& b) {
 inline double dot3(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
-inline double dot2(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a[0] * b[0] + a[1] * b[1];
-}
 inline double squared_norm3(const Eigen::Vector3d& a) {
   return dot3(a, a);
 }

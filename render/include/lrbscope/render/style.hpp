@@ -84,7 +84,6 @@ inline constexpr Rgba kPaleBack{178, 170, 160};
 inline constexpr Rgba kContact{196, 18, 48};
 inline constexpr Rgba kWrong{255, 0, 0};  ///< errors of another engine: brighter than contacts
 inline constexpr Rgba kRefining = kGreen;
-inline constexpr Rgba kRefining2d = mix(kGreen, kWhite, 0.4);  ///< as a fill, under lines
 inline constexpr Rgba kUnderTest = kYellow;
 
 /// The colour that edges and solids are mixed towards from their body's colour, and the mixing shares.
