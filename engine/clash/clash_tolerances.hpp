@@ -19,7 +19,7 @@ inline constexpr double kConvexMargin = 0x1p-48;
 inline constexpr unsigned kMaxSplits = 6;
 /// Shares by which convex sets are shrunk until they are proven to be inside a body. Larger: looser lower
 /// bounds on depths.
-inline constexpr double kShrinks[] = {0x1p-42, 0x1p-36, 0x1p-28, 0x1p-18};
+inline constexpr double kShrinks[] = {0x1p-42, 0x1p-36, 0x1p-32, 0x1p-28, 0x1p-24, 0x1p-21, 0x1p-18};
 /// A triangle whose doubled area is less than kSliver times its longest edge's square is no evidence against
 /// convexity; neither is a corner less than kHollow in front of a face. Convexity is proven separately, so
 /// these only save work.
@@ -49,8 +49,10 @@ inline constexpr unsigned kRoughDepthSteps = 100;
 inline constexpr double kDifferenceRounding = 0x1p-50;
 /// kSeparationMargin is added to a translation before it is proven to separate two bodies, times 8 after each
 /// failure, up to kMaxSeparationMargin. It is also the resolution of the bisection for a separating
-/// translation. Smaller: proofs fail because of rounding.
+/// translation. Both are smaller if one body is smaller than kSmallBody, in proportion. Smaller: proofs fail
+/// because of rounding.
 inline constexpr double kSeparationMargin = 0x1p-42, kMaxSeparationMargin = 0x1p-6;
+inline constexpr double kSmallBody = 0x1p-4;
 /// Largest world coordinate for which translations are tried: beyond it they could overflow.
 inline constexpr double kLargestMoved = 0x1p1020;
 

@@ -77,6 +77,7 @@ class SeparationSearch {
   const Pose &pose_a_, &pose_b_;
   const UnitFrame& frame_;
   double reach_ = 0;               ///< the largest world coordinate of B
+  double margin_;                  ///< kSeparationMargin, for the sizes of the bodies
   std::uint64_t query_count_ = 0;  ///< number of queries
   QueryContext query_;
   DistanceContext distance_;
@@ -89,6 +90,13 @@ SeparationSearch::SeparationSearch(const LrbRep& a, const Pose& pose_a, const Lr
   for (FaceId f = 0; f < b.real_face_count(); ++f)
     for (const VertexId v : b.face(f))
       reach_ = std::max(reach_, pose_b.apply(b.vertices()[v]).cwiseAbs().maxCoeff());
+  double smaller = kSmallBody;
+  for (const UnitBody& body : bodies.body) {
+    Eigen::AlignedBox3d box;
+    for (const Vector3d& x : body.points) box.extend(x);
+    smaller = std::min(smaller, box.sizes().maxCoeff());
+  }
+  margin_ = kSeparationMargin * (smaller / kSmallBody);
 }
 
 SeparationSearch::Moved SeparationSearch::moved(const Vector3d& n, double s) const {
@@ -134,7 +142,7 @@ std::optional<SeparatingTranslation> SeparationSearch::prove(const Vector3d& n, 
   // Rounding of world coordinates, in units.
   const double rounding = std::ldexp(0x1p-50 * (reach_ + frame_.length_to_world(s)), -frame_.exponent);
   // Add a margin that grows by a factor of 8 until the proof succeeds.
-  for (double more = kSeparationMargin + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
+  for (double more = margin_ + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
     const Moved m = moved(n, s + more);
     if (is_proved(m, 0)) return SeparatingTranslation{m.by, stable_norm3(m.by) * (1 + 0x1p-50)};
   }
@@ -144,7 +152,7 @@ std::optional<SeparatingTranslation> SeparationSearch::prove(const Vector3d& n, 
 std::optional<double> SeparationSearch::prove_along(const Vector3d& n, double s) {
   // As in prove(), but the direction must be n itself.
   const double rounding = std::ldexp(0x1p-50 * (reach_ + frame_.length_to_world(s)), -frame_.exponent);
-  for (double more = kSeparationMargin + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
+  for (double more = margin_ + 2 * rounding; more < kMaxSeparationMargin; more *= 8) {
     const Moved m = moved(n, s + more);
     Vector3d wanted;
     for (int k = 0; k < 3; ++k) wanted[k] = frame_.length_to_world((s + more) * n[k]);
@@ -167,7 +175,7 @@ double SeparationSearch::least_separation(const Vector3d& n, double most, int sa
     met = s;
   }
   // Bisection between the last colliding and the first separating sample.
-  while (apart - met > kSeparationMargin) {
+  while (apart - met > margin_) {
     const double midpoint = 0.5 * (met + apart);
     // No double lies between the two.
     if (!(midpoint > met && midpoint < apart)) break;

@@ -16,13 +16,22 @@
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/pair_distance.hpp"
 #include "engine/tree/kernel_setup.hpp"
+#include <lrbscope/world_box.hpp>
 
 namespace lrb {
 namespace {
 
+/// Returns a length of at most the body's diameter in the world.
 double world_radius(const QueryBody& body) {
   const ObbTree& tree = body.tree();
-  return static_cast<double>(tree.nodes()[0].radius) * tree.unit() * stretch(body.world.pose());
+  const Pose& pose = body.world.pose();
+  const double most = stretch(pose),
+               radius = static_cast<double>(tree.nodes()[0].radius) * tree.unit() * most;
+  // The body touches all sides of its root box. If the map stretches every direction by at least 0.9 of the
+  // most, the radius is at most the diameter; else the body may have little extent in the stretched one.
+  constexpr double kNearlyEven = 0.9;
+  if (std::abs((pose.r / most).determinant()) >= kNearlyEven) return radius;
+  return std::min(radius, 0.5 * stable_norm3(world_box(body.rep(), pose).sizes()));
 }
 
 }  // namespace

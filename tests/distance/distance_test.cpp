@@ -109,7 +109,7 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
   REQUIRE(oracle::square(d.lower) <= sq);
   REQUIRE(oracle::square(d.upper) >= sq);
   REQUIRE(d.lower > 0);
-  REQUIRE(d.upper - d.lower <= std::max(1e-12 * std::max(size, d.upper), 0x1p-1074));
+  REQUIRE(d.upper - d.lower <= std::max({1e-12 * size, 0x1p-50 * d.upper, 0x1p-1074}));
   REQUIRE(std::abs((d.witness[0].point - d.witness[1].point).norm() - d.upper) <= rounding + 1e-9 * size);
   // Whether they are within the ends of the interval, and beside them.
   for (const double most : {d.lower, d.upper, 0.5 * d.lower, 2 * d.upper}) {
@@ -192,6 +192,13 @@ TEST_CASE("the interval contains the rational distance for affine maps") {
       if (dim == 2) pose_b.t.z() = 0;
       check(dim == 2 ? flat_a : a, pose_a, dim == 2 ? flat_b : b, pose_b, t);
     }
+  // A sheet under a map that stretches only what has no extent, far from a body.
+  const LrbRep sheet = test::open_body(test::sheet(3));
+  for (int i = 0; i < 8; ++i) {
+    Pose pose{shapes::random_rotation(random), 1e4 * shapes::random_direction(random)};
+    pose.r.col(2) *= std::pow(10, i);
+    check(i % 2 == 0 ? a : sheet, Pose{}, sheet, pose, t);
+  }
   CHECK(t.meet > 4);
   CHECK(t.apart > 10);
 }

@@ -140,18 +140,24 @@ TEST_CASE("flaps without thickness are no interior") {
   CHECK(r.depth->lower > 0.7);
 }
 
-TEST_CASE("the volume of an overlap is as precise as the overlap is large") {
-  // 1 cm in a block of 20 km; a column 8 um deep in a slab of 200 m.
-  const auto check = [](const Mesh& a, const Mesh& b, double volume) {
+TEST_CASE("volume and depth of an overlap are as precise as the overlap is large") {
+  // 1 cm in a block of 20 km: partly, entirely, and by 8 um; a column 8 um deep in a slab of 200 m.
+  const auto check = [](const Mesh& a, double size, const Mesh& b, double depth, double volume) {
     for (const bool swapped : {false, true}) {
-      const ClashResult r = clash(closed(swapped ? b : a), Pose{}, closed(swapped ? a : b), Pose{});
+      const LrbRep small = closed(b);
+      const ClashResult r = clash(swapped ? small : closed(a), Pose{}, swapped ? closed(a) : small, Pose{});
       check_interval(r.volume->lower, r.volume->upper, volume, 0.01);
+      check_interval(r.depth->lower, r.depth->upper, depth, 0.01);
+      CHECK(r.depth->upper - r.depth->lower <= 1e-12 * size);
     }
   };
-  constexpr double kDeep = 0x1p-17;
-  check(box({-1e4, -1e4, -1e4}, {1e4, 1e4, 1e4}),
-        box({9999.99609375, 3, 5}, {10000.00390625, 3.0078125, 5.0078125}), 0x1p-22);
-  check(box({-100, -100, -0.5}, {100, 100, 0}), box({3, 5, -kDeep}, {3.25, 5.5, 2}), 0.125 * kDeep);
+  constexpr double kDeep = 0x1p-17, kEdge = 0x1p-7;
+  const Mesh block = box({-1e4, -1e4, -1e4}, {1e4, 1e4, 1e4});
+  for (const double inside : {kEdge / 2, kDeep, 1.0})
+    check(block, 2e4, box({1e4 - inside, 3, 5}, {1e4 - inside + kEdge, 3 + kEdge, 5 + kEdge}), inside,
+          std::min(inside, kEdge) * kEdge * kEdge);
+  check(box({-100, -100, -0.5}, {100, 100, 0}), 200, box({3, 5, -kDeep}, {3.25, 5.5, 2}), kDeep,
+        0.125 * kDeep);
 }
 
 TEST_CASE("near pairs of subnormal bodies, and of small parts of large ones") {
