@@ -77,6 +77,8 @@ class ManifoldMaker {
     const std::vector<Region> regions = merged(connected());
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
       enter(regions[r].pairs);
+      region_meets_ = std::any_of(regions[r].pairs.begin(), regions[r].pairs.end(),
+                                  [&](std::uint32_t i) { return meets(i); });
       const std::vector<std::vector<std::uint32_t>> groups = divided(regions[r].pairs);
       for (std::size_t g = 0; g < groups.size(); ++g)
         add_manifold(r, groups[g], normals_[g], regions[r].enclosed);
@@ -446,7 +448,10 @@ class ManifoldMaker {
         if (dim_ == 2) point.point[side].z() = 0;
         point.on[side] = c.on[side];
       }
-      point.depth = c.depth * unit_ + 0.0;
+      // Where no pair intersects, a depth above 0 is rounding.
+      point.depth = (region_meets_ ? c.depth : std::min(c.depth, 0.0)) * unit_ + 0.0;
+      // Pairs that intersect may be in another manifold of the region.
+      out.intersects = out.intersects || point.depth > 0;
       out.points.push_back(point);
     }
     if (out.points.empty()) add_closest(out);
@@ -469,7 +474,7 @@ class ManifoldMaker {
         overlay_corners(patch[0], patch[1], dim_, normal, -margin_ / unit_ - kDepthRounding * size);
     for (ManifoldCandidate& c : candidates) c.was_chosen = chosen_before_.contains({c.on[0], c.on[1]});
     return reduce_candidates(std::move(candidates), dim_, normal, size, [&](const ManifoldCandidate& c) {
-      return c.depth <= kDepthRounding * size || is_overlap(c);
+      return c.depth <= kDepthRounding * size || (region_meets_ && is_overlap(c));
     });
   }
 
@@ -517,6 +522,7 @@ class ManifoldMaker {
   int dim_;
   double margin_;
   bool is_closed_[2], is_mirrored_[2];
+  bool region_meets_ = false;  ///< a pair of the current region intersects
   double size_[2], smaller_ = 0;
   Vector3d origin_{0, 0, 0};
   double unit_ = 1;

@@ -151,7 +151,7 @@ void bind_contact_manifolds_result(py::module_& m) {
               "(m, 3) float64: unit vectors from A to B; zero if no face of the region has an area.");
   of_manifold("regions", &ContactManifold::region, "(m,) uint32: the connected region of each manifold.");
   of_manifold("intersects", &ContactManifold::intersects,
-              "(m,) bool: a pair of the manifold intersects; otherwise all its contacts are speculative.");
+              "(m,) bool: a pair intersects or a depth is above 0; otherwise all contacts are speculative.");
   property(
       c, "manifold", [](const Manifolds& x) { return column(x.manifold_of, std::identity()); },
       "(k,) uint32: the manifold of each point, ascending; the deepest point of each comes first.");

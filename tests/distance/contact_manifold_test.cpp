@@ -66,6 +66,7 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
   REQUIRE(r.pairs.size() == near.pairs.size());
   std::vector<int> times(r.pairs.size(), 0);
   std::set<std::uint64_t> ids;
+  std::set<std::uint32_t> meeting, overlapping;  // regions
   const double rounding = 1e-9 * std::max(size_of(a, pose_a), size_of(b, pose_b));
   for (const ContactManifold& m : r.manifolds) {
     bool intersects = false;
@@ -75,7 +76,9 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
       CHECK(r.pairs[i].b == near.pairs[i].b);
       intersects = intersects || r.pairs[i].meet != exact::Meet::disjoint;
     }
-    CHECK(m.intersects == intersects);
+    if (intersects) meeting.insert(m.region);
+    if (m.points[0].depth > 0) overlapping.insert(m.region);
+    CHECK(m.intersects == (intersects || m.points[0].depth > 0));
     CHECK(!m.points.empty());
     CHECK(m.points.size() <= (a.dim() == 3 ? 4 : 2));
     CHECK((m.normal.isZero() || std::abs(m.normal.norm() - 1) < 1e-12));
@@ -94,6 +97,7 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
     }
     ++seen.manifolds;
   }
+  CHECK(std::includes(meeting.begin(), meeting.end(), overlapping.begin(), overlapping.end()));
   for (const int n : times) CHECK(n == 1);
   CHECK(ids.size() == r.next_id);
 }
@@ -324,6 +328,8 @@ TEST_CASE("manifolds have all pairs and points on both surfaces, for all kinds o
         check(a, pose_a, b, pose_b, margins[round], seen);
       }
   check(bodies[1], {}, bodies[1], {}, 0, seen);  // identical
+  // Three normals, one of them of pairs that do not intersect.
+  check(bodies[0], {}, bodies[0], Pose::translation({0.9, 0.8, 0.7}), 0.5, seen);
   CHECK(seen.manifolds > 300);
   CHECK(seen.deep > 300);
   CHECK(seen.gaps > 100);

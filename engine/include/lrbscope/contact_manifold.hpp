@@ -80,7 +80,8 @@ struct ContactManifold {
   std::vector<ManifoldPoint> points;  ///< 1 to 4 (2D: 1 or 2), the deepest first
   std::vector<std::uint32_t> pairs;   ///< indices into ManifoldResult::pairs, ascending
   std::uint32_t region = 0;           ///< number of the connected region, which may have several manifolds
-  /// A pair intersects; otherwise all points are speculative.
+  /// A pair intersects, or the surfaces overlap at a point (depth above 0, only in a region with a pair that
+  /// intersects); otherwise all points are speculative, with depths of at most 0.
   bool intersects = false;
 };
 
