@@ -118,6 +118,9 @@ class PairMotion {
   /// Returns the time for which the slab normal to n (any length, either sign) is proven to separate the
   /// simplices, starting now, or 0 if it does not separate them.
   double separated_for(const Eigen::Vector3d& n) const;
+  /// Returns an error bound of the product of n and a difference of two corners, covering positions both now
+  /// and later.
+  double places_rounding(const Eigen::Vector3d& n) const;
   PairBounds bounds() const;
   /// Returns the approximate vector from the first simplex to the second.
   Eigen::Vector3d ahead() const { return centroid(1) - centroid(0); }
@@ -139,7 +142,6 @@ class PairMotion {
   };
   Eigen::Vector3d velocity_at(int side, const exact::Feature& on, const Eigen::Vector3d& point) const;
   Eigen::Vector3d look_along(const Eigen::Vector3d& n) const;
-  double places_rounding(const Eigen::Vector3d& n) const;
 
   const MovingBody* body_[2];
   int n_;

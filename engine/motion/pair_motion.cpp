@@ -104,8 +104,6 @@ void PairMotion::place(const PieceState& a, const PieceState& b) {
   }
 }
 
-/// Returns an error bound of the product of n and a difference of two corners, covering positions both now
-/// and later.
 double PairMotion::places_rounding(const Vector3d& n) const {
   // The rounding of the product, then the errors of both bodies' positions, now and later.
   return 0.25 * kPairRounding * reach_ * n.cwiseAbs().sum() +

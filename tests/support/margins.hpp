@@ -1,7 +1,7 @@
 #pragma once
 /// Derived bounds on rounding, each as a row {name, how much of the bound an input uses}. A search drives the
-/// share up: it may not exceed 1, and must reach a third, so that a test fails both if the bound is too small
-/// and if its constant is cut to a third.
+/// share up. It may not exceed 1, and must end between the row's `least` and 3 times that, so that a test
+/// fails if the bound is too small, if its constant is cut to a third, and if it is needlessly large.
 
 #include <algorithm>
 #include <span>
@@ -18,8 +18,8 @@ struct Margin {
   std::size_t genes;  ///< numbers in [0, 1) that make an input
   /// Returns the deviation of a float expression from its exact value, over the bound that is stated for it.
   double (*share)(std::span<const double> genes);
-  int tries = 20'000;
   double least = 1.0 / 3;
+  int tries = 20'000;
 };
 
 /// Searches by chance, and from the best input so far by changes of one gene, large and small.
@@ -52,6 +52,7 @@ inline void check_margins(std::span<const Margin> rows) {
     const double share = worst_share(row);
     MESSAGE(row.name, ": ", share, " of the bound is used");
     CHECK(share > row.least);
+    CHECK(share < 3 * row.least);
   }
 }
 
