@@ -155,6 +155,7 @@ const char* to_string(ClashKind k) {
 }
 
 void check_request(const LrbRep& a, const ClashRequest& request) {
+  const FloatMode float_mode;
   if (a.dim() != 3) throw InputError("clash: expected 3D bodies, found 2D bodies");
   if (!(request.clearance >= 0) || std::isinf(request.clearance))
     throw InputError("clash: expected a finite clearance of at least 0, found " +
@@ -165,6 +166,7 @@ void check_request(const LrbRep& a, const ClashRequest& request) {
 
 ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const ClashRequest& request, DistanceContext& context, ClashProbe* probe) {
+  const FloatMode float_mode;
   check_query(a, pose_a, b, pose_b);
   check_request(a, request);
   NullProbe unwatched;

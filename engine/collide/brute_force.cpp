@@ -4,6 +4,7 @@
 
 #include "engine/exact/locate.hpp"
 #include <lrbscope/collide.hpp>
+#include <lrbscope/core/float_mode.hpp>
 
 namespace lrb {
 namespace {
@@ -63,6 +64,7 @@ Relation relation_without_contact(const WorldBody& a, const WorldBody& b) {
 }  // namespace
 
 BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  const FloatMode float_mode;
   const WorldBody wa(a, pose_a), wb(b, pose_b);
   BruteForceResult result;
   bool crosses = false;

@@ -104,11 +104,13 @@ CoherentQuery::Work::Work(const LrbRep& a, const LrbRep& b, const CollideRequest
       use_(use),
       plain_(request.recursion == Recursion::complete && request.predicates == Predicates::exact &&
              !request.is_coarse() && !request.separation && !a.tree().empty() && !b.tree().empty()) {
+  const FloatMode float_mode;
   if (plain_) motion_ = {a, b};
 }
 
 template <class Probe>
 const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose& pose_b, Probe& probe) {
+  const FloatMode float_mode;
   // Requests that a cache cannot answer, and empty bodies, are passed on unchanged.
   if (!plain_) {
     result_ = lrb::collide(a_, pose_a, b_, pose_b, request_, context_, probe);

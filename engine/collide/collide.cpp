@@ -98,6 +98,7 @@ bool is_flat(const Pose& p) {
 }  // namespace
 
 void check_query(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  const FloatMode float_mode;
   if (a.dim() != b.dim())
     throw InputError("expected two bodies of the same dimension, found a " + std::to_string(a.dim()) +
                      "D and a " + std::to_string(b.dim()) + "D body");

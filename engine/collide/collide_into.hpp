@@ -12,6 +12,7 @@
 #include "engine/collide/tree_query.hpp"
 #include "engine/exact/predicates.hpp"
 #include <lrbscope/collide.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/observe.hpp>
 
@@ -22,6 +23,7 @@ namespace lrb {
 template <class Probe>
 void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, QueryContext& context, Probe& probe, CollideResult& result) {
+  const FloatMode float_mode;
   check_query(a, pose_a, b, pose_b);
   if (request.is_coarse()) check_request(request);
   result.recursion = request.recursion;

@@ -140,6 +140,7 @@ NearPoints nearest_points(int dim, const Corners& a, const Corners& b) {
 }  // namespace
 
 WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& pose) {
+  const FloatMode float_mode;
   const TreeNode& n = tree.nodes()[node];
   Vector3d local, half;
   Eigen::Matrix3d frame;
@@ -165,6 +166,7 @@ WorldBox box_of(const ObbTree& tree, std::uint32_t node, int child, const Pose& 
 }
 
 void compare_boxes(const WorldBox& a, const WorldBox& b, BoxPair& out, int dim) {
+  const FloatMode float_mode;
   out.gap = -std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 6; ++axis) {
     // Separating axis test along the six side normals: centre distance minus both half widths.
@@ -399,11 +401,13 @@ PairExplainer::PairExplainer(const LrbRep& a, const LrbRep& b)
 PairExplainer::~PairExplainer() = default;
 
 void PairExplainer::place(const Pose& pose_a, const Pose& pose_b) {
+  const FloatMode float_mode;
   begin(parts_->ctx, parts_->a, pose_a, parts_->b, pose_b);
   parts_->stepper.emplace(parts_->ctx);
 }
 
 PairExplanation PairExplainer::explain(const SimplexPair& pair) {
+  const FloatMode float_mode;
   check_simplex(parts_->a, pair.a, "A");
   check_simplex(parts_->b, pair.b, "B");
   PairExplanation out;
@@ -595,6 +599,7 @@ std::optional<SeparatingPlane> find_plane(QueryContext& ctx, const WalkExplanati
 }  // namespace
 
 WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  const FloatMode float_mode;
   QueryContext ctx;
   NullProbe probe;
   WalkExplanation out;

@@ -36,6 +36,7 @@
 #include "engine/mesh/self_intersections.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/core/disjoint_sets.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
@@ -418,6 +419,7 @@ LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vecto
 }  // namespace
 
 LrbRep build_lrb(const CheckedMesh& checked, const BuildOptions& options) {
+  const FloatMode float_mode;
   // The mesh was checked before; its results are reused.
   if (!checked.report().buildable()) throw InputError(rejection(checked.mesh(), checked.report()));
   Workers workers(options.threads);
@@ -425,6 +427,7 @@ LrbRep build_lrb(const CheckedMesh& checked, const BuildOptions& options) {
 }
 
 LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
+  const FloatMode float_mode;
   // Reject meshes that cannot be built before the more expensive search for self-intersections.
   const MeshFindings found = examine(mesh);
   if (!found.report.buildable()) throw InputError(rejection(mesh, found.report));

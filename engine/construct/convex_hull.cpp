@@ -20,6 +20,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/exact/plane_side.hpp"
 #include "engine/exact/predicates.hpp"
+#include <lrbscope/core/float_mode.hpp>
 
 namespace lrb::construct {
 namespace {
@@ -284,6 +285,7 @@ class Hull {
 namespace lrb {
 
 std::vector<std::array<std::uint32_t, 3>> convex_hull(std::span<const Eigen::Vector3d> points) {
+  const FloatMode float_mode;
   if (points.size() < 4) return {};
   return construct::Hull(points).run();
 }

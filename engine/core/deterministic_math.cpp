@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/extended.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/core/random.hpp>
 
 namespace lrb::deterministic {
@@ -84,12 +85,14 @@ double pow10(double x) {
 }
 
 Eigen::Matrix3d rotation(const Eigen::Vector3d& axis, double angle) {
+  const FloatMode float_mode;
   if (!std::isfinite(angle) || !axis.allFinite()) return Eigen::Matrix3d::Constant(kNaN);
   return extended::rotation<Extended>(axis.cast<Extended>(), angle).cast<double>();
 }
 
 Eigen::Matrix3d rotation_between(const Eigen::Vector3d& axis_0, double angle_0, const Eigen::Vector3d& axis_1,
                                  double angle_1, double t) {
+  const FloatMode float_mode;
   using std::sqrt;
   const Quaternion from = quaternion(axis_0, angle_0), to = quaternion(axis_1, angle_1);
   Extended share = t, cosine = from.dot(to);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/core/random.hpp>
 #include <lrbscope/pose.hpp>
 
@@ -14,6 +15,7 @@ Eigen::Matrix3d eigenvectors_of_symmetric(const Eigen::Matrix3d& m) {
 }
 
 Pose Pose::rotation(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& t) {
+  const FloatMode float_mode;
   return {deterministic::rotation(deterministic::scaled_direction(axis).normalized(), angle), t};
 }
 

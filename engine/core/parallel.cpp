@@ -9,6 +9,7 @@
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/parallel.hpp>
 
 namespace lrb {
@@ -46,6 +47,7 @@ void Workers::for_each(std::size_t n, const std::function<void(std::size_t, unsi
       // Relaxed is enough: a stale value only runs a call that could have been skipped.
       if (i > failed.load(std::memory_order_relaxed)) return;
       try {
+        const FloatMode float_mode;
         work(i, static_cast<unsigned>(tbb::this_task_arena::current_thread_index()));
       } catch (...) {
         const std::lock_guard lock(one_at_a_time);
@@ -66,7 +68,11 @@ void Workers::both(const std::function<void()>& one, const std::function<void()>
     return;
   }
   // parallel_invoke may run nested calls on the same threads, so recursion cannot run out of them.
-  pool_->arena.execute([&] { tbb::parallel_invoke(one, other); });
+  const auto in_mode = [](const std::function<void()>& work) {
+    const FloatMode float_mode;
+    work();
+  };
+  pool_->arena.execute([&] { tbb::parallel_invoke([&] { in_mode(one); }, [&] { in_mode(other); }); });
 }
 
 }  // namespace lrb

@@ -22,6 +22,7 @@
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/core/disjoint_sets.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb {
@@ -601,6 +602,7 @@ void contact_manifolds_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b
                             const ManifoldRequest& request, const ManifoldResult* previous, Workers& workers,
                             QueryContext& query, NearPairsContext& near, ManifoldContext& context,
                             ManifoldResult& result) {
+  const FloatMode float_mode;
   check_request(request);
   NearPairsRequest pairs;
   pairs.within = request.margin;

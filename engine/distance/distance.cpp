@@ -139,6 +139,7 @@ CoherentDistance::CoherentDistance(CoherentDistance&&) noexcept = default;
 CoherentDistance& CoherentDistance::operator=(CoherentDistance&&) noexcept = default;
 
 DistanceResult CoherentDistance::distance(const Pose& pose_a, const Pose& pose_b) {
+  const FloatMode float_mode;
   return work_->distance(pose_a, pose_b);
 }
 
@@ -168,6 +169,7 @@ void check_request(const DistanceRequest& request) {
 DistanceResult distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                         const DistanceRequest& request, DistanceContext& context, KnownFromBefore* before,
                         BoundsProbe* probe) {
+  const FloatMode float_mode;
   check_query(a, pose_a, b, pose_b);
   check_request(request);
   // A body without faces is infinitely far from everything.
@@ -507,6 +509,7 @@ LrbRep body_of_one_point(int dim) {
 std::vector<PointDistance> point_distances(const LrbRep& body, const Pose& pose,
                                            std::span<const Eigen::Vector3d> points,
                                            const PointDistanceRequest& request, unsigned threads) {
+  const FloatMode float_mode;
   DistanceRequest ask;
   ask.tolerance = request.tolerance;
   ask.relative_tolerance = request.relative_tolerance;

@@ -14,6 +14,7 @@
 #include "engine/distance/near_pairs_context.hpp"
 #include "engine/exact/pair_distance.hpp"
 #include "engine/tree/kernel_setup.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/near_pairs.hpp>
@@ -308,6 +309,7 @@ void check_request(const NearPairsRequest& request) {
 void near_pairs_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                      const NearPairsRequest& request, Workers& workers, NearPairsContext& context,
                      NearPairsResult& result) {
+  const FloatMode float_mode;
   check_query(a, pose_a, b, pose_b);
   check_request(request);
   result.pairs.clear();

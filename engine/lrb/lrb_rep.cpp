@@ -11,6 +11,7 @@
 #include "engine/lrb/complex.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/core/hash.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
@@ -112,12 +113,14 @@ struct LrbRep::FoundHash {
 };
 
 LrbRep::LrbRep(LrbData data, unsigned threads) : d_(std::move(data)) {
+  const FloatMode float_mode;
   derive();
   tree_ = ObbTree(simplices(), threads);
 }
 
 LrbRep::LrbRep(LrbData data, std::vector<TreeNode> nodes, std::vector<LeafBlock> blocks, std::uint64_t hash)
     : d_(std::move(data)) {
+  const FloatMode float_mode;
   derive();
   std::call_once(hash_->once, [&] { hash_->value = hash; });
   tree_ = ObbTree(simplices(), std::move(nodes), std::move(blocks));
@@ -203,6 +206,7 @@ SelfIntersections self_intersections(const LrbRep& rep, unsigned threads, std::u
 }
 
 bool LrbRep::overlaps_itself() const {
+  const FloatMode float_mode;
   // For bodies with regions the builder has determined the flag.
   if (region_count() > 0) return d_.self_intersecting;
   std::call_once(overlap_->once, [this] {
@@ -403,6 +407,7 @@ double size_of(const LrbRep& rep, FaceId f) {
 }  // namespace
 
 double enclosed_volume(const LrbRep& rep, std::span<const FaceId> outward, std::span<const FaceId> inward) {
+  const FloatMode float_mode;
   if (outward.empty() && inward.empty()) return 0;
   // Any origin gives the same result for a closed surface. One on the surface keeps the terms small.
   const Eigen::Vector3d origin = rep.vertices()[rep.face(outward.empty() ? inward[0] : outward[0])[0]];
@@ -417,6 +422,7 @@ double region_volume(const LrbRep& rep, RegionId r) {
 }
 
 double lid_height(const LrbRep& rep) {
+  const FloatMode float_mode;
   double volume = 0, area = 0;
   for (RegionId r = 0; r < rep.region_count(); ++r) {
     volume += region_volume(rep, r);

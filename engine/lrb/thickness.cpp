@@ -32,6 +32,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -430,6 +431,7 @@ std::vector<NearFace> near_vertices(const LrbRep& rep, const std::vector<Vector3
 }  // namespace
 
 std::vector<double> region_thickness(const LrbRep& rep, unsigned threads) {
+  const FloatMode float_mode;
   Workers workers(threads);
   std::vector<Vector3d> x;
   for (const Vector3d& v : rep.vertices()) x.push_back(v / rep.tree().unit());

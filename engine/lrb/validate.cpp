@@ -18,6 +18,7 @@
 #include "engine/mesh/face_pairs.hpp"
 #include "engine/tree/tree_kernel.hpp"
 #include <lrbscope/contact.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/validate.hpp>
 #include <lrbscope/wrapper.hpp>
@@ -374,11 +375,13 @@ class Validator {
 }  // namespace
 
 ValidateReport validate(const LrbRep& rep, const ValidateOptions& options) {
+  const FloatMode float_mode;
   Workers workers(options.threads);
   return Validator(rep, options, workers).run();
 }
 
 ValidateReport validate_cells(const LrbRep& rep) {
+  const FloatMode float_mode;
   const ValidateOptions options;
   Workers workers;
   return Validator(rep, options, workers).run_cells();

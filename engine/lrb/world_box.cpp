@@ -13,6 +13,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/tree/kernel_setup.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/world_box.hpp>
 
 namespace lrb {
@@ -137,6 +138,7 @@ Eigen::AlignedBox3d box_of_corners(const LrbRep& rep, const Pose& pose) {
 
 /// If two boxes are disjoint along an axis, any two of their corners have the order of the boxes there.
 bool world_boxes_are_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  const FloatMode float_mode;
   if (a.tree().empty() || b.tree().empty()) return true;
   const bool in_range = stays_finite(a, pose_a) && stays_finite(b, pose_b);
   Eigen::AlignedBox3d box_a, box_b;
@@ -167,6 +169,7 @@ bool world_boxes_are_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep&
 }
 
 Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, ExtremeVertices* last) {
+  const FloatMode float_mode;
   Eigen::AlignedBox3d box;
   if (rep.tree().empty()) return box;
   if (!stays_finite(rep, pose)) return everything();
@@ -201,6 +204,7 @@ BodyExtent::BodyExtent(const LrbRep& rep) : rep_(&rep) {
 }
 
 Eigen::AlignedBox3d BodyExtent::in_world(const Pose& pose, ExtremeVertices* last) const {
+  const FloatMode float_mode;
   if (corners_.empty()) return world_box(*rep_, pose, last);
   if (!stays_finite(*rep_, pose)) return everything();
   Eigen::AlignedBox3d box;

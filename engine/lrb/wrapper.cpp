@@ -6,6 +6,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/lrb/complex.hpp"
 #include "engine/lrb/thickness.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/wrapper.hpp>
@@ -276,6 +277,7 @@ std::string note_no_levels(const LrbRep& rep) {
 }
 
 WrapperLevels::WrapperLevels(const LrbRep& rep, unsigned threads) {
+  const FloatMode float_mode;
   if (!can_have_levels(rep)) return;
   needed_ = needed_tolerances(rep, threads);
   const std::vector<double> bounds = choose_bounds(rep, needed_);
@@ -291,6 +293,7 @@ WrapperLevels::WrapperLevels(const LrbRep& rep, unsigned threads) {
 
 WrapperLevels::WrapperLevels(const LrbRep& rep, std::vector<double> needed, std::vector<StoredLevel> stored)
     : needed_(std::move(needed)) {
+  const FloatMode float_mode;
   check_needed(rep, needed_);
   if (stored.size() > (needed_.empty() ? 0 : kMaxLevels)) reject("are too many");
   if (needed_.empty()) return;  // a body without levels, whose file contains an empty list of them

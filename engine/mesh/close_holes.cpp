@@ -25,6 +25,7 @@
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_repair.hpp>
 
@@ -608,6 +609,7 @@ class HoleCloser {
 }  // namespace
 
 ClosedHoles close_holes(const CheckedMesh& mesh) {
+  const FloatMode float_mode;
   return HoleCloser(mesh).run();
 }
 

@@ -11,6 +11,7 @@
 
 #include "engine/mesh/vertex_groups.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/mesh_repair.hpp>
 
 namespace lrb {
@@ -169,6 +170,7 @@ class CornerJoiner {
 }  // namespace
 
 JoinedCorners join_corners(Mesh& mesh) {
+  const FloatMode float_mode;
   return CornerJoiner(mesh).run();
 }
 

@@ -13,6 +13,7 @@
 #include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include "engine/mesh/vertex_groups.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/mesh_check.hpp>
 
@@ -155,6 +156,7 @@ void sort_elements(MeshReport& report) {
 }
 
 std::vector<FaceUse> check_faces(const Mesh& mesh, MeshReport& report) {
+  const FloatMode float_mode;
   std::vector<bool> finite(mesh.vertices.size());
   for (VertexId v = 0; v < mesh.vertices.size(); ++v) {
     finite[v] = mesh.vertices[v].allFinite();
@@ -219,6 +221,7 @@ void note_intersections(const Mesh& mesh, std::vector<FaceUse> use, MeshReport& 
 }
 
 void check_vertices(const Mesh& mesh, MeshReport& report) {
+  const FloatMode float_mode;
   // Unused vertices. Those merged into others are not reported.
   std::vector<bool> used(mesh.vertices.size());
   for (const VertexId v : mesh.face_vertices)
@@ -255,6 +258,7 @@ std::uint32_t CheckedMesh::turn_outward() {
 }
 
 void CheckedMesh::find_self_intersections() {
+  const FloatMode float_mode;
   if (meeting_) return;
   std::vector<bool> meets(mesh_.face_count(), false);
   note_intersections(mesh_, found_.use, found_.report, [&](FaceId f) { meets[f] = true; });
@@ -264,6 +268,7 @@ void CheckedMesh::find_self_intersections() {
 }
 
 std::vector<FaceId> CheckedMesh::self_intersecting_faces(Workers& workers) const {
+  const FloatMode float_mode;
   return meeting_ ? *meeting_ : lrb::self_intersecting_faces(mesh_, found_.use, workers);
 }
 
@@ -348,6 +353,7 @@ std::vector<bool> find_sheets(const Mesh& mesh, const MeshFindings& found) {
 }  // namespace
 
 MeshFindings examine(const Mesh& mesh, std::size_t kept) {
+  const FloatMode float_mode;
   MeshFindings found;
   MeshReport& report = found.report;
   report.kept = kept;
@@ -386,6 +392,7 @@ void turn_faces(Mesh& mesh, const std::vector<std::vector<FaceId>>& components) 
 }
 
 std::uint32_t orient_outward(Mesh& mesh) {
+  const FloatMode float_mode;
   const auto wrong = examine(mesh).inside_out;
   turn_faces(mesh, wrong);
   return static_cast<std::uint32_t>(wrong.size());

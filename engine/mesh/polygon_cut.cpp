@@ -24,6 +24,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/polygon_shape.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/mesh.hpp>
 
 namespace lrb {
@@ -269,6 +270,7 @@ bool is_far_from_planar(std::span<const Vector3d> corners, const Vector3d& norma
 
 PolygonCut cut_polygon(std::span<const Vector3d> corners,
                        std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  const FloatMode float_mode;
   const auto n = static_cast<Corner>(corners.size());
   triangles.clear();
   const auto fan = [&] {
@@ -304,6 +306,7 @@ PolygonCut cut_polygon(std::span<const Vector3d> corners,
 }
 
 PolygonCut cut_polygon(const Mesh& mesh, FaceId f, std::vector<std::array<VertexId, 3>>& triangles) {
+  const FloatMode float_mode;
   const auto corners = mesh.face(f);
   triangles.clear();
   if (corners.size() <= 3) {

@@ -21,6 +21,7 @@
 #include "engine/mesh/polygon_shape.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/core/disjoint_sets.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb {
@@ -458,6 +459,7 @@ void find_curves(const std::vector<FoundPair>& found, SelfIntersections& out) {
 
 SelfIntersections self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use, Workers& workers,
                                      std::uint64_t max_pairs) {
+  const FloatMode float_mode;
   const Pieces pieces(mesh, use);
   std::vector<FoundPair> found;
   std::mutex lock;

@@ -151,6 +151,7 @@ bool FirstContactSearch::meets_at_start() {
 }
 
 FirstContactResult FirstContactSearch::run() {
+  const FloatMode float_mode;
   check_request(request_);
   // Reject world coordinates that are not finite at either end; meets_at() checks the times in between.
   for (const double t : {0.0, 1.0}) check_query(*rep_[0], motion_[0]->at(t), *rep_[1], motion_[1]->at(t));

@@ -14,6 +14,7 @@
 #include "engine/core/tolerances.hpp"
 #include "engine/motion/motion_bounds.hpp"
 #include "engine/tree/kernel_setup.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/motion.hpp>
 
@@ -81,6 +82,7 @@ bool is_finite(const Motion::Piece& p) {
 }  // namespace
 
 Motion::Motion(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+  const FloatMode float_mode;
   double t = 0;
   for (const Piece& piece : pieces_) {
     if (!is_finite(piece))
@@ -107,11 +109,13 @@ Motion Motion::linear(const Pose& start, const Eigen::Vector3d& end) {
 }
 
 Motion Motion::screw(const Pose& start, const Pose& end) {
+  const FloatMode float_mode;
   return Motion(std::vector<Piece>{piece_between(start, end)});
 }
 
 Motion Motion::turning(const Pose& start, const Eigen::Vector3d& turn, const Eigen::Vector3d& centre,
                        const Eigen::Vector3d& way) {
+  const FloatMode float_mode;
   Piece piece;
   // Move the centre to the origin, rotate there, and move the centre along the path.
   piece.first = {start.r, start.t - centre};
@@ -122,6 +126,7 @@ Motion Motion::turning(const Pose& start, const Eigen::Vector3d& turn, const Eig
 }
 
 Motion Motion::key_frames(std::span<const KeyFrame> frames) {
+  const FloatMode float_mode;
   if (frames.empty()) throw InputError("the motion: expected at least one key frame, found none");
   // A single frame: a body at rest.
   if (frames.size() == 1 && frames[0].t == 0) return still(frames[0].pose);
@@ -159,6 +164,7 @@ PieceState state_of(const Motion::Piece& piece, double t) {
 }
 
 Pose Motion::at(double t) const {
+  const FloatMode float_mode;
   std::size_t i = pieces_.size() - 1;
   // From the last piece backward: at a shared t the later piece counts.
   while (i > 0 && t < pieces_[i].begin) --i;

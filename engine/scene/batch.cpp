@@ -55,6 +55,7 @@ Expected<CollideResult&> collide(const LrbRep& a, const Pose& pose_a, const LrbR
 Expected<CollideResult&> describe_contact(const LrbRep& a, const Pose& pose_a, const LrbRep& b,
                                           const Pose& pose_b, const CollideRequest& request,
                                           Workspace& workspace, CollideResult& result) try {
+  const FloatMode float_mode;
   check_query(a, pose_a, b, pose_b);
   QueryContext& context = workspace.memory().of_collision();
   context.body[0].begin(a, pose_a, request.wrapper);

@@ -20,6 +20,7 @@
 #include <Eigen/Geometry>
 
 #include <lrbscope/broad_phase.hpp>
+#include <lrbscope/core/float_mode.hpp>
 
 namespace lrb {
 namespace {
@@ -99,6 +100,7 @@ bool overlap(const Box& a, const Box& b, int u, int v) {
 }  // namespace
 
 const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes) {
+  const FloatMode float_mode;
   work_ = {};
   moved_ = 0;
   longest_ = 0;
@@ -194,6 +196,7 @@ void SweepAndPrune::sweep(Boxes boxes) {
 
 const std::vector<BodyPair>& SweepAndPrune::update(std::span<const Box> boxes,
                                                    std::span<const std::uint32_t> moved) {
+  const FloatMode float_mode;
   // A moved box is compared with boxes on both sides, in a complete update with those on one: beyond a
   // quarter of the boxes, the complete update is faster. It also chooses the axis again, after as many moves
   // as bodies.

@@ -22,6 +22,7 @@
 
 #include "engine/core/geometry.hpp"
 #include <lrbscope/broad_phase.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/scene.hpp>
 #include <lrbscope/workspace.hpp>
@@ -457,12 +458,14 @@ std::vector<NearbyPair> Scene::Impl::find_near(const Participants& participants,
 }
 
 std::span<const ScenePair> Scene::Impl::near(const Participants& participants, double within) {
+  const FloatMode float_mode;
   near_.clear();
   for (const NearbyPair& n : find_near(participants, within)) near_.push_back({n.key_a, n.key_b, n.gap});
   return near_;
 }
 
 std::optional<ScenePair> Scene::Impl::nearest_boxes(const Participants& participants) const {
+  const FloatMode float_mode;
   const std::optional<NearbyPair> found = nearest_of(participants);
   if (!found) return {};
   return ScenePair{found->key_a, found->key_b, found->gap};
@@ -488,6 +491,7 @@ std::vector<const Scene::Impl::Queried*> Scene::Impl::find_kept(std::span<const 
 
 std::span<const SceneAnswer> Scene::Impl::collide(const Participants& participants,
                                                   const CollideRequest& request) {
+  const FloatMode float_mode;
   const std::vector<NearbyPair> near = find_near(participants, 0);
   std::vector<const Queried*> kept(near.size());
   if (participants.is_one) kept = find_kept(near, request);
@@ -535,6 +539,7 @@ void Scene::Impl::measure(const Participants& participants, std::span<const Near
 
 std::optional<SceneDistance> Scene::Impl::nearest(const Participants& participants,
                                                   const DistanceRequest& request, Apart apart) {
+  const FloatMode float_mode;
   // Pairs per batch, independent of the number of threads. Distances found in a batch prune later ones.
   constexpr std::size_t kAtATime = 64;
   // Step 1: an upper bound, from the pair with the smallest gap between AABBs.

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/float_modes.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/lrb_rep.hpp>
@@ -51,10 +52,13 @@ void check_threads(const Mesh& mesh) {
   CAPTURE(mesh.name);
   CAPTURE(mesh.face_count());
   const std::string one = bytes_of(build_on(mesh, 1));
-  for (const unsigned threads : {2u, 5u}) CHECK((bytes_of(build_on(mesh, threads)) == one));
+  for (const unsigned threads : {2u, 5u}) {
+    const test::InMode mode(static_cast<int>(threads));
+    CHECK((bytes_of(build_on(mesh, threads)) == one));
+  }
 }
 
-TEST_CASE("any number of threads builds the same LRB-rep, byte for byte") {
+TEST_CASE("any number of threads, in any floating-point mode, builds the same LRB-rep, byte for byte") {
   for (const Mesh& mesh : {bumpy_sphere(4, 3), comb(20), crossing_balls(), gear(200)}) check_threads(mesh);
 }
 

@@ -9,6 +9,7 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/contract/queries.hpp"
 #include "tests/support/bodies.hpp"
+#include "tests/support/float_modes.hpp"
 #include "tests/support/folder.hpp"
 #include <lrbscope/body.hpp>
 #include <lrbscope/build.hpp>
@@ -80,6 +81,7 @@ TEST_CASE_TEMPLATE("a query has the same answer in a workspace, with a probe and
     if (!takes<Q>(c)) continue;
     const auto& request = requests[static_cast<std::size_t>(i) % requests.size()];
     const auto expected = content(Q::ask(c, request));
+    const test::InMode any_mode(i);
     CHECK((content(Q::ask(c, request, workspace).value()) == expected));
     for (const unsigned threads : {2U, 5U}) CHECK((content(Q::ask(c, request, threads)) == expected));
     if constexpr (Watched<Q>) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/support/answer_content.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/workspace.hpp>
 
@@ -229,6 +230,7 @@ struct FirstContact {
   static void check(const LrbRep&, const Request& request) { check_request(request); }
   static Motion still(const Case& c) { return Motion::still(c.pose_a); }
   static Motion motion(const Case& c) {
+    const FloatMode float_mode;
     const double far =
         4 * (c.a->tree().extent() * c.pose_a.r.norm() + c.b->tree().extent() * c.pose_b.r.norm());
     const bool rigid = (c.pose_b.r.transpose() * c.pose_b.r - Eigen::Matrix3d::Identity()).norm() < 1e-9;

@@ -36,6 +36,7 @@
 #include <fcl/narrowphase/distance.h>
 
 #include <lrbscope/body.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/workspace.hpp>
@@ -235,6 +236,7 @@ std::size_t collide(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transfor
   if (a.empty() || b.empty() || request.enable_cost || !o1->isOccupied() || !o2->isOccupied())
     return ::fcl::collide(o1, tf1, o2, tf2, request, result);
   if (result.numContacts() >= request.num_max_contacts) return result.numContacts();
+  const FloatMode float_mode;
   CollideRequest query;
   query.contacts = request.enable_contact;
   if (!request.enable_contact && request.num_max_contacts - result.numContacts() == 1)
@@ -265,6 +267,7 @@ S distance(const ::fcl::CollisionGeometry<S>* o1, const ::fcl::Transform3<S>& tf
            const ::fcl::DistanceRequest<S>& request, ::fcl::DistanceResult<S>& result) {
   const MeshArrays<S> a = arrays_of(*o1), b = arrays_of(*o2);
   if (a.empty() || b.empty()) return ::fcl::distance(o1, tf1, o2, tf2, request, result);
+  const FloatMode float_mode;
   lrb::DistanceRequest query;
   query.relation = false;
   const Body body_a = known_bodies().of(o1, a), body_b = known_bodies().of(o2, b);

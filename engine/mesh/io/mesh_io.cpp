@@ -18,6 +18,7 @@
 #include "engine/mesh/io/formats.hpp"
 #include "engine/mesh/io/scan.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/mesh.hpp>
@@ -187,6 +188,7 @@ void reject_without_faces(const Mesh& mesh, std::string_view name) {
 }
 
 Mesh read_mesh(const std::string& bytes, const std::string& name) {
+  const FloatMode float_mode;
   static constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
   // Skip a UTF-8 byte order mark.
   std::string_view content = bytes;
@@ -280,6 +282,7 @@ void check_mesh_name(const std::string& path, int dim) {
 }
 
 void write_mesh(const Mesh& mesh, const std::string& path, std::span<const FaceColour> face_colours) {
+  const FloatMode float_mode;
   check_mesh_name(path, mesh.dim);
   if (!face_colours.empty() && face_colours.size() != mesh.face_count())
     throw InputError(printable_name(path) + ": found " + std::to_string(face_colours.size()) +
