@@ -78,6 +78,7 @@ double nearer_by(const LrbRep& a, const LrbRep& b, const PosePair& from, const P
 struct DistanceContext {
   QueryContext query;
   std::vector<WaitingNodes> waiting;
+  std::vector<ReadyNodes> ready;
   std::vector<FloatPair> near;
   std::vector<MeasuredPair> pairs;
   std::vector<NodeEnd> ends[2];
@@ -119,7 +120,6 @@ class FloatWalk {
  private:
   void begin_ends();
   void give_room();
-  bool descend_alone();
   void notify(BoundsProbeAdapter& adapter) const;
   double dropped() const;
   double waiting_lower() const;

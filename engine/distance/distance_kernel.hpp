@@ -16,9 +16,26 @@ namespace lrb {
 /// A pair of nodes to be expanded. `bound`: the squared distance of their boxes, rounded down; if the boxes
 /// overlap, minus the least penetration along an axis.
 struct WaitingNodes {
-  float bound;
+  float bound;  ///< infinite: the entry is unused
   std::uint32_t a, b;
+  std::uint32_t next;  ///< the next entry of the same list; kNoEntry: none
+  /// Of a pair whose bound was raised: the direction of the slab between them, on A's axes: unit length, or
+  /// 0.
+  float way[3];
 };
+inline constexpr std::uint32_t kNoEntry = ~0U;
+
+/// An entry of DistanceKernel::waiting and its bound.
+struct ReadyNodes {
+  float bound;
+  std::uint32_t entry;
+};
+
+/// Pairs wait in lists, buckets of bounds: one for overlapping boxes, one below 2^-52, then eight to each
+/// doubling. A heap would order them exactly, but pairs with nearly equal bounds are all processed anyway.
+inline constexpr std::uint32_t kBuckets = 512;
+/// Shift and offset from a float's bits, without the sign, to its bucket.
+inline constexpr int kBucketShift = 20, kFirstBucket = (127 - 52) << 3;
 
 /// The end of a node's projection on the direction: the upper end for A, the lower end for B. Valid if `turn`
 /// equals DistanceKernel::turn.
@@ -59,8 +76,6 @@ struct DistanceKernel {
   float share;      ///< ... and upper (1 - share) ...
   float widest;     ///< ... but at most this
   float enough;     ///< stop when `upper` is at most this; -1: never
-  bool descend;     ///< descend to a pair of simplices first, because no good upper bound is known
-  bool begun;       ///< set by the kernel
   bool apart;       ///< the surfaces are known to be disjoint: do not stop as `undecided`
 
   /// Direction of the slabs, from A to B, on A's axes and on B's: unit length, or 0 if unknown.
@@ -76,8 +91,24 @@ struct DistanceKernel {
   /// Sum of the norms of the changes of TreeKernel::m since the cache was cleared: rounded up, and down.
   float turned, min_turned;
 
-  WaitingNodes* waiting;  ///< a heap, the least bound first
+  /// Each pair that waits or is ready has an entry.
+  WaitingNodes* waiting;
   std::uint32_t waiting_size, waiting_capacity;
+  std::uint32_t waiting_end;  ///< all later entries were never used
+  std::uint32_t unused;       ///< a list of the unused entries before
+  /// The waiting pairs, in buckets: a bit for each one that is not empty, and its list.
+  std::uint64_t filled[kBuckets / 64];
+  std::uint32_t first[kBuckets];
+  /// The pairs whose bounds were raised, a heap: the least bound first. The capacity is that of `waiting`.
+  ReadyNodes* ready;
+  std::uint32_t ready_size;
+  std::uint32_t next;  ///< the pair to be expanded next, which is in neither; kNoEntry: not chosen yet
+
+  std::uint64_t next_descent;  ///< number of steps before the next descent; 0 if no good upper bound is known
+  bool descends;
+  /// During a step of a descent: the children with the least bounds.
+  std::uint32_t nearest[8], nearest_size;
+
   FloatPair* near;
   std::uint32_t near_size, near_capacity;
   SimplexId best_a, best_b;  ///< the pair that gave `upper`; kNull: none in this traversal
@@ -86,7 +117,7 @@ struct DistanceKernel {
   KernelStop stop;
 };
 
-/// Free entries that both buffers need before a step, and twice as many before the first.
+/// Free entries that both buffers need before a step.
 inline constexpr std::uint32_t kRoomForStep = 64;
 
 /// Returns the pruning distance, rounded so that a dropped pair is not closer.
@@ -95,6 +126,10 @@ inline float dropped_from(const DistanceKernel& k) {
   const float least = by_spare < by_share ? by_spare : by_share;
   return least < k.widest ? least : k.widest;
 }
+
+/// Number of steps before the first descent if an upper bound is known, otherwise before the second one.
+/// Fewer: the descents cost more than the lower upper bounds save.
+inline constexpr std::uint64_t kDescentAfter = 32;
 
 /// Runs until there is a reason to stop. May be called again to continue.
 void run_distance_kernel(DistanceKernel& k);

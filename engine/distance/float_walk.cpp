@@ -104,7 +104,7 @@ FloatWalk::FloatWalk(DistanceContext& context, NearestPairs& found, const Distan
   // The first slab direction.
   const Eigen::Vector3d direction = direction_of(context, found, tree);
   for (int i = 0; i < 3; ++i) k_.direction[0][i] = static_cast<float>(direction[i]);
-  k_.descend = descend;
+  k_.next_descent = descend ? 0 : kDescentAfter;
   begin_ends();
   // Coherent queries: planes that earlier steps cached.
   if (far != nullptr)
@@ -112,8 +112,10 @@ FloatWalk::FloatWalk(DistanceContext& context, NearestPairs& found, const Distan
   if (context.waiting.size() < 4 * kRoomForStep) context.waiting.resize(16 * kRoomForStep);
   if (context.near.size() < 4 * kRoomForStep) context.near.resize(16 * kRoomForStep);
   // Start with the pair of roots, whose bound is unknown.
-  context.waiting[0] = {-kNothing, 0, 0};
-  k_.waiting_size = 1;
+  context.waiting[0] = {-kNothing, 0, 0, kNoEntry, {0, 0, 0}};
+  k_.next = 0;
+  k_.waiting_size = k_.waiting_end = 1;
+  k_.unused = kNoEntry;
 }
 
 /// Allocates the projections of all nodes. Entries of other directions need not be cleared, because each
@@ -137,30 +139,14 @@ void FloatWalk::give_room() {
   // Doubling keeps the number of copies small; a kernel step needs kRoomForStep free entries.
   if (context_.waiting.size() - k_.waiting_size < kRoomForStep)
     context_.waiting.resize(2 * context_.waiting.size());
+  context_.ready.resize(context_.waiting.size());
   if (context_.near.size() - k_.near_size < kRoomForStep) context_.near.resize(2 * context_.near.size());
   // Growth may have moved the buffers.
   k_.waiting = context_.waiting.data();
+  k_.ready = context_.ready.data();
   k_.near = context_.near.data();
   k_.waiting_capacity = static_cast<std::uint32_t>(context_.waiting.size());
   k_.near_capacity = static_cast<std::uint32_t>(context_.near.size());
-}
-
-/// Descends to a first pair, as the kernel does at its start, and stops there. Returns true if the query is
-/// finished.
-bool FloatWalk::descend_alone() {
-  give_room();
-  k_.waiting_size = 0;  // leave nothing to traverse
-  run_distance_kernel(k_);
-  // Restore the pair of roots for the traversal.
-  k_.waiting[0] = {-kNothing, 0, 0};
-  k_.waiting_size = 1;
-  context_.turn = k_.turn;
-  if (k_.stop == KernelStop::undecided) {
-    // Contact is possible: the exact query decides, once for the entire traversal.
-    if (found_.surfaces_meet()) return true;
-    k_.apart = true;
-  }
-  return k_.stop == KernelStop::enough;
 }
 
 void FloatWalk::notify(BoundsProbeAdapter& adapter) const {
@@ -175,8 +161,6 @@ bool FloatWalk::run(BoundsProbeAdapter* adapter) {
   // Without contact the kernel need not stop at ambiguous pairs.
   k_.apart = found_.known_apart();
   const std::uint64_t most = k_.tree.max_node_pairs;
-  // The early stops below, which only serve reports, must not cut the first descent short.
-  if (adapter != nullptr && k_.descend && descend_alone()) return found_.known_to_meet();
   for (;;) {
     give_room();
     // With a probe, stop after a while to report.
@@ -199,8 +183,9 @@ bool FloatWalk::run(BoundsProbeAdapter* adapter) {
 
 double FloatWalk::waiting_lower() const {
   // When the kernel is done, every waiting pair is beyond the pruning distance, which dropped() includes.
-  if (k_.waiting_size == 0 || k_.stop == KernelStop::done) return std::numeric_limits<double>::infinity();
-  const float bound = k_.waiting[0].bound;
+  if (k_.stop == KernelStop::done) return kNothing;
+  float bound = kNothing;
+  for (std::uint32_t i = 0; i < k_.waiting_end; ++i) bound = std::min(bound, k_.waiting[i].bound);
   // Bounds are squared distances; those of overlapping boxes are not positive.
   return bound > 0 ? std::sqrt(static_cast<double>(bound)) * (1 - kDistanceRounding) * unit_ : 0;
 }
