@@ -123,10 +123,59 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
   }
 }
 
+/// Checks that more steps only narrow the interval.
+void check_budgets(const LrbRep& a, const LrbRep& b, const Pose& pose, const DistanceResult& exact) {
+  double lower = 0, upper = INFINITY;
+  for (std::uint64_t steps = 1; steps < 4000; steps = steps * 3 / 2 + 1) {
+    DistanceRequest request;
+    request.max_steps = steps;
+    const DistanceResult d = distance(a, Pose{}, b, pose, request);
+    CHECK(d.counters.steps <= steps);
+    CHECK(d.lower >= lower);
+    CHECK(d.upper <= upper);
+    CHECK(d.lower <= exact.upper);
+    CHECK(d.upper >= exact.lower);
+    lower = d.lower;
+    upper = d.upper;
+    if (d.finished) break;
+  }
+  CHECK(upper - lower <= 1e-11);
+}
+
 struct DistantBodies {
   const char* name;
   LrbRep a, b;
+  Pose pose = {};  ///< of B
 };
+
+/// Adds a thread: waves in the radii about the z axis, which move up as one turns.
+Mesh threaded(Mesh mesh) {
+  for (Eigen::Vector3d& v : mesh.vertices) {
+    const double radius = std::hypot(v.x(), v.y()), turn = std::atan2(v.y(), v.x());
+    if (radius > 0.5) v.head<2>() *= 1 + 0.05 * std::sin(turn + 5 * v.z()) / radius;
+  }
+  return mesh;
+}
+
+/// Bodies that reach through each other, at distances far below their sizes.
+std::vector<DistantBodies> interlocked_bodies() {
+  const Mesh ring = shapes::torus(24, 10, 1, 0.2),
+             tube = test::stretched(shapes::torus(24, 12, 1.3, 0.25), {1, 1, 4}),
+             shaft = test::stretched(shapes::uv_sphere(24, 8), {0.9, 0.9, 1.5});
+  // A chain of four links, of which A has every second one.
+  const auto two_links = [&](double at) {
+    return shapes::several(
+        {shapes::translated(ring, {at, 0, 0}), shapes::translated(ring, {at + 2.6, 0, 0})});
+  };
+  const Eigen::Matrix3d upright = deterministic::rotation(Eigen::Vector3d::UnitX(), 1.6);
+  std::vector<DistantBodies> list;
+  list.push_back({"rings", closed(ring), closed(ring), {upright, {1, 0.03, 0.02}}});
+  list.push_back({"chain", closed(two_links(0)), closed(two_links(1.3)), {upright, {0, 0.02, 0.01}}});
+  list.push_back({"shaft in sleeve", closed(tube), closed(shaft), Pose::translation({0.01, 0.02, 0.1})});
+  list.push_back(
+      {"thread", closed(threaded(tube)), closed(threaded(shaft)), Pose::translation({0, 0.02, 0.05})});
+  return list;
+}
 
 std::vector<DistantBodies> distant_bodies() {
   std::vector<DistantBodies> list;
@@ -158,6 +207,23 @@ TEST_CASE("the interval contains the rational distance, from enclosed to distant
   }
   CHECK(t.meet + t.inside > 3);
   CHECK(t.apart > 20);
+}
+
+TEST_CASE("the interval contains the rational distance of interlocked bodies") {
+  RandomEngine random(23);
+  DistanceTally t;
+  for (const DistantBodies& pair : interlocked_bodies()) {
+    CAPTURE(pair.name);
+    std::uint64_t most_steps = 0;
+    for (int i = 0; i < 6; ++i) {
+      CAPTURE(i);
+      const Pose pose = test::nudged(random, pair.pose, 0.02, 0.03, 3);
+      check(pair.a, Pose{}, pair.b, pose, t);
+      most_steps = std::max(most_steps, distance(pair.a, Pose{}, pair.b, pose).counters.steps);
+    }
+    CHECK(most_steps > 32);  // with more than one descent
+  }
+  CHECK(t.apart > 18);
 }
 
 TEST_CASE("the interval contains the rational distance for bodies far from the origin") {
@@ -276,20 +342,8 @@ TEST_CASE("a tolerance and a budget only widen the interval, and more steps only
       CHECK(d.upper >= exact.lower);
       CHECK(d.upper - d.lower <= share * std::max(d.upper, exact.upper) * (1 + 1e-5) + 1e-12);
     }
-    double lower = 0, upper = INFINITY;
-    for (std::uint64_t steps = 1; steps < 4000; steps = steps * 3 / 2 + 1) {
-      DistanceRequest request;
-      request.max_steps = steps;
-      const DistanceResult d = distance(a, Pose{}, b, pose, request);
-      CHECK(d.counters.steps <= steps);
-      CHECK(d.lower >= lower);
-      CHECK(d.upper <= upper);
-      CHECK(d.lower <= exact.upper);
-      CHECK(d.upper >= exact.lower);
-      lower = d.lower;
-      upper = d.upper;
-      if (d.finished) break;
-    }
-    CHECK(upper - lower <= 1e-11);
+    check_budgets(a, b, pose, exact);
   }
+  for (const DistantBodies& pair : interlocked_bodies())
+    check_budgets(pair.a, pair.b, pair.pose, distance(pair.a, Pose{}, pair.b, pair.pose));
 }

@@ -3,12 +3,14 @@
 // on it.
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <valgrind/callgrind.h>
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/build.hpp>
+#include <lrbscope/distance.hpp>
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/workspace.hpp>
 
@@ -69,23 +71,40 @@ void ask(const Guarded& g, const LrbRep& a, const LrbRep& b) {
   std::printf("%s %zu\n", g.name, pairs);
 }
 
-/// Near pairs of shallow poses, within about 1 % of the diagonal.
-void ask_near(const LrbRep& a, const LrbRep& b) {
+/// Reports a query to callgrind. query(i): asks at pose i and returns a number of its answer.
+template <class Query>
+void count_query(const char* name, const Query& query) {
+  std::size_t sum = 0;
+  CALLGRIND_ZERO_STATS;
+  for (int i = 0; i < kPoses; ++i) {
+    query(i);
+    CALLGRIND_START_INSTRUMENTATION;
+    sum += query(i);
+    CALLGRIND_STOP_INSTRUMENTATION;
+  }
+  CALLGRIND_DUMP_STATS_AT(name);
+  std::printf("%s %zu\n", name, sum);
+}
+
+/// Near pairs of shallow poses within about 1 % of the diagonal; distances of linked rings.
+void ask_distances(const LrbRep& a, const LrbRep& b) {
   NearPairsRequest request;
   request.within = 0.03;
   Workspace workspace;
   shapes::RandomEngine random(1);
-  std::size_t pairs = 0;
-  CALLGRIND_ZERO_STATS;
+  std::vector<Pose> shallow, linked;
+  const LrbRep ring = LrbRep::without_regions(shapes::torus(96, 32, 1, 0.3), true, false);
   for (int i = 0; i < kPoses; ++i) {
-    const Pose pose = shapes::random_pose(random, a, b, 0.55 * 0.85);
-    near_pairs(a, Pose{}, b, pose, request, workspace).value();
-    CALLGRIND_START_INSTRUMENTATION;
-    pairs += near_pairs(a, Pose{}, b, pose, request, workspace).value().pairs.size();
-    CALLGRIND_STOP_INSTRUMENTATION;
+    shallow.push_back(shapes::random_pose(random, a, b, 0.55 * 0.85));
+    linked.push_back(
+        {deterministic::rotation(Eigen::Vector3d::UnitX(), 1.67 + 0.1 * i), {1 - 0.05 * i, 0.03, 0.02}});
   }
-  CALLGRIND_DUMP_STATS_AT("near");
-  std::printf("near %zu\n", pairs);
+  count_query("near", [&](int i) {
+    return near_pairs(a, Pose{}, b, shallow[i], request, workspace).value().pairs.size();
+  });
+  count_query("distance_linked", [&](int i) {
+    return distance(ring, Pose{}, ring, linked[i], {}, workspace).value().counters.steps;
+  });
 }
 
 /// Reports a build to callgrind. The builds before it have filled the caches of the allocator.
@@ -110,7 +129,7 @@ int main() {
 #endif
   const LrbRep a = build_lrb(shapes::bumpy_sphere(4, 1)), b = build_lrb(shapes::bumpy_sphere(4, 2));
   for (const Guarded& g : kGuarded) g.watched ? ask<IdleProbe>(g, a, b) : ask<NullProbe>(g, a, b);
-  ask_near(a, b);
+  ask_distances(a, b);
   const Mesh small = shapes::bumpy_sphere(3, 1);
   count_build("build_tree", [&]() -> std::size_t { return ObbTree(a.simplices(), 1).height(); });
   count_build("build_lrb", [&]() -> std::size_t { return build_lrb(small).face_count(); });
