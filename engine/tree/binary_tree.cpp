@@ -1,258 +1,187 @@
-// Top-down construction of a binary tree by the surface area heuristic (Goldsmith and Salmon 1987).
-// 1. Split large ranges by boxes on the coordinate axes: at the best boundary between bins (Wald 2007) or, on
-//    request, at the best of all cuts.
-// 2. Split small ranges by the cost of the tight boxes of their halves (FittedCuts).
-// 3. Compute all boxes on the coordinate axes in one pass from the leaves upwards.
-// The index of every node follows from the number of simplices in each half. Threads therefore build subtrees
-// without synchronisation, and the tree does not depend on the number of threads.
+// Top-down construction of a binary tree by the surface area heuristic (Goldsmith and Salmon 1987): ranges
+// are split by boxes on the coordinate axes, at the best boundary between bins (Wald 2007). The index of
+// every node follows from the number of simplices in each half. Threads therefore build subtrees without
+// synchronisation, and the tree does not depend on the number of threads.
 
 #include "engine/tree/binary_tree.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <utility>
 
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
-#include <lrbscope/obb_tree.hpp>
 
 namespace lrb {
 namespace {
 
-using Box = Eigen::AlignedBox3d;
-
-class BinaryBuilder {
+class LargeRanges {
  public:
-  BinaryBuilder(Soup& soup, Workers& workers, Splits splits)
-      : soup_(soup), workers_(workers), splits_(splits) {
-    const auto n = static_cast<std::uint32_t>(soup.order.size());
-    nodes_.resize(nodes_for(n));
-    build(0, 0, n);
+  LargeRanges(const BuildInput& in, std::uint32_t count, Workers& workers)
+      : in_(in), workers_(workers), boxes_(count), buffer_(count) {
+    tree_.nodes.resize(nodes_for(count));
+    tree_.order.resize(count);
+    for_each_share(count, workers, [&](std::uint32_t begin, std::uint32_t end, std::size_t) {
+      for (std::uint32_t s = begin; s < end; ++s) boxes_[s].simplex = s;
+    });
+    Frame frame;
+    const Bounds bounds = measure(0, count, frame);
+    split(0, 0, count, frame, bounds);
   }
 
-  std::vector<BinaryNode> take() { return std::move(nodes_); }
+  BinaryTree take() { return std::move(tree_); }
 
  private:
-  /// Returns the number of nodes of a subtree with this many simplices.
-  static std::uint32_t nodes_for(std::uint32_t simplices) { return 2 * leaves_for(simplices) - 1; }
-
-  /// Returns true if ranges of this size are split by the tight boxes of their halves.
-  bool is_fitted(std::uint32_t simplices) const { return simplices <= std::max(splits_.fitted, kTreeWidth); }
-
-  /// Builds a subtree.
-  void build(std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-    // FittedCuts keeps the simplices sorted along all axes, so it handles the entire subtree.
-    if (is_fitted(end - begin)) {
-      FittedCuts cuts(soup_, soup_.listed(begin, end), splits_.effort);
-      build_fitted(self, begin, end, cuts.whole_cost(), cuts, begin);
-      std::ranges::copy(cuts.order(), soup_.order.begin() + begin);
-      // Children come after parents, so reverse order visits children first.
-      for (std::uint32_t i = self + nodes_for(end - begin); i-- > self;) {
-        BinaryNode& node = nodes_[i];
-        if (!node.is_leaf()) {
-          join(node);
-          continue;
-        }
-        for (std::uint32_t k = node.begin; k < node.end; ++k) {
-          node.box.extend(soup_.box[soup_.order[k]]);
-          node.spread += cuts.spread(k - begin);
-        }
-      }
-      return;
-    }
-    // A large range: reorder the simplices around the cut, then build both halves, possibly in parallel.
-    const std::uint32_t boundary = split(begin, end);
-    const auto [left, right] = fork(self, begin, boundary, end, 0);
-    workers_.both([&, left = left] { build(left, begin, boundary); },
-                  [&, right = right] { build(right, boundary, end); });
-    join(nodes_[self]);
-    nodes_[self].cost = box_cost(nodes_[self].box);
-  }
-
-  /// Builds a part of the subtree that `cuts` divides. cost: of its root; first: begin of the range of
-  /// `cuts`.
-  void build_fitted(std::uint32_t self, std::uint32_t begin, std::uint32_t end, double cost, FittedCuts& cuts,
-                    std::uint32_t first) {
-    if (end - begin <= kTreeWidth) {
-      nodes_[self] = {begin, end, kNull, kNull, {}, {}, cost};
-      return;
-    }
-    // The halves' costs were computed to choose the cut, and are stored in the children.
-    const FittedCuts::Halves halves = cuts.cut(begin - first, end - first);
-    const std::uint32_t boundary = first + halves.boundary;
-    const auto [left, right] = fork(self, begin, boundary, end, cost);
-    build_fitted(left, begin, boundary, halves.left_cost, cuts, first);
-    build_fitted(right, boundary, end, halves.right_cost, cuts, first);
-  }
-
-  /// Creates an inner node. Its subtrees contain the simplices before `boundary` and the rest. cost: 0 if
-  /// build() is to compute it. Returns the roots of the subtrees.
-  std::pair<std::uint32_t, std::uint32_t> fork(std::uint32_t self, std::uint32_t begin,
-                                               std::uint32_t boundary, std::uint32_t end, double cost) {
-    // Preorder: the left subtree follows its parent, and its size follows from the number of its leaves.
-    const std::uint32_t left = self + 1, right = left + nodes_for(boundary - begin);
-    nodes_[self] = {begin, end, left, right, {}, {}, cost};
-    return {left, right};
-  }
-
-  /// Computes the box and the moments of a node from those of its children.
-  void join(BinaryNode& node) {
-    node.box = nodes_[node.left].box.merged(nodes_[node.right].box);
-    node.spread = nodes_[node.left].spread;
-    node.spread += nodes_[node.right].spread;
-  }
-
-  /// A split of a range: number of simplices on the left, in the order of their centres on an axis.
-  struct Split {
-    double cost = kInfinity;
-    int axis = 0;
-    std::uint32_t left = 0;
+  /// Coordinates of boxes: (x - origin) * factor, for x in the tree's units.
+  struct Frame {
+    double origin[3] = {0, 0, 0}, factor = 1;
+    bool closest = false;  ///< a closer one would not help
   };
+  using Bounds = std::array<float, 8>;  ///< as FloatBox
 
-  std::uint32_t split(std::uint32_t begin, std::uint32_t end) {
-    // `near`: simplices that are neighbours in the order on the axis, among them the first one on the right,
-    // which has `rank` of them before it.
-    std::vector<std::uint32_t> near;
-    std::uint32_t rank = 0;
-    Split best;
-    if (splits_.all_cuts) {
-      best = best_of_all(begin, end);
-      near.assign(soup_.order.begin() + begin, soup_.order.begin() + end);
-      rank = best.left;
-    } else {
-      best = best_binned(begin, end, near, rank);
+  /// Computes the boxes of a range, and returns their union.
+  Bounds measure(std::uint32_t begin, std::uint32_t end, const Frame& frame) {
+    std::vector<Bounds> bounds(shares_of(end - begin));
+    for_each_share(end - begin, workers_, [&](std::uint32_t first, std::uint32_t last, std::size_t share) {
+      Bounds all;
+      all.fill(std::numeric_limits<float>::infinity());
+      for (std::uint32_t k = begin + first; k < begin + last; ++k) {
+        FloatBox& box = boxes_[k];
+        const VertexId* const v = in_.corners + std::size_t{3} * box.simplex;
+        const double* const x[3] = {in_.vertices + std::size_t{3} * v[0],
+                                    in_.vertices + std::size_t{3} * v[1],
+                                    in_.vertices + std::size_t{3} * v[2]};
+        for (std::size_t i = 0; i < 3; ++i) {
+          const double low = std::min(x[0][i], std::min(x[1][i], x[2][i])),
+                       high = std::max(x[0][i], std::max(x[1][i], x[2][i]));
+          box.low[i] = static_cast<float>((low * in_.scale - frame.origin[i]) * frame.factor);
+          box.negative_high[i] = -static_cast<float>((high * in_.scale - frame.origin[i]) * frame.factor);
+          all[i] = std::min(all[i], box.low[i]);
+          all[4 + i] = std::min(all[4 + i], box.negative_high[i]);
+        }
+        box.unused = 0;
+      }
+      bounds[share] = all;
+    });
+    for (const Bounds& more : bounds)
+      for (std::size_t i = 0; i < more.size(); ++i) bounds[0][i] = std::min(bounds[0][i], more[i]);
+    return bounds[0];
+  }
+
+  /// Returns the length of the longest side.
+  static double size_of(const Bounds& b) {
+    double most = 0;
+    for (std::size_t i = 0; i < 3; ++i) most = std::max(most, -double{b[i]} - double{b[4 + i]});
+    return most;
+  }
+  /// Returns BinaryNode::cost of bounds.
+  static double cost_of(const Bounds& b, const Frame& frame) {
+    double side[3];
+    for (std::size_t i = 0; i < 3; ++i) side[i] = (-double{b[i]} - double{b[4 + i]}) / frame.factor;
+    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0] +
+           kLengthCost * (side[0] * side[0] + side[1] * side[1] + side[2] * side[2]);
+  }
+
+  /// Returns a frame about the centre of a range, in which its box has a side of about 1. Its vertices are
+  /// compared in double, because floats may not tell them apart.
+  Frame closer_frame(std::uint32_t begin, std::uint32_t end) const {
+    Frame frame;
+    frame.closest = true;
+    double size = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      double low = kInfinity, high = -kInfinity;
+      for (std::uint32_t k = begin; k < end; ++k)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const VertexId v = in_.corners[std::size_t{3} * boxes_[k].simplex + corner];
+          const double x = in_.vertices[std::size_t{3} * v + i] * in_.scale;
+          low = std::min(low, x);
+          high = std::max(high, x);
+        }
+      frame.origin[i] = 0.5 * (low + high);
+      size = std::max(size, high - low);
     }
-    // A stable partition in linear time. The simplices of each half stay in the order of the mesh, in which
-    // neighbours mostly are neighbours in memory.
-    const auto before = soup_.order_on(best.axis);
-    std::nth_element(near.begin(), near.begin() + rank, near.end(), before);
-    std::stable_partition(soup_.order.begin() + begin, soup_.order.begin() + end,
-                          [&](std::uint32_t s) { return before(s, near[rank]); });
-    return begin + best.left;
+    // All in one place, or nearly: any splits are right.
+    constexpr double kLeast = 0x1p-500;
+    if (size > kLeast) {
+      int exponent = 0;
+      std::frexp(size, &exponent);
+      frame.factor = std::ldexp(1.0, -exponent);
+      frame.closest = false;
+    }
+    return frame;
   }
 
-  static int bin_of(const BoxBins& bins, int axis, double centre) {
-    return std::min(kBins - 1, static_cast<int>((centre - bins.from[axis]) * bins.per_unit[axis]));
-  }
-
-  /// Returns the best split between two bins, and the simplices of the bin where it is, with the number of
-  /// those on the left.
-  Split best_binned(std::uint32_t begin, std::uint32_t end, std::vector<std::uint32_t>& near,
-                    std::uint32_t& rank) {
+  void split(std::uint32_t self, std::uint32_t begin, std::uint32_t end, Frame frame, Bounds bounds) {
     const std::uint32_t n = end - begin;
-    // Bins divide the range of centres, not of boxes, so that every bin is on one side of each cut.
-    std::vector<GrowingBox<double>> centres(shares_of(n));
-    for_each_share(n, workers_, [&](std::uint32_t first, std::uint32_t last, std::size_t share) {
-      GrowingBox<double> some;
-      for (const std::uint32_t s : soup_.listed(begin + first, begin + last))
-        some.extend(four<double>(soup_.centre(s)));
-      centres[share] = some;
-    });
-    for (const GrowingBox<double>& some : centres) centres[0].extend(some);
-    BoxBins empty;
-    for (int axis = 0; axis < 3; ++axis) {
-      empty.from[axis] = centres[0].low[axis];
-      empty.per_unit[axis] = kBins / (centres[0].high[axis] - centres[0].low[axis]);
-      // The centres (nearly) coincide on this axis: no cut across it.
-      if (!std::isfinite(empty.per_unit[axis])) empty.per_unit[axis] = 0;
-    }
-    // Pass 1: the box and number of simplices of each bin, on all axes.
-    std::vector<BoxBins> filled(shares_of(n), empty);
-    for_each_share(n, workers_, [&](std::uint32_t first, std::uint32_t last, std::size_t share) {
-      BoxKernel k;
-      k.which = soup_.order.data() + begin + first;
-      k.count = last - first;
-      k.bins = &filled[share];
-      k.boxes = soup_.box.data()->min().data();
-      run_box_kernel(k);
-    });
-    BoxBins& bins = filled[0];
-    for (const BoxBins& more : std::span(filled).subspan(1))
-      for (int axis = 0; axis < 3; ++axis)
-        for (int b = 0; b < kBins; ++b) add_to(bins.bin[axis][b], more.bin[axis][b]);
-    Split best;
-    for (int axis = 0; axis < 3; ++axis)
-      if (bins.per_unit[axis] > 0) try_axis(bins.bin[axis], n, axis, best);
-    // Round the cut to a multiple of kTreeWidth, so that all leaves except the last are full. Keep both
-    // halves nonempty.
-    if (best.left == 0) best.left = n / 2;  // all centres coincide: any half is valid
-    best.left = (best.left + kTreeWidth / 2) / kTreeWidth * kTreeWidth;
-    best.left = std::clamp(best.left, kTreeWidth, (n - 1) / kTreeWidth * kTreeWidth);
-    int at = 0;
-    for (rank = best.left; rank >= bins.bin[best.axis][at].count; ++at) rank -= bins.bin[best.axis][at].count;
-    for (const std::uint32_t s : soup_.listed(begin, end))
-      if (bin_of(bins, best.axis, soup_.centre(s)[best.axis]) == at) near.push_back(s);
-    return best;
-  }
-
-  Split best_of_all(std::uint32_t begin, std::uint32_t end) const {
-    std::vector<std::uint32_t> order(soup_.order.begin() + begin, soup_.order.begin() + end);
-    const auto n = static_cast<std::uint32_t>(order.size());
-    std::vector<double> right_cost(n);
-    Split best;
-    best.left = kTreeWidth;
-    for (int axis = 0; axis < 3; ++axis) {
-      // Sweep from the right and record the costs of all right halves; then sweep from the left and add.
-      std::sort(order.begin(), order.end(), soup_.order_on(axis));
-      Box right, left;
-      for (std::uint32_t i = n; i-- > 0;) {
-        right.extend(soup_.box[order[i]]);
-        right_cost[i] = box_cost(right) * leaves_for(n - i);
+    BinaryNode& node = tree_.nodes[self];
+    node = {begin, end};
+    if (n <= kSmallRange) {
+      bounds.fill(std::numeric_limits<float>::infinity());
+      for (std::uint32_t k = begin; k < end; ++k) {
+        tree_.order[k] = boxes_[k].simplex;
+        for (std::size_t i = 0; i < 3; ++i) {
+          bounds[i] = std::min(bounds[i], boxes_[k].low[i]);
+          bounds[4 + i] = std::min(bounds[4 + i], boxes_[k].negative_high[i]);
+        }
       }
-      for (std::uint32_t i = 1; i < n; ++i) {
-        left.extend(soup_.box[order[i - 1]]);
-        if (i % kTreeWidth != 0) continue;
-        const double cost = box_cost(left) * leaves_for(i) + right_cost[i];
-        // Ties: the most balanced cut, so that coincident simplices are halved instead of peeled off.
-        if (cost < best.cost || (cost == best.cost && larger_side(i, n) < larger_side(best.left, n)))
-          best = {cost, axis, i};
-      }
+      node.cost = cost_of(bounds, frame);
+      return;
     }
-    return best;
+    // The range has become small compared with the one for which boxes were computed.
+    if (size_of(bounds) < kSmallSide && !frame.closest) {
+      frame = closer_frame(begin, end);
+      bounds = measure(begin, end, frame);
+    }
+    SplitKernel k;
+    k.boxes = boxes_.data() + begin;
+    k.buffer = buffer_.data() + begin;
+    k.count = n;
+    std::ranges::copy(bounds, k.bounds);
+    run_split_kernel(k);
+    part(k);
+    node.cost = k.cost / (frame.factor * frame.factor);
+    // Preorder: the left subtree follows its parent, and its size follows from the number of its leaves.
+    node.left = self + 1;
+    node.right = node.left + nodes_for(k.left);
+    const std::uint32_t boundary = begin + k.left;
+    const auto left = [&] { split(node.left, begin, boundary, frame, std::to_array(k.halves[0])); };
+    const auto right = [&] { split(node.right, boundary, end, frame, std::to_array(k.halves[1])); };
+    if (n > kShare) return workers_.both(left, right);
+    left();
+    right();
   }
 
-  static void add_to(Bin& bin, const Bin& more) {
-    for (int i = 0; i < 4; ++i) {
-      bin.low_and[i] = std::min(bin.low_and[i], more.low_and[i]);
-      bin.and_high[i] = std::max(bin.and_high[i], more.and_high[i]);
-    }
-    bin.count += more.count;
-  }
-
-  /// Replaces `best` if a cut between two bins of an axis costs less.
-  static void try_axis(const Bin (&bins)[kBins], std::uint32_t count, int axis, Split& best) {
-    // Pass 2, from the right: the cost of everything right of each boundary.
-    std::array<double, kBins> right_cost{};
-    const auto cost_of = [](const Bin& part) {
-      return box_cost(Eigen::Vector3d(part.and_high[1] - part.low_and[0], part.and_high[2] - part.low_and[1],
-                                      part.and_high[3] - part.low_and[2])) *
-             leaves_for(part.count);
+  /// Completes the partition of a range: divides the bin with the boundary by the order of the centres, then
+  /// by number.
+  static void part(const SplitKernel& k) {
+    const std::uint32_t inside = k.count - k.before - k.after, rank = k.left - k.before;
+    const auto place = [&](const FloatBox& box) {
+      return std::pair(box.low[k.axis] - box.negative_high[k.axis], box.simplex);
     };
-    Bin right, left;
-    for (int b = kBins - 1; b > 0; --b) {
-      add_to(right, bins[b]);
-      right_cost[b] = right.count ? cost_of(right) : 0;
-    }
-    // Pass 3, from the left: the cost of each cut, as box cost times number of leaves.
-    for (int b = 1; b < kBins; ++b) {
-      add_to(left, bins[b - 1]);
-      if (left.count == 0 || left.count == count) continue;
-      const double cost = cost_of(left) + right_cost[b];
-      if (cost < best.cost) best = {cost, axis, left.count};
-    }
+    const std::span<const FloatBox> undecided(k.buffer + k.count - inside, inside);
+    std::vector<std::pair<float, std::uint32_t>> places(inside);
+    std::ranges::transform(undecided, places.begin(), place);
+    std::nth_element(places.begin(), places.begin() + rank, places.end());
+    std::uint32_t left = k.before, right = k.left + k.after;
+    std::copy_n(k.buffer, k.after, k.boxes + k.left);
+    // Backwards, which is their order in the range.
+    for (std::uint32_t i = inside; i-- > 0;)
+      k.boxes[place(undecided[i]) < places[rank] ? left++ : right++] = undecided[i];
   }
 
-  Soup& soup_;
+  const BuildInput& in_;
   Workers& workers_;
-  const Splits splits_;
-  std::vector<BinaryNode> nodes_;
+  std::vector<FloatBox> boxes_, buffer_;
+  BinaryTree tree_;
 };
 
 }  // namespace
 
-std::vector<BinaryNode> build_binary_tree(Soup& soup, Workers& workers, Splits splits) {
-  return BinaryBuilder(soup, workers, splits).take();
+BinaryTree split_large_ranges(const BuildInput& in, std::uint32_t count, Workers& workers) {
+  return LargeRanges(in, count, workers).take();
 }
 
 // Collapses a binary tree to a wide one by dynamic programming (Ylitie, Karras and Laine 2017, section 3.1).

@@ -138,6 +138,15 @@ inline Float8 larger(Float8 x, Float8 y) {
 #endif
 }
 
+/// Returns y if x is greater than it, otherwise x (also if either is NaN).
+inline Float8 smaller(Float8 x, Float8 y) {
+#if defined(__AVX__)
+  return reinterpret_cast<Float8>(_mm256_min_ps(reinterpret_cast<__m256>(y), reinterpret_cast<__m256>(x)));
+#else
+  return select(greater(x, y), y, x);
+#endif
+}
+
 inline float largest_of(Float8 x) {
   const auto larger4 = [](Float4 a, Float4 b) {
     const Int4 which = a > b;

@@ -1,13 +1,20 @@
 // Construction of the 8-wide OBB tree (principal axes: Gottschalk, Lin and Manocha 1996; quantized child
 // boxes: Ylitie, Karras and Laine 2017).
 // 1. Choose the unit, a power of two, so that coordinates are at most about 1.
-// 2. Build a binary tree, and collapse it to eight children per node (binary_tree.hpp).
-// 3. Lay out nodes and blocks depth first.
-// 4. Fill the nodes independently, in parallel: fit a frame, compute the boxes in it, quantize them outwards.
+// 2. Split the simplices down to ranges of kSmallRange (binary_tree.hpp), and these, in parallel, down to
+// leaves,
+//    which are filled at once (divide_kernel.inl).
+// 3. Collapse the binary tree to eight children per node, and lay out the nodes depth first.
+// 4. Fill the inner nodes independently, in parallel: fit a frame to the moments of the leaves beneath,
+// compute
+//    the boxes of the leaves' vertices in it, quantize them outwards (node_kernel.inl).
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <memory>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -23,171 +30,190 @@
 namespace lrb {
 namespace {
 
-using Box = Eigen::AlignedBox3d;
-using Eigen::Vector3d;
-
-/// Splits of trees of bodies. More tries gain nothing, fewer cost 2 % of a query (docs/measurements.md).
-constexpr Splits kBodySplits{.fitted = 2048, .effort = {.principal = 1, .tried = 3}, .all_cuts = false};
-/// Splits of trees of wrappers, whose faces are few and long: more tries are worthwhile.
-constexpr Splits kWrapperSplits{.fitted = 512, .effort = {.principal = 3, .tried = 32}, .all_cuts = true};
+/// Returns the smallest power of two above the extent, clamped to the range of normal doubles.
+double unit_above(double extent) {
+  int exponent = 0;
+  std::frexp(extent, &exponent);
+  return std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
+}
 
 }  // namespace
 
-/// Collapses the binary tree to eight children per node and quantizes the boxes. Lays out all nodes first,
-/// then fills them independently.
 class ObbTreeBuilder {
  public:
   /// Builds an empty tree over the listed simplices.
   static void build(ObbTree& tree, const SimplexView& body, std::span<const SimplexId> simplices,
-                    Splits splits, unsigned threads) {
-    tree.measure(body, simplices);
+                    unsigned threads) {
     if (simplices.empty()) return;
     Workers workers(threads);
-    Soup soup(body, simplices, tree.unit_, workers);
-    ObbTreeBuilder(tree, soup, workers, splits);
+    ObbTreeBuilder(tree, body, simplices, workers);
   }
 
  private:
-  ObbTreeBuilder(ObbTree& tree, Soup& soup, Workers& workers, Splits splits)
-      : tree_(tree), soup_(soup), binary_(build_binary_tree(soup, workers, splits)) {
-    soup_.follow_order(workers);
+  ObbTreeBuilder(ObbTree& tree, const SimplexView& body, std::span<const SimplexId> simplices,
+                 Workers& workers)
+      : tree_(tree), workers_(workers) {
+    const auto count = static_cast<std::uint32_t>(simplices.size());
+    const std::vector<VertexId> corners = read(body, simplices);
+    // The unit is a power of two, at least 2^-1022. The inverse of 2^1023 is subnormal, but exact.
+    const BuildInput in{body.vertices.data()->data(), corners.data(), simplices.data(), 1 / tree.unit_};
+    binary_ = split_large_ranges(in, count, workers);
+    leaves_.resize(leaves_for(count));
+    leaf_nodes_.resize(leaves_.size());
+    tree_.blocks_.resize(leaves_.size());
+    divide(in);
+    places_.reserve(leaves_.size() * 5 / 4 + kTreeWidth);
     places_.resize(1);
-    lay_out(Collapse(binary_), 0, 0, 1);
+    lay_out(Collapse(binary_.nodes), 0, 0, 1);
     tree_.nodes_.resize(places_.size());
-    tree_.blocks_.resize(block_count_);
+    sum_up();
     // Nodes per task: enough simplices to be worth distributing.
     constexpr std::size_t kNodes = 32;
-    workers.for_each((tree_.nodes_.size() + kNodes - 1) / kNodes, [&](std::size_t i, unsigned) {
-      const std::size_t end = std::min(tree_.nodes_.size(), (i + 1) * kNodes);
+    workers.for_each((places_.size() + kNodes - 1) / kNodes, [&](std::size_t i, unsigned) {
+      const std::size_t end = std::min(places_.size(), (i + 1) * kNodes);
       for (std::size_t n = i * kNodes; n < end; ++n) fill(static_cast<std::uint32_t>(n));
+    });
+  }
+
+  /// Reads the corners of the simplices, and sets the tree's extent and unit.
+  std::vector<VertexId> read(const SimplexView& body, std::span<const SimplexId> simplices) {
+    std::vector<VertexId> corners(3 * simplices.size());
+    std::vector<double> extents(shares_of(simplices.size()));
+    for_each_share(simplices.size(), workers_,
+                   [&](std::uint32_t begin, std::uint32_t end, std::size_t share) {
+                     double extent = 0;
+                     for (std::uint32_t s = begin; s < end; ++s) {
+                       VertexId* const v = corners.data() + std::size_t{3} * s;
+                       body.simplex(simplices[s], v);
+                       // A segment is a triangle whose last two corners coincide.
+                       if (body.dim == 2) v[2] = v[1];
+                       for (int k = 0; k < body.dim; ++k)
+                         for (int i = 0; i < 3; ++i)
+                           extent = std::max(extent, std::abs(body.vertices[v[k]][i]));
+                     }
+                     extents[share] = extent;
+                   });
+    tree_.extent_ = *std::ranges::max_element(extents);
+    tree_.unit_ = unit_above(tree_.extent_);
+    return corners;
+  }
+
+  /// Divides the small ranges and fills the leaves.
+  void divide(const BuildInput& in) {
+    std::vector<std::uint32_t> ranges;
+    for (std::uint32_t i = 0; i < binary_.nodes.size(); ++i)
+      if (binary_.nodes[i].is_leaf() && binary_.nodes[i].end > 0) ranges.push_back(i);
+    packets_.resize(ranges.size());
+    std::vector<std::unique_ptr<DivideMemory>> memories(workers_.count());
+    workers_.for_each(ranges.size(), [&](std::size_t i, unsigned worker) {
+      std::unique_ptr<DivideMemory>& memory = memories[worker];
+      if (!memory) memory.reset(new DivideMemory);
+      const BinaryNode range = binary_.nodes[ranges[i]];
+      DivideKernel k{in,
+                     binary_.order.data(),
+                     binary_.nodes.data(),
+                     ranges[i],
+                     leaf_nodes_.data(),
+                     tree_.blocks_.data(),
+                     leaves_.data(),
+                     memory.get(),
+                     0};
+      run_divide_kernel(k);
+      packets_[i].assign(memory->packets, memory->packets + k.packet_count);
+      for (std::uint32_t leaf = range.begin / kTreeWidth; leaf < leaves_for(range.end); ++leaf)
+        leaves_[leaf].packets = packets_[i].data() + (leaves_[leaf].packets - memory->packets);
     });
   }
 
   /// Assigns the indices of children and blocks, depth first.
   void lay_out(const Collapse& collapse, std::uint32_t wide, std::uint32_t binary, std::uint32_t height) {
     tree_.height_ = std::max(tree_.height_, height);
+    const BinaryNode& node = binary_.nodes[binary];
+    const std::uint32_t begin = node.begin / kTreeWidth, end = leaves_for(node.end);
     // A leaf: `first` is the number of its block.
-    if (binary_[binary].is_leaf()) {
-      places_[wide] = {binary, block_count_++, 0};
+    if (node.is_leaf()) {
+      places_[wide] = {begin, end, begin, 0};
       return;
     }
     // Children are contiguous: their indices are reserved before those of any subtree.
     const std::vector<std::uint32_t> children = collapse.children(binary);
     const auto first = static_cast<std::uint32_t>(places_.size());
-    places_[wide] = {binary, first, static_cast<std::uint32_t>(children.size())};
+    places_[wide] = {begin, end, first, static_cast<std::uint32_t>(children.size())};
     places_.resize(first + children.size());
     for (std::uint32_t k = 0; k < children.size(); ++k) lay_out(collapse, first + k, children[k], height + 1);
   }
 
+  const NodeSum& sum_of(std::uint32_t wide) const {
+    return places_[wide].count == 0 ? leaves_[places_[wide].first].sum : sums_[wide];
+  }
+
+  /// Computes the sums of inner nodes from those of their children, which come after them.
+  void sum_up() {
+    sums_.resize(places_.size());
+    for (auto wide = static_cast<std::uint32_t>(places_.size()); wide-- > 0;) {
+      const Place& place = places_[wide];
+      if (place.count == 0) continue;
+      NodeSum& all = sums_[wide];
+      all = {0,
+             {0, 0, 0},
+             {0, 0, 0, 0, 0, 0},
+             {kInfinity, kInfinity, kInfinity},
+             {-kInfinity, -kInfinity, -kInfinity}};
+      for (std::uint32_t k = place.first; k < place.first + place.count; ++k) {
+        const NodeSum& x = sum_of(k);
+        all.weight += x.weight;
+        for (int i = 0; i < 3; ++i) {
+          all.mean[i] += x.weight * x.mean[i];
+          all.low[i] = std::min(all.low[i], x.low[i]);
+          all.high[i] = std::max(all.high[i], x.high[i]);
+        }
+      }
+      // Without weight (underflow) there are no principal axes.
+      if (!(all.weight > 0)) continue;
+      for (double& x : all.mean) x /= all.weight;
+      for (std::uint32_t k = place.first; k < place.first + place.count; ++k) {
+        const NodeSum& x = sum_of(k);
+        const double d[3] = {x.mean[0] - all.mean[0], x.mean[1] - all.mean[1], x.mean[2] - all.mean[2]};
+        for (int i = 0; i < 3; ++i) {
+          all.second[i] += x.second[i] + x.weight * d[i] * d[i];
+          all.second[3 + i] += x.second[3 + i] + x.weight * d[(i + 1) % 3] * d[(i + 2) % 3];
+        }
+      }
+    }
+  }
+
   void fill(std::uint32_t wide) {
-    const BinaryNode& b = binary_[places_[wide].binary];
+    const Place& place = places_[wide];
     TreeNode& node = tree_.nodes_[wide];
-    const std::uint32_t first = places_[wide].first,
-                        count = b.is_leaf() ? b.end - b.begin : places_[wide].count;
-    // The boxes of children are recomputed from the simplices in the node's frame: a box of a box would be
-    // looser.
-    Frame frame = principal_frame(soup_, soup_.listed(b.begin, b.end), b.spread, b.box);
-    std::array<Box, kTreeWidth> boxes;
-    Box all;
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const auto [begin, end] = child_range(b, first, k);
-      all.extend(boxes[k] = box_in_frame(soup_, soup_.listed(begin, end), frame));
+    if (place.count == 0) {
+      node = leaf_nodes_[place.first];
+      return;
     }
-    // Principal axes are not always best: those of a cube are arbitrary. Otherwise use the coordinate axes.
-    if (!(half_area(all) < half_area(b.box))) {
-      frame.axes.setIdentity();
-      for (std::uint32_t k = 0; k < count; ++k) {
-        const Box& box =
-            b.is_leaf() ? soup_.box_of(soup_.order[b.begin + k]) : binary_[places_[first + k].binary].box;
-        boxes[k] = Box(box.min() - frame.origin, box.max() - frame.origin);
-      }
+    NodeKernel k;
+    k.sum = &sums_[wide];
+    k.count = place.count;
+    k.node = &node;
+    for (std::uint32_t i = 0; i < place.count; ++i) {
+      const Place& child = places_[place.first + i];
+      k.children[i] = {&sum_of(place.first + i), leaves_.data() + child.begin, leaves_.data() + child.end};
     }
-    if (b.is_leaf()) fill_block(tree_.blocks_[first], b, frame);
-    // quantize() overwrites the entire node.
-    quantize(node, frame, std::span(boxes).first(count));
-    node.first = first;
-    node.is_leaf = b.is_leaf();
-  }
-
-  /// Returns the range of simplices in box `k` of a node.
-  std::pair<std::uint32_t, std::uint32_t> child_range(const BinaryNode& node, std::uint32_t first,
-                                                      std::uint32_t k) const {
-    if (node.is_leaf()) return {node.begin + k, node.begin + k + 1};
-    const BinaryNode& child = binary_[places_[first + k].binary];
-    return {child.begin, child.end};
-  }
-
-  void fill_block(LeafBlock& block, const BinaryNode& b, const Frame& frame) const {
-    std::fill(std::begin(block.simplex), std::end(block.simplex), kNull);
-    for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
-      // Absent simplices repeat the last one, so that all eight lanes contain valid coordinates.
-      const std::uint32_t s = soup_.order[std::min(b.begin + k, b.end - 1)];
-      for (int corner = 0; corner < 3; ++corner) {
-        const Vector3d x = product3(frame.axes, soup_.corner(s, corner) - frame.origin);
-        for (int axis = 0; axis < 3; ++axis) block.corner[corner][axis][k] = static_cast<float>(x[axis]);
-      }
-      if (b.begin + k < b.end) block.simplex[k] = soup_.simplices[s];
-    }
-  }
-
-  static void quantize(TreeNode& node, const Frame& frame, std::span<const Box> boxes) {
-    node = {};
-    Box all;
-    for (const Box& b : boxes) all.extend(b);
-    // Covers the rounding of the projection above, with room for the float arithmetic below.
-    const double margin =
-        kTreeRounding * (all.min().cwiseAbs().cwiseMax(all.max().cwiseAbs()).maxCoeff()) + kTreeRoundingUnits;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) node.frame[i][j] = static_cast<float>(frame.axes(i, j));
-      node.origin[i] = frame.origin[i];
-      // The range is widened by twice the margin: boxes are enlarged by one margin, and the codes must still
-      // cover them.
-      const double lo = all.min()[i] - 2 * margin, hi = all.max()[i] + 2 * margin;
-      node.base[i] = std::nextafter(static_cast<float>(lo), -INFINITY);
-      node.scale[i] = std::nextafter(static_cast<float>((hi - node.base[i]) / kQuantizedMost), INFINITY);
-      const double per_unit = 1 / static_cast<double>(node.scale[i]);
-      for (std::uint32_t k = 0; k < kTreeWidth; ++k) {
-        // Absent children have lo > hi.
-        node.lo[i][k] =
-            k < boxes.size() ? quantize_down(node, i, per_unit, boxes[k].min()[i] - margin) : kQuantizedMost;
-        node.hi[i][k] = k < boxes.size() ? quantize_up(node, i, per_unit, boxes[k].max()[i] + margin) : 0;
-      }
-    }
-    node.count = static_cast<std::uint8_t>(boxes.size());
-    // The origin is 0 in this frame, so the farthest corner of the common box bounds the radius.
-    double farthest = 0;
-    for (int corner = 0; corner < 8; ++corner)
-      farthest = std::max(farthest, norm3(all.corner(static_cast<Box::CornerType>(corner))));
-    node.radius = std::nextafter(static_cast<float>(farthest + 2 * margin), INFINITY);
-  }
-
-  static float decode(const TreeNode& node, int axis, int q) {
-    return node.base[axis] + node.scale[axis] * static_cast<float>(q);
-  }
-  static std::uint8_t quantize_down(const TreeNode& node, int axis, double per_unit, double x) {
-    // Start one code too high and step down until the decoded value is at or below x. The float decoding
-    // itself decides, so its rounding need not be estimated.
-    int q = std::clamp(static_cast<int>((x - node.base[axis]) * per_unit) + 1, 0, kQuantizedMost);
-    while (q > 0 && decode(node, axis, q) > x) --q;
-    return static_cast<std::uint8_t>(q);
-  }
-  static std::uint8_t quantize_up(const TreeNode& node, int axis, double per_unit, double x) {
-    // The mirror image: the decoded value is at or above x.
-    int q = std::clamp(static_cast<int>((x - node.base[axis]) * per_unit) - 1, 0, kQuantizedMost);
-    while (q < kQuantizedMost && decode(node, axis, q) < x) ++q;
-    return static_cast<std::uint8_t>(q);
+    run_node_kernel(k);
+    node.first = place.first;
   }
 
   ObbTree& tree_;
-  Soup& soup_;
-  const std::vector<BinaryNode> binary_;
+  Workers& workers_;
+  BinaryTree binary_;
+  std::vector<TreeNode> leaf_nodes_;  ///< (|leaves|)
+  std::vector<LeafSum> leaves_;
+  std::vector<std::vector<VertexPacket>> packets_;  ///< of each small range
   /// Where a wide node is.
   struct Place {
-    std::uint32_t binary;        ///< the same node of the binary tree
+    std::uint32_t begin, end;    ///< leaves beneath it
     std::uint32_t first, count;  ///< as in TreeNode; a leaf's count is 0 here
   };
   std::vector<Place> places_;  ///< (|nodes|)
-  std::uint32_t block_count_ = 0;
+  std::vector<NodeSum> sums_;  ///< (|nodes|) of inner nodes
 };
 
 void ObbTree::measure(const SimplexView& body, std::span<const SimplexId> simplices) {
@@ -196,21 +222,13 @@ void ObbTree::measure(const SimplexView& body, std::span<const SimplexId> simpli
     body.simplex(s, v);
     for (int k = 0; k < body.dim; ++k) extent_ = std::max(extent_, body.vertices[v[k]].cwiseAbs().maxCoeff());
   }
-  if (simplices.empty()) return;
-  // The smallest power of two above the extent, clamped to the range of normal doubles.
-  int exponent = 0;
-  std::frexp(extent_, &exponent);
-  unit_ = std::ldexp(1.0, std::clamp(exponent, -1022, 1023));
+  if (!simplices.empty()) unit_ = unit_above(extent_);
 }
 
-ObbTree::ObbTree(const SimplexView& body, unsigned threads) {
-  ObbTreeBuilder::build(*this, body, body.real_simplices(), kBodySplits, threads);
-}
+ObbTree::ObbTree(const SimplexView& body, unsigned threads) : ObbTree(body, body.real_simplices(), threads) {}
 
 ObbTree::ObbTree(const SimplexView& body, std::span<const SimplexId> simplices, unsigned threads) {
-  constexpr std::size_t kFew = 8192;  // sorting them takes 10 ms
-  ObbTreeBuilder::build(*this, body, simplices, simplices.size() <= kFew ? kWrapperSplits : kBodySplits,
-                        threads);
+  ObbTreeBuilder::build(*this, body, simplices, threads);
 }
 
 // Checks of a tree loaded from a file.

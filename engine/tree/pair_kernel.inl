@@ -7,10 +7,6 @@
 namespace lrb {
 namespace {
 
-inline Float8 smaller(Float8 x, Float8 y) {
-  return select(greater(x, y), y, x);
-}
-
 /// Eight simplices of a table, lane by lane.
 struct EightSimplices {
   Float8 corner[3], edge[2][3], longest;
