@@ -159,9 +159,9 @@ Mesh threaded(Mesh mesh) {
 
 /// Bodies that reach through each other, at distances far below their sizes.
 std::vector<DistantBodies> interlocked_bodies() {
-  const Mesh ring = shapes::torus(24, 10, 1, 0.2),
-             tube = test::stretched(shapes::torus(24, 12, 1.3, 0.25), {1, 1, 4}),
-             shaft = test::stretched(shapes::uv_sphere(24, 8), {0.9, 0.9, 1.5});
+  const Mesh ring = shapes::torus(18, 8, 1, 0.2),
+             tube = test::stretched(shapes::torus(18, 10, 1.3, 0.25), {1, 1, 4}),
+             shaft = test::stretched(shapes::uv_sphere(18, 8), {0.9, 0.9, 1.5});
   // A chain of four links, of which A has every second one.
   const auto two_links = [&](double at) {
     return shapes::several(
@@ -215,7 +215,7 @@ TEST_CASE("the interval contains the rational distance of interlocked bodies") {
   for (const DistantBodies& pair : interlocked_bodies()) {
     CAPTURE(pair.name);
     std::uint64_t most_steps = 0;
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 2; ++i) {
       CAPTURE(i);
       const Pose pose = test::nudged(random, pair.pose, 0.02, 0.03, 3);
       check(pair.a, Pose{}, pair.b, pose, t);
@@ -223,7 +223,7 @@ TEST_CASE("the interval contains the rational distance of interlocked bodies") {
     }
     CHECK(most_steps > 32);  // with more than one descent
   }
-  CHECK(t.apart > 18);
+  CHECK(t.apart > 6);
 }
 
 TEST_CASE("the interval contains the rational distance for bodies far from the origin") {
