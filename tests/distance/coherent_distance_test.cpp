@@ -102,7 +102,8 @@ TEST_CASE(
       if (i % 7 == 0) poses.a = test::nudged(random, poses.a, share, share, dim);
       check_same(pair.a, pair.b, poses, follows.distance(poses.a, poses.b), all);
     }
-    if (pair.steps > 300) CHECK(10 * all.steps < 8 * all.steps_alone);
+    // Few steps are left to save, because a query from scratch repeats none of its descent.
+    if (pair.steps > 300) CHECK(20 * all.steps < 19 * all.steps_alone);
   }
   CHECK(all.meet > 50);
   CHECK(all.inside > 50);

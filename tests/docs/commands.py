@@ -21,7 +21,7 @@ import shell
 NOT_RUN = [
     (
         "",
-        r"^(\./run|\./check|cmake |cmake/release|pip |ctest |export PYTHONPATH|\(cd build/release && cpack\)|apt-get )",
+        r"^(\./run|\.ci/run|\./check|cmake |cmake/release|pip |ctest |export PYTHONPATH|\(cd build/release && cpack\)|apt-get )",
         "builds; tests/fresh_install, ./check",
     ),
     ("", r"^(build/|tests/guard/)", "programs of tests and benchmarks, named by their tests"),

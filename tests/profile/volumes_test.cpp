@@ -267,8 +267,7 @@ TEST_CASE("the gap of two boxes is the distance of their sides, of flat ones too
     capture::Tree b = random_obb(random, i / 4 % 4);
     if (i % 3 == 0) b.volumes = a.volumes;  // parallel, coplanar and coincident sides
     const Volumes x(a), y(b);
-    const bool far = i % 4 == 3;
-    const Vector3d by = (far ? 4 : i % 4) * shapes::random_direction(random);
+    const Vector3d by = (i % 4) * shapes::random_direction(random);
     const Pose pose =
         i % 5 == 0 ? Pose::translation(i % 2 ? by : i % 4 * x.box(0).half[1])
                    : Pose::rotation(shapes::random_direction(random), shapes::uniform(random, 0, 3), by);
@@ -279,10 +278,7 @@ TEST_CASE("the gap of two boxes is the distance of their sides, of flat ones too
         x.outside(0, pose.apply(y.box(0).centre)) == 0 || y.outside(0, back.apply(x.box(0).centre)) == 0;
     met += to_sides == 0;
     if (to_sides < 1e-9 && found < 1e-9) continue;  // within rounding of contact, or crossing
-    // Near each other gap() may stop above the distance, when edges are nearly parallel.
-    if (!held || found > 0) CHECK(found >= to_sides * (1 - 1e-7));
-    if (far && found > 0) CHECK(found == doctest::Approx(to_sides).epsilon(1e-7));
-    if (!held) CHECK((found == 0) == (to_sides == 0));
+    if (!held || found > 0) CHECK(found == doctest::Approx(to_sides).epsilon(1e-7));
     apart += found > 0;
   }
   CHECK(apart > 200);

@@ -4,7 +4,8 @@ export const style = (name) => getComputedStyle(document.documentElement).getPro
 export const digits = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 export const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : many}`;
 
-const SVG = "http://www.w3.org/2000/svg";
+// The parser names the namespace of pictures, so that pages contain no address.
+const SVG = Object.assign(document.createElement("template"), { innerHTML: "<svg>" }).content.firstChild.namespaceURI;
 const fill = (node, attributes, content) => {
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
   node.append(...content);

@@ -119,7 +119,7 @@ TEST_CASE("the paper's experiment: approved counts") {
   REQUIRE(steps.size() == 6);
   CHECK(steps[5].counts[0].comparisons == 994);
   CHECK(steps[5].counts[1].comparisons == 685);
-  CHECK(steps[5].counts[2].comparisons == 308);
+  CHECK(steps[5].counts.back().comparisons == 369);
 }
 
 TEST_CASE("the series: exact powers are recovered, and the errors of others") {
