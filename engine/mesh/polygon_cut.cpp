@@ -282,7 +282,7 @@ PolygonCut cut_polygon(std::span<const Vector3d> corners,
   // may.
   std::array<int, 3> axes = {0, 1, 2};
   std::sort(axes.begin(), axes.end(),
-            [&](int i, int j) { return std::abs(normal[i]) > std::abs(normal[j]); });
+            [&along = normal](int i, int j) { return std::abs(along[i]) > std::abs(along[j]); });
   int axis = 0, x = 0, y = 0;
   bool left = false, right = false;
   for (std::size_t k = 0; k < 3 && !left && !right; ++k) {
