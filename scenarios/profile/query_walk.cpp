@@ -182,8 +182,12 @@ std::uint32_t QueryWalk::deepest_from(std::uint32_t a, std::uint32_t b, const Ac
   for (std::uint32_t x = a; x != kNull; x = index_[0]->parent[x]) {
     if (best != kNone && index_[0]->depth[x] + depth_b <= best_depth) break;  // the rest is less deep
     // The visits of x, or the nodes above b, whichever are fewer: in trees like lists both may be many.
-    const auto visits =
-        std::ranges::equal_range(by_a_, x, {}, [&](std::uint32_t i) { return query_->events[i].a; });
+    const auto first = std::partition_point(by_a_.begin(), by_a_.end(),
+                                            [&](std::uint32_t i) { return query_->events[i].a < x; });
+    const auto last =
+        std::partition_point(first, by_a_.end(), [&](std::uint32_t i) { return query_->events[i].a == x; });
+    const std::span<const std::uint32_t> visits(by_a_.data() + (first - by_a_.begin()),
+                                                static_cast<std::size_t>(last - first));
     if (visits.size() < above_b.size()) {
       for (const std::uint32_t visit : visits) {
         const std::uint32_t y = query_->events[visit].b, depth_y = index_[1]->depth[y];
