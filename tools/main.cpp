@@ -13,7 +13,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/core/inputs.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/commands.hpp"
 #include "tools/terminal.hpp"

@@ -1,7 +1,6 @@
 #include <iostream>
 #include <memory>
 
-#include "engine/core/inputs.hpp"
 #include "scenarios/crowd/crowd_pairs.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"

@@ -14,7 +14,6 @@
 #include <set>
 #include <vector>
 
-#include "engine/core/inputs.hpp"
 #include "engine/platform/platform.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
@@ -168,10 +167,6 @@ int create_temporary(const std::string& name) {
   errno = reason;
   return file;
 }
-
-}  // namespace
-
-namespace {
 
 std::vector<std::filesystem::path>& inputs() {
   static auto* const all = new std::vector<std::filesystem::path>;

@@ -20,11 +20,6 @@ inline constexpr double kLengthCost = 1e-5;
 /// mean height of the tree. Larger: it also affects larger boxes.
 inline constexpr double kSimplexCost = 0x1p-40;
 
-/// A range of simplices is measured again if its variance is below this fraction of the squared diagonal of
-/// the range for which it was measured. Smaller: rounding errors hide the distribution of the simplices of
-/// small parts.
-inline constexpr double kMeasureAgain = 1e-6;
-
 /// Maximum deviation from orthonormality of a node's axes after rounding to float (largest row sum;
 /// dimensionless): 8 u, u = 2^-24; rounding uses 5.2 u of it. Larger: kKernelRounding does not hold.
 /// Smaller: nodes lose their own axes.

@@ -306,7 +306,6 @@ PolygonCut cut_polygon(std::span<const Vector3d> corners,
 }
 
 PolygonCut cut_polygon(const Mesh& mesh, FaceId f, std::vector<std::array<VertexId, 3>>& triangles) {
-  const FloatMode float_mode;
   const auto corners = mesh.face(f);
   triangles.clear();
   if (corners.size() <= 3) {

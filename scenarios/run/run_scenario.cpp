@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
-#include "engine/core/inputs.hpp"
 #include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/engine_run.hpp"
