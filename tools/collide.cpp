@@ -75,7 +75,7 @@ std::string choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBod
 }
 
 spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies,
-                             const PictureOptions& picture) {
+                             std::vector<Pose> poses, const PictureOptions& picture) {
   spec::Scenario s;
   s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string();
   s.bodies = {{}, {}};
@@ -90,7 +90,7 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
   s.frames.views = run::whole_and_contact();
   if (!o.poses.empty()) {
     s.motion.kind = spec::Motion::Kind::poses;
-    s.motion.poses = io::open_poses(o.poses).poses;
+    s.motion.poses = std::move(poses);
   } else {
     // The default direction is oblique: along an axis, the first contact of axis-aligned bodies would be
     // entire faces.
@@ -118,10 +118,12 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
   if (o.live) run::check_live_page();
-  if (!o.poses.empty()) io::open_poses(o.poses);  // check the file before an expensive build
+  // Read before an expensive build, and once: a pipe is empty the second time.
+  std::vector<Pose> poses;
+  if (!o.poses.empty()) poses = io::open_poses(o.poses).poses;
   if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
   if (o.more.near) check_request(NearPairsRequest{.within = *o.more.near});
-  if (!o.more.points.empty()) io::read_points(o.more.points);
+  if (!o.more.points.empty() && !std::filesystem::is_fifo(o.more.points)) io::read_points(o.more.points);
   if (o.more.manifold) check_request(ManifoldRequest{.margin = *o.more.manifold});
   const run::ProgressReport progress = progress_report(globals.quiet);
   auto both = bodies::load_two_bodies(o.a, o.b, with_progress({}, globals.quiet), o.corners);
@@ -132,7 +134,7 @@ int run_collide(const CollideOptions& o, const Globals& globals) {
                      ": expected two bodies of the same dimension, found a 2D and a 3D body");
   PictureOptions picture = o.picture;
   const std::string up_note = choose_up(picture.camera, bodies, globals);
-  spec::Scenario scenario = make_scenario(o, bodies, picture);
+  spec::Scenario scenario = make_scenario(o, bodies, std::move(poses), picture);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   run::Recording recording = run::record(scenario, std::move(bodies), progress);
   choose_views(picture.camera, scenario, recording);

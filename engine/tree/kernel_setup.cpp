@@ -15,6 +15,7 @@
 #include <Eigen/SVD>
 
 #include "engine/core/tolerances.hpp"
+#include "engine/tree/kernel_choice.hpp"
 
 namespace lrb {
 

@@ -16,17 +16,6 @@
 
 namespace lrb {
 
-/// The instruction sets for which kernels are compiled.
-enum class InstructionSet : std::uint8_t {
-  baseline,  ///< the minimum of the platform
-  avx2,
-  avx512,  ///< still eight lanes, but with mask registers
-};
-
-/// Returns the newest instruction set of the processor that the environment variable LRB_SIMD ("baseline",
-/// "avx2") permits.
-InstructionSet best_instruction_set();
-
 /// Returns the unit in which two trees are compared, in mesh units.
 inline double query_unit(const ObbTree& a, const ObbTree& b) {
   return std::max(a.unit(), b.unit());

@@ -1,6 +1,7 @@
 #include "engine/tree/tree_kernel.hpp"
 
 #include "engine/tree/build_kernel.hpp"
+#include "engine/tree/kernel_choice.hpp"
 #include "engine/tree/kernel_setup.hpp"
 
 namespace lrb {
@@ -24,79 +25,16 @@ void for_each_self_pair(const ObbTree& tree, const std::function<void(SimplexId,
   }
 }
 
-void run_tree_kernel_baseline(TreeKernel& k);
-void run_affine_kernel_baseline(TreeKernel& k);
-void run_pair_kernel_baseline(const PairKernel& k);
-void run_split_kernel_baseline(SplitKernel& k);
-void run_divide_kernel_baseline(DivideKernel& k);
-void run_node_kernel_baseline(const NodeKernel& k);
-#if defined(__x86_64__)
-void run_tree_kernel_avx2(TreeKernel& k);
-void run_affine_kernel_avx2(TreeKernel& k);
-void run_pair_kernel_avx2(const PairKernel& k);
-void run_split_kernel_avx2(SplitKernel& k);
-void run_divide_kernel_avx2(DivideKernel& k);
-void run_node_kernel_avx2(const NodeKernel& k);
-void run_tree_kernel_avx512(TreeKernel& k);
-void run_affine_kernel_avx512(TreeKernel& k);
-void run_pair_kernel_avx512(const PairKernel& k);
-void run_split_kernel_avx512(SplitKernel& k);
-void run_divide_kernel_avx512(DivideKernel& k);
-void run_node_kernel_avx512(const NodeKernel& k);
-#endif
-
-namespace {
-
-struct Kernels {
-  void (*tree)(TreeKernel&) = run_tree_kernel_baseline;
-  void (*affine)(TreeKernel&) = run_affine_kernel_baseline;
-  void (*pairs)(const PairKernel&) = run_pair_kernel_baseline;
-  void (*split)(SplitKernel&) = run_split_kernel_baseline;
-  void (*divide)(DivideKernel&) = run_divide_kernel_baseline;
-  void (*node)(const NodeKernel&) = run_node_kernel_baseline;
-};
-
-Kernels best_kernels() {
-  switch (best_instruction_set()) {
-#if defined(__x86_64__)
-    case InstructionSet::avx512:
-      return {run_tree_kernel_avx512,  run_affine_kernel_avx512, run_pair_kernel_avx512,
-              run_split_kernel_avx512, run_divide_kernel_avx512, run_node_kernel_avx512};
-    case InstructionSet::avx2:
-      return {run_tree_kernel_avx2,  run_affine_kernel_avx2, run_pair_kernel_avx2,
-              run_split_kernel_avx2, run_divide_kernel_avx2, run_node_kernel_avx2};
-#endif
-    default:
-      return {};
-  }
-}
-
-const Kernels& kernels() {
-  // Selected once, at the first call. The initialisation of a local static is thread-safe.
-  static const Kernels best = best_kernels();
-  return best;
-}
-
-}  // namespace
-
+LRB_KERNEL_VERSIONS(run_tree_kernel, TreeKernel&)
+LRB_KERNEL_VERSIONS(run_affine_kernel, TreeKernel&)
 void run_tree_kernel(TreeKernel& k) {
-  (k.affine != nullptr ? kernels().affine : kernels().tree)(k);
+  static const auto rigid = LRB_BEST_KERNEL(run_tree_kernel), affine = LRB_BEST_KERNEL(run_affine_kernel);
+  (k.affine != nullptr ? affine : rigid)(k);
 }
 
-void run_pair_kernel(const PairKernel& k) {
-  kernels().pairs(k);
-}
-
-void run_split_kernel(SplitKernel& k) {
-  kernels().split(k);
-}
-
-void run_divide_kernel(DivideKernel& k) {
-  kernels().divide(k);
-}
-
-void run_node_kernel(const NodeKernel& k) {
-  kernels().node(k);
-}
+LRB_KERNEL(run_pair_kernel, const PairKernel&)
+LRB_KERNEL(run_split_kernel, SplitKernel&)
+LRB_KERNEL(run_divide_kernel, DivideKernel&)
+LRB_KERNEL(run_node_kernel, const NodeKernel&)
 
 }  // namespace lrb

@@ -10,7 +10,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/tree/binary_tree.hpp"
-#include "engine/tree/kernel_setup.hpp"
+#include "engine/tree/kernel_choice.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/obb_tree.hpp>
 #include <lrbscope/simplex_view.hpp>

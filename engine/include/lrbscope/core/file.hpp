@@ -41,8 +41,8 @@ class AtomicFile {
   int file_ = -1;
 };
 
-/// Makes AtomicFile refuse to replace a file that exists, under any of its names: a program's outputs must not
-/// replace its inputs. Call it before any thread.
+/// Makes AtomicFile refuse to replace a file that exists, under any of its names: a program's outputs must
+/// not replace its inputs. Call it before any thread.
 void protect_input(const std::string& path);
 /// Throws InputError if a path is a protected file.
 void reject_input_as_output(const std::string& path);
