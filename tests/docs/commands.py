@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """commands.py TREE LRBSCOPE [PAGE...]: runs the `lrbscope` lines of the shell blocks of README and docs/.
 
-Those of a page run one after the other in a folder with files of the names that they mention. Lines that are
-not run are in NOT_RUN with a reason, also those of other programs: a new line is run or needs a reason.
+Those of a page run one after the other in a folder with files of the names that they mention. README's JSON
+lines show values of the output. Lines that are not run are in NOT_RUN with a reason, also those of other
+programs: a new line is run or needs a reason.
 """
 import json
 import math
@@ -21,7 +22,7 @@ import shell
 NOT_RUN = [
     (
         "",
-        r"^(\./run|\.ci/run|\./check|cmake |cmake/release|pip |ctest |export PYTHONPATH|\(cd build/release && cpack\)|apt-get )",
+        r"^(cd examples/data$|\./run|\.ci/run|\./check|cmake |cmake/release|pip |ctest |export PYTHONPATH|\(cd build/release && cpack\)|apt-get )",
         "builds; tests/fresh_install, ./check",
     ),
     ("", r"^(build/|tests/guard/)", "programs of tests and benchmarks, named by their tests"),
@@ -61,7 +62,7 @@ def pose(x, turn=0.0):
     return "%r %r 0 %r %r %r 0 0.1 0 0 1 0.05" % (c, -s, x, s, c)
 
 
-def stand_ins(page, run):
+def stand_ins(tree, page, run):
     """Makes the files that a page's commands speak of, in the working folder."""
     fine = 5 if page == "docs/queries.md" else 3  # pair 1340,4539
     for name, scale in (
@@ -84,7 +85,9 @@ def stand_ins(page, run):
     with open("points.csv", "w") as f:
         f.writelines("0.1,%r,2\n" % (0.25 * i) for i in range(9))
     run("lrbscope export poses.txt --what poses -o poses.csv")
-    if page in ("README.md",):
+    if page == "README.md":
+        for name in os.listdir(tree + "/examples/data"):
+            shutil.copy(tree + "/examples/data/" + name, name)
         run("lrbscope export a.obj -o a.ply")
         run("lrbscope golden approve --goldens goldens my.scenario.json")
     if page == "docs/formats.md":
@@ -117,7 +120,7 @@ def scenario(tree):
 
 
 def lines_of(tree, page):
-    """Yields (number, line) of the shell blocks of a page, without comments, prompts and output.
+    """Yields (number, line) of the shell blocks of a page, without comments and prompts.
 
     A here document belongs to its line."""
     on = False
@@ -133,7 +136,7 @@ def lines_of(tree, page):
                 on = line.strip() == "```sh" and not on
                 continue
             line = line.strip()
-            if on and line and not line.startswith(("{", "#")):
+            if on and line and not line.startswith("#"):
                 # A comment begins after two spaces, as all pages write it.
                 yield number, re.sub(r"\s+#.*$", "", line.removeprefix("$ "))
 
@@ -164,7 +167,12 @@ def main():
     )
     ran, left, bad, used = 0, 0, 0, set()
     for page in pages:
-        lines = list(lines_of(tree, page))
+        lines, shown = [], {}  # shown: the values below each command
+        for number, line in lines_of(tree, page):
+            if line.startswith("{") and page == "README.md":
+                shown[lines[-1]] = shown.get(lines[-1], []) + re.findall(r'"\w+":(?:\[[^]]*\]|[^,}]+)', line)
+            elif not line.startswith("{"):
+                lines.append((number, line))
         to_run = [(n, line) for n, line in lines if reason_of(page, line) is None]
         left += len(lines) - len(to_run)
         used |= {reason_of(page, line) for _, line in lines}
@@ -173,21 +181,24 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             os.chdir(folder)
 
-            def run(line, codes=(0,)):
+            def run(line, codes=(0,), values=()):
                 try:
-                    code, _, errors = shell.run(line, program, seconds=SECONDS, environment=ffmpeg(folder))
+                    code, out, errors = shell.run(line, program, seconds=SECONDS, environment=ffmpeg(folder))
                 except subprocess.TimeoutExpired:
                     return "takes more than %d s" % SECONDS
-                return None if code in codes else "exit code %d: %s" % (code, errors.strip())
+                if code not in codes:
+                    return "exit code %d: %s" % (code, errors.strip())
+                missing = [v for v in values if v not in out]
+                return "does not print " + ", ".join(missing) if missing else None
 
             scenario(tree)
-            stand_ins(page, run)
+            stand_ins(tree, page, run)
             for number, line in to_run:
                 if not line.startswith(("lrbscope ", "cat >")):
                     wrong = "is neither run nor has a reason in tests/docs/commands.py"
                 else:
                     finds = any(re.search(p, line) for p in FINDS)
-                    wrong = run(line, (0, 1) if finds else (0,))
+                    wrong = run(line, (0, 1) if finds else (0,), shown.get((number, line), ()))
                 ran += 1
                 print("%s:%d: %s" % (page, number, line), flush=True)
                 if wrong:
