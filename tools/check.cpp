@@ -40,6 +40,7 @@ ordered_json json_of(const profile::Prices& p) {
   return {{"visits", p.visits},
           {"needed", p.needed},
           {"proof", p.proof},
+          {"test", p.test},
           {"volumes", p.volumes},
           {"order", p.order},
           {"unsplit", p.unsplit},
@@ -47,7 +48,10 @@ ordered_json json_of(const profile::Prices& p) {
           {"volume_tests", p.volume_tests},
           {"triangle_tests", p.triangle_tests},
           {"triangle_tests_for_nothing", p.triangle_tests_for_nothing},
-          {"crowded_tests", p.crowded_tests}};
+          {"crowded_tests", p.crowded_tests},
+          {"triangles_by_volumes", p.triangles_by_volumes},
+          {"triangles_by_test", p.triangles_by_test},
+          {"triangles_by_order", p.triangles_by_order}};
 }
 
 ordered_json json_of(const profile::WrongPair& w) {
@@ -93,6 +97,7 @@ std::string json_lines(const profile::Check& c) {
                     {"prices", json_of(sum.prices)},
                     {"advice", profile::advice(sum.prices)}};
   if (!c.pose_error.empty()) last["pose_error"] = c.pose_error;
+  if (!c.tree_faults.empty()) last["tree_faults"] = c.tree_faults;
   return out + one_line(std::move(last));
 }
 
@@ -138,7 +143,8 @@ std::string text_of(const std::vector<profile::Check>& checks) {
         out += c.engine + ": " + std::to_string(lines->size()) + " " + head + "\n" + first_lines(*lines);
   out += columns_of(profile::verdict_table(checks)) + "\n" + columns_of(profile::price_table(checks)) + "\n";
   for (const profile::Check& c : checks) {
-    if (!c.pose_error.empty()) out += c.engine + ": " + c.pose_error + "\n";
+    for (const std::string& doubt : {c.pose_error, c.tree_faults})
+      if (!doubt.empty()) out += c.engine + ": " + doubt + "\n";
     out += c.engine + ": " + profile::advice(c.sum().prices) + "\n";
   }
   return out;

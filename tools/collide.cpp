@@ -21,13 +21,9 @@ namespace lrb::cli {
 namespace {
 
 struct CollideOptions {
-  bodies::Corners corners = bodies::Corners::joined;
-  std::string a, b, folder, poses, approach;
-  CollideRequest request;
+  TwoMeshes meshes;
+  std::string folder;
   PictureOptions picture;
-  spec::StepQuestions more;
-  std::optional<EventLevel> events;
-  std::optional<trace::Clock> clock;
   bool live = false, json = false;
 };
 
@@ -74,7 +70,7 @@ std::string choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBod
   return {};
 }
 
-spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::LoadedBody>& bodies,
+spec::Scenario make_scenario(const TwoMeshes& o, const std::vector<bodies::LoadedBody>& bodies,
                              std::vector<Pose> poses, const PictureOptions& picture) {
   spec::Scenario s;
   s.name = std::filesystem::path(o.a).stem().string() + "-" + std::filesystem::path(o.b).stem().string();
@@ -118,67 +114,78 @@ spec::Scenario make_scenario(const CollideOptions& o, const std::vector<bodies::
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
   if (o.live) run::check_live_page();
-  // Read before an expensive build, and once: a pipe is empty the second time.
-  std::vector<Pose> poses;
-  if (!o.poses.empty()) poses = io::open_poses(o.poses).poses;
   if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
-  if (o.more.near) check_request(NearPairsRequest{.within = *o.more.near});
-  if (!o.more.points.empty() && !std::filesystem::is_fifo(o.more.points)) io::read_points(o.more.points);
-  if (o.more.manifold) check_request(ManifoldRequest{.margin = *o.more.manifold});
-  const run::ProgressReport progress = progress_report(globals.quiet);
-  auto both = bodies::load_two_bodies(o.a, o.b, with_progress({}, globals.quiet), o.corners);
-  std::vector<bodies::LoadedBody> bodies(std::make_move_iterator(both.begin()),
-                                         std::make_move_iterator(both.end()));
-  if (bodies[0].rep.dim() != bodies[1].rep.dim())
-    throw InputError(o.a + " and " + o.b +
-                     ": expected two bodies of the same dimension, found a 2D and a 3D body");
-  PictureOptions picture = o.picture;
-  const std::string up_note = choose_up(picture.camera, bodies, globals);
-  spec::Scenario scenario = make_scenario(o, bodies, std::move(poses), picture);
+  const auto [scenario, recording] = record_meshes(o.meshes, o.picture, globals);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
-  run::Recording recording = run::record(scenario, std::move(bodies), progress);
-  choose_views(picture.camera, scenario, recording);
-  const run::RunOutcome outcome =
-      run::write_run(scenario, recording, folder, globals.command_line, progress, o.live);
+  const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line,
+                                                 progress_report(globals.quiet), o.live);
   animate_frames(o.picture, folder);
-  if (!up_note.empty()) note(globals, {up_note});
   return report_outcome(outcome, folder, o.json, globals);
 }
 
 }  // namespace
 
+void add_motion_options(App& app, TwoMeshes& meshes) {
+  auto* poses = app.add_option("--poses", meshes.poses, "FILE",
+                               "File with the pose of B at each step: lines of 12 numbers (3x4, row by row), "
+                               ".csv or .json");
+  app.add_option("--approach", meshes.approach, "X,Y,Z", "Direction from A to the start position of B")
+      ->excludes(poses);
+}
+
+std::pair<spec::Scenario, run::Recording> record_meshes(const TwoMeshes& meshes, const PictureOptions& given,
+                                                        const Globals& globals) {
+  // Check everything before an expensive build. Pipes are read once, because they are empty the second time.
+  std::vector<Pose> poses;
+  if (!meshes.poses.empty()) poses = io::open_poses(meshes.poses).poses;
+  const spec::StepQuestions& more = meshes.more;
+  if (more.near) check_request(NearPairsRequest{.within = *more.near});
+  if (!more.points.empty() && !std::filesystem::is_fifo(more.points)) io::read_points(more.points);
+  if (more.manifold) check_request(ManifoldRequest{.margin = *more.manifold});
+  auto both = bodies::load_two_bodies(meshes.a, meshes.b, with_progress({}, globals.quiet), meshes.corners);
+  std::vector<bodies::LoadedBody> bodies(std::make_move_iterator(both.begin()),
+                                         std::make_move_iterator(both.end()));
+  if (bodies[0].rep.dim() != bodies[1].rep.dim())
+    throw InputError(meshes.a + " and " + meshes.b +
+                     ": expected two bodies of the same dimension, found a 2D and a 3D body");
+  PictureOptions picture = given;
+  const std::string up_note = choose_up(picture.camera, bodies, globals);
+  spec::Scenario scenario = make_scenario(meshes, bodies, std::move(poses), picture);
+  run::Recording recording = run::record(scenario, std::move(bodies), progress_report(globals.quiet));
+  choose_views(picture.camera, scenario, recording);
+  if (!up_note.empty()) note(globals, {up_note});
+  return {std::move(scenario), std::move(recording)};
+}
+
 Command add_collide(App& root, const Globals& globals) {
   App* app = root.add_subcommand(
       "collide", "Move your own mesh B into mesh A and write an interactive page of the collision");
   const auto o = std::make_shared<CollideOptions>();
-  app->add_option("A", o->a, "Mesh or .lrb file; does not move")->required();
-  app->add_option("B", o->b, "Mesh or .lrb file; moves")->required();
+  app->add_option("A", o->meshes.a, "Mesh or .lrb file; does not move")->required();
+  app->add_option("B", o->meshes.b, "Mesh or .lrb file; moves")->required();
   app->add_option("-o,--output", o->folder, "DIR", "Output folder [out/A-B]");
-  auto* poses =
-      app->add_option("--poses", o->poses, "FILE",
-                      "File with the pose of B at each step: lines of 12 numbers (3x4, row by row), "
-                      ".csv or .json");
-  app->add_option("--approach", o->approach, "X,Y,Z", "Direction from A to the start position of B")
-      ->excludes(poses);
-  add_request_options(*app, o->request);
-  app->add_flag("--distance", o->more.distance, "Also compute the distance between the bodies at each step");
-  app->add_flag("--clash", o->more.clash,
+  TwoMeshes& meshes = o->meshes;
+  add_motion_options(*app, meshes);
+  add_request_options(*app, meshes.request);
+  app->add_flag("--distance", meshes.more.distance,
+                "Also compute the distance between the bodies at each step");
+  app->add_flag("--clash", meshes.more.clash,
                 "Also classify the contact and compute its penetration depth at each step");
-  app->add_option("--near", o->more.near, "D",
+  app->add_option("--near", meshes.more.near, "D",
                   "Also list the pairs of triangles at most this far apart at each step, in mesh units");
-  app->add_option("--manifold", o->more.manifold, "D",
+  app->add_option("--manifold", meshes.more.manifold, "D",
                   "Also find the contact manifolds at each step, with speculative contacts up to this "
                   "distance, in mesh units");
-  app->add_option("--points", o->more.points, "FILE",
+  app->add_option("--points", meshes.more.points, "FILE",
                   "Also compute the signed distances of points to A at each step: lines of 3 numbers, x y z, "
                   "in B's frame");
-  add_events_option(*app, o->events);
-  add_clock_option(*app, o->clock);
+  add_events_option(*app, meshes.events);
+  add_clock_option(*app, meshes.clock);
   add_picture_options(*app, o->picture, UpOption::auto_by_default);
   add_animation_option(*app, o->picture);
   add_live_option(*app, o->live);
   app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
-  add_join_option(*app, o->corners);
+  add_join_option(*app, meshes.corners);
   return {app, [o, &globals] { return run_collide(*o, globals); }};
 }
 

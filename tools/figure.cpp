@@ -26,6 +26,7 @@ namespace {
 
 struct FigureOptions {
   std::string source, file, width, line_width;
+  TwoMeshes meshes;  ///< b: empty if there is one source
   std::vector<std::string> bodies;
   std::vector<std::uint32_t> faces, events, steps;
   bool layers = false, close_up = false, try_views = false;
@@ -40,7 +41,8 @@ struct Source {
   std::string name, purpose;
   run::Recording recording;
   render::FrameSpec frames;
-  bool own_view = false;  ///< no view was given
+  bool own_view = false;    ///< no view was given
+  bool up_applied = false;  ///< the views already follow --up
 };
 
 bool is_mesh_name(const std::string& path) {
@@ -76,7 +78,21 @@ bool is_trace_name(const std::string& path) {
                                         file.find("trace") != std::string::npos);
 }
 
-Source open_source(const FigureOptions& o, const run::ProgressReport& progress) {
+Source open_source(const FigureOptions& o, const Globals& globals) {
+  const run::ProgressReport progress = progress_report(globals.quiet);
+  if (!o.meshes.b.empty()) {
+    if (!is_mesh_name(o.source) || !is_mesh_name(o.meshes.b))
+      throw InputError(printable_name(o.source) + " and " + printable_name(o.meshes.b) +
+                       ": expected two mesh or .lrb files, or one source");
+    TwoMeshes meshes = o.meshes;
+    meshes.a = o.source;
+    PictureOptions camera;
+    camera.camera = o.picture.camera;
+    auto [scenario, recording] = record_meshes(meshes, camera, globals);
+    return {scenario.name, {}, std::move(recording), scenario.frames, false, true};
+  }
+  if (!o.meshes.poses.empty() || !o.meshes.approach.empty())
+    throw InputError("--poses or --approach: expected two meshes, found one source");
   std::error_code error;
   if (std::filesystem::is_directory(o.source, error) || is_trace_name(o.source))
     return open_trace(run::trace_of(o.source), o.bodies);
@@ -149,7 +165,10 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
                                                                                 : 1;
   if (frames.views.size() > views) frames.views.resize(views);
   PictureOptions picture = o.picture;
-  resolve_up(picture.camera, source.recording.bodies[0].rep, globals);
+  if (source.up_applied)
+    picture.camera.up.clear();
+  else
+    resolve_up(picture.camera, source.recording.bodies[0].rep, globals);
   if (o.try_views) {
     frames.views = views_to_try(picture.camera.up, source.recording.bodies[0].rep);
     picture.camera.up.clear();
@@ -157,11 +176,13 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
   picture.dpi.reset();  // set for the whole figure
   if (!picture.style) picture.style = render::StyleName::print;
   apply(picture, frames);
-  // Wrappers would hide real faces, which the complete query tests. Only wrappers are refined.
-  const bool hides_values = source.recording.trace.header.request.recursion == Recursion::complete &&
-                            render::is_value(frames.colour_by) &&
-                            frames.colour_by != render::FrameSpec::ColourBy::refinements;
-  if (!o.wrappers.value_or(!hides_values)) {
+  // Wrappers would hide the real faces, which the complete query tests, and two bodies in contact.
+  const std::vector<bodies::LoadedBody>& bodies = source.recording.bodies;
+  const bool complete = source.recording.trace.header.request.recursion == Recursion::complete;
+  const bool hides_values =
+      render::is_value(frames.colour_by) && frames.colour_by != render::FrameSpec::ColourBy::refinements;
+  const bool hides_contact = bodies.size() == 2 && bodies[0].rep.dim() == 3;
+  if (!o.wrappers.value_or(!complete || !(hides_values || hides_contact))) {
     if (frames.views.empty()) frames.views.emplace_back();
     for (render::FrameSpec::View& view : frames.views) {
       view.wrapper = false;
@@ -185,7 +206,7 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
 int run_figure(const FigureOptions& o, const Globals& globals) {
   const run::ProgressReport progress = progress_report(globals.quiet);
   if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // check the file before an expensive run
-  const Source source = open_source(o, progress);
+  const Source source = open_source(o, globals);
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
   figure::FigureSpec spec = figure_spec(o, file);
   render::FrameSpec frames = frame_spec(o, source, globals);
@@ -195,7 +216,15 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
   for (const trace::EventId event : figure::choose(recorded, spec.choice).events)
     recorded.close_up_steps.push_back(recorded.trace->step_of(event));
-  if (o.close_up) run::widen_close_ups(recorded, frames.views);
+  if (o.close_up) {
+    run::widen_close_ups(recorded, frames.views);
+    // A close-up of the whole bodies shows the same as the first view.
+    if (frames.views.size() == 2 && frames.views[1].camera != render::FrameSpec::Camera::contact &&
+        !frames.views[0].wrapper) {
+      frames.views.pop_back();
+      note(globals, {"--close-up: left out, because the contact is nearly as large as the bodies"});
+    }
+  }
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
   note(globals, drawn.notes);
@@ -268,7 +297,7 @@ void add_paper_options(App& app, FigureOptions& o) {
                "Show or hide a title below each panel, after its letter [hidden]");
   Option* wrappers = app.add_flag_callback(
       "--wrappers", [&o] { o.wrappers = true; },
-      "Draw the bodies in their wrappers [unless these hide faces that --colour-by colours]");
+      "Draw the bodies in their wrappers [unless these hide two 3D bodies or faces that --colour-by colours]");
   app.add_flag_callback(
          "--no-wrappers", [&o] { o.wrappers = false; }, "Draw the bodies alone")
       ->excludes(wrappers);
@@ -292,6 +321,8 @@ Command add_figure(App& root, const Globals& globals) {
          "A run's folder or trace; a scenario; or a mesh or .lrb file, whose refinement from the outermost "
          "wrapper to the body is shown")
       ->required();
+  app->add_option("B", o->meshes.b, "A second mesh or .lrb file, which moves into the first as in collide");
+  add_motion_options(*app, o->meshes);
   app->add_option("-o,--output", o->file, "FIG.pdf|svg|png", "File to write [out/NAME.pdf]");
   app->add_option("--bodies", o->bodies, "FILE", "Bodies of the trace [a.lrb and b.lrb next to it]")
       ->expected(1, 2);

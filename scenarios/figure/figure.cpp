@@ -30,7 +30,19 @@ using View = render::FrameSpec::View;
 std::string shortened(std::string text) {
   const std::string none = ": 0 intersecting pairs of faces";
   if (text.ends_with(none)) text.resize(text.size() - none.size());
+  if (const std::size_t at = text.find(">="); at != std::string::npos) text.replace(at, 2, "\u2265");
   return text;
+}
+
+/// Returns a caption for the narrow space below a panel: "step 12: crossing, 54 pairs".
+std::string title_of(std::string caption) {
+  for (const std::string_view pairs : {" intersecting pair of faces", " intersecting pairs of faces"}) {
+    if (!caption.ends_with(pairs)) continue;
+    caption.resize(caption.size() - pairs.size());
+    caption.replace(caption.rfind(": "), 2, ", ");
+    caption += pairs.find("pairs") == std::string_view::npos ? " pair" : " pairs";
+  }
+  return caption;
 }
 
 /// Returns the frames' spec with widths in points: a thin line, of width 1, gets the figure's line width.
@@ -530,8 +542,18 @@ class FigureJob {
       }
       if (panels_.back().empty()) blocks_.pop_back(), panels_.pop_back();
     }
+    name_bodies_only();
     if (blocks_.empty()) throw InputError("figure of contacts: expected a panel with a contact, found none");
     letter();
+  }
+
+  /// Without pseudo faces in the figure, the legend need not say that faces are real.
+  void name_bodies_only() {
+    constexpr std::string_view kReal = ", real faces", kPseudo = ", pseudo faces";
+    if (std::any_of(key_.begin(), key_.end(), [&](const auto& k) { return k.text.ends_with(kPseudo); }))
+      return;
+    for (render::LegendItem& k : key_)
+      if (k.text.ends_with(kReal)) k.text.resize(k.text.size() - kReal.size());
   }
 
   /// Returns false for a close-up of a contact without contacts, beside other views.
@@ -548,7 +570,7 @@ class FigureJob {
       for (std::size_t i = 0; i < block.seen.size(); ++i, ++panel)
         block.texts.push_back((letters ? render::panel_letter(panel) : "") +
                               (letters && figure_.titles ? " " : "") +
-                              (figure_.titles ? captions_[panel] : ""));
+                              (figure_.titles ? title_of(captions_[panel]) : ""));
   }
 
   void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {

@@ -51,7 +51,9 @@ constexpr double kGap = 0.5;     ///< above legend, bar and caption, in font siz
 constexpr double kShape = 1.5;   ///< target aspect ratio of automatic columns
 constexpr double kGapCost = 2;   ///< cost of empty cells, in logarithms of that ratio, if all cells are empty
 constexpr double kTallest = 1.4;  ///< maximum height of a block, in widths
-constexpr double kMinPanel = 5 * kPointsPerMm, kMinAutomatic = 12 * kPointsPerMm;
+constexpr double kMinPanel = 5 * kPointsPerMm;
+/// Minimum width of a panel in automatic columns, also of one with a title below it.
+constexpr double kMinAutomatic = 22 * kPointsPerMm, kMinTitled = 38 * kPointsPerMm;
 constexpr double kInset = 0.4;      ///< maximum side of an inset, as a share of the figure's width
 constexpr double kInsetGap = 1;     ///< above an inset, in font sizes: space for the lines to its frame
 constexpr double kBarWidth = 0.45;  ///< width of the colour bar, as a share of the figure's
@@ -191,9 +193,13 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
   std::optional<Arranged> best;
   double least = std::numeric_limits<double>::infinity();
   const std::size_t n = block.seen.size();
+  constexpr std::size_t kLetter = 4;  // "(a)"
+  const bool titled = std::any_of(block.texts.begin(), block.texts.end(),
+                                  [](const std::string& text) { return text.size() > kLetter; });
+  const double narrowest = titled ? kMinTitled : kMinAutomatic;
   for (std::size_t columns = 1; columns <= n; ++columns) {
     BlockLayouter layouter(block, options, columns);
-    if (best && layouter.panel_width() < kMinAutomatic) break;
+    if (best && layouter.panel_width() < narrowest) break;
     Arranged arranged = layouter.arrange();
     const std::size_t rows = (n + columns - 1) / columns;
     const double gaps = static_cast<double>(rows * columns - n) / static_cast<double>(n);

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <memory>
 #include <numeric>
+#include <set>
 
 #include "render/pictures/panel.hpp"
 #include "scenarios/profile/captured_run.hpp"
+#include "scenarios/profile/tree_report.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
@@ -129,8 +131,8 @@ report::Table wrong_table(std::span<const Check> checks) {
 }
 
 /// The prices of a bar, from the bottom.
-constexpr std::size_t kBarParts = 6;
-constexpr const char* kBarNames[kBarParts] = {"needed", "proof",     "volumes",
+constexpr std::size_t kBarParts = 7;
+constexpr const char* kBarNames[kBarParts] = {"needed", "proof",     "test",        "volumes",
                                               "order",  "not split", "unattributed"};
 
 report::Chart bars(const std::string& title, const std::string& x) {
@@ -162,7 +164,7 @@ report::Chart chart_by_query(const Check& c) {
   for (std::size_t i = 0; i < c.queries.size(); i += every) {
     const Prices& p = c.queries[i].prices;
     add_bar(out, c.queries[i].verdict.number,
-            {p.needed, p.proof, p.volumes, p.order, p.unsplit, p.unattributed});
+            {p.needed, p.proof, p.test, p.volumes, p.order, p.unsplit, p.unattributed});
   }
   if (every > 1) out.note = "One of " + std::to_string(every) + " queries.";
   return without_empty(out);
@@ -171,7 +173,7 @@ report::Chart chart_by_query(const Check& c) {
 report::Chart chart_by_depth(const Check& c) {
   report::Chart out = bars("Prices by depth of the descent, " + c.engine, "pairs of nodes above");
   out.series.resize(3);
-  out.series[2].label = "wasted: volumes or order";
+  out.series[2].label = "wasted: test, volumes or order";
   for (std::size_t d = 0; d < c.by_depth.size(); ++d) {
     const DepthPrices& p = c.by_depth[d];
     const std::uint64_t parts[] = {p.needed, p.proof, p.wasted};
@@ -265,6 +267,20 @@ class PoseErrors {
   std::uint64_t wrong_ = 0, right_ = 0;
 };
 
+/// Returns a sentence about the faults of the trees that have visits, with the first one.
+std::string sentence_of_faults(const std::set<std::uint32_t>& trees, CapturedBodies& bodies) {
+  std::uint64_t count = 0;
+  std::string first;
+  for (const std::uint32_t t : trees) {
+    const TreeFaults faults = faults_of(bodies.volumes(t), bodies.mesh_of(t), bodies.index(t));
+    count += faults.total();
+    if (first.empty() && count > 0) first = text_of(faults.first.front(), bodies.tree(t), bodies.mesh_of(t));
+  }
+  if (count == 0) return {};
+  return "The trees have " + render::counted(count, "fault", "faults") +
+         ", which `lrbscope tree` lists, so prices and causes may be wrong: " + first + ".";
+}
+
 }  // namespace
 
 Check check(const capture::Capture& capture, const CheckSettings& settings,
@@ -277,12 +293,14 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
   Checker checker(bodies, out.precision);
   PriceBook book(bodies);
   PoseErrors pose_errors;
+  std::set<std::uint32_t> visited;
   for (const capture::Query& query : capture.queries) {
     const auto trees = CapturedBodies::trees_of(query);
     const auto walk = trees ? std::make_unique<QueryWalk>(bodies, query, *trees) : nullptr;
     CheckedQuery checked{checker.check(query, walk.get()), {}};
     checked.prices = book.add(query, walk.get(), checked.verdict.exact, split);
     checked.verdict.exact = {};
+    if (walk != nullptr && walk->visits() > 0) visited.insert(trees->begin(), trees->end());
     pose_errors.add(checked, query, walk.get(), checker);
     report(checked.verdict, query, capture, out);
     out.kinds[query.kind] += sums_of(checked);
@@ -291,6 +309,7 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
   }
   out.waste = most_wasted(capture, book);
   out.pose_error = pose_errors.sentence();
+  out.tree_faults = sentence_of_faults(visited, bodies);
   out.by_depth = book.by_depth();
   out.owners = book.worst_owners(kOwners);
   for (const OwnerWaste& o : out.owners)
@@ -301,7 +320,7 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
 
 report::Table price_table(std::span<const Check> checks) {
   report::Table t{"Benefit of the visits",
-                  {"engine", "queries", "visits", "needed", "proof", "volumes", "order"}};
+                  {"engine", "queries", "visits", "needed", "proof", "test", "volumes", "order"}};
   const bool unsplit =
       std::any_of(checks.begin(), checks.end(), [](const Check& c) { return c.sum().prices.unsplit > 0; });
   const bool unattributed = std::any_of(checks.begin(), checks.end(),
@@ -312,7 +331,7 @@ report::Table price_table(std::span<const Check> checks) {
   for_each_kind(checks, [&](const std::string& engine, const std::string& kind, const CheckSums& sums) {
     const Prices& p = sums.prices;
     std::vector<std::string> row{engine, group_digits(sums.queries) + " " + kind, group_digits(p.visits)};
-    for (const std::uint64_t part : {p.needed, p.proof, p.volumes, p.order})
+    for (const std::uint64_t part : {p.needed, p.proof, p.test, p.volumes, p.order})
       row.push_back(percent(part, p.visits));
     if (unsplit) row.push_back(percent(p.unsplit, p.visits));
     if (unattributed) row.push_back(percent(p.unattributed, p.visits));
@@ -322,7 +341,8 @@ report::Table price_table(std::span<const Check> checks) {
     t.rows.push_back(std::move(row));
   });
   t.note =
-      "Needed: triangles intersect beneath. Proof: the first pair of nodes beneath which none do. Volumes: "
+      "Needed: triangles intersect beneath. Proof: the first pair of nodes beneath which none do. Test: "
+      "visits beneath disjoint volumes that the engine's test did not separate. Volumes: "
       "visits beneath such pairs that no order of descent avoids with these volumes. Order: the rest.";
   return t;
 }
@@ -348,8 +368,10 @@ std::vector<std::string> add_checks(report::Document& page, std::span<const Chec
   std::vector<std::string> notes;
   for (const Check& c : checks) {
     if (!c.pose_error.empty()) page.text({"Poses of " + c.engine, c.pose_error});
+    if (!c.tree_faults.empty()) page.text({"Trees of " + c.engine, c.tree_faults});
     page.text({"Advice for " + c.engine, advice(c.sum().prices)});
   }
+  if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
   for (const Check& c : checks) {
     const CheckSums sum = c.sum();
     page.number({"Wrong queries of " + c.engine,
@@ -371,7 +393,6 @@ std::vector<std::string> add_checks(report::Document& page, std::span<const Chec
     }
   page.table(price_table(checks));
   page.table(verdict_table(checks));
-  if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
   if (const report::Table t = owner_table(checks); !t.rows.empty()) page.table(t);
   return notes;
 }

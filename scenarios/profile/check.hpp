@@ -65,6 +65,8 @@ struct Check {
 
   /// A sentence if most reported pairs are wrong, but right after the reversal of a PoseError.
   std::string pose_error;
+  /// A sentence if trees of the queries have faults, as if their volumes are in another frame.
+  std::string tree_faults;
 
   CheckSums sum() const;
   /// Returns true if an answer is wrong beyond the error bound.

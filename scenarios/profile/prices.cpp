@@ -29,6 +29,33 @@ class Search {
 
   bool gave_up() const { return gave_up_; }
 
+  /// Marks the pairs of leaves that a descent with the least number of visits reaches. Call least() before.
+  void reach(std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t visit = walk_.visit_of(a, b);
+    const bool inner_a = has_children(0, a), inner_b = has_children(1, b);
+    if (!overlaps(a, b, visit)) return;
+    if (!inner_a && !inner_b) {
+      reached_.insert(a, b, 1);
+      return;
+    }
+    // The search has left out what cannot become the best: there is a number for all pairs of a best choice.
+    const std::uint32_t* const best = least_.find(a, b);
+    for (const NodeStep step : {NodeStep::descend_a, NodeStep::descend_b, NodeStep::descend_both}) {
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> next;
+      std::uint64_t sum = 1;
+      const bool possible = for_each_next(a, b, step, visit, [&](std::uint32_t x, std::uint32_t y) {
+        const std::uint32_t* const known = least_.find(x, y);
+        sum += known == nullptr ? kMaxPairs : *known;
+        next.emplace_back(x, y);
+        return true;
+      });
+      if (!possible || best == nullptr || sum != *best) continue;
+      for (const auto& [x, y] : next) reach(x, y);
+      return;
+    }
+  }
+  bool is_reached(std::uint32_t a, std::uint32_t b) const { return reached_.find(a, b) != nullptr; }
+
   /// Returns the least number of visits of a pair and beneath it.
   std::uint32_t least(std::uint32_t a, std::uint32_t b) {
     if (const std::uint32_t* const known = least_.find(a, b)) return *known;
@@ -43,7 +70,7 @@ class Search {
       // The recorded choice first, because it limits the others.
       if (recorded) try_step(a, b, *recorded, visit, best);
       for (const NodeStep step : {NodeStep::descend_a, NodeStep::descend_b, NodeStep::descend_both})
-        if (step != recorded) try_step(a, b, step, QueryWalk::kNone, best);
+        if (step != recorded) try_step(a, b, step, visit, best);
     }
     return least_.insert(a, b, best);
   }
@@ -52,42 +79,55 @@ class Search {
   bool has_children(std::size_t side, std::uint32_t node) const { return !walk_.index(side).is_leaf(node); }
 
   bool overlaps(std::uint32_t a, std::uint32_t b, std::uint32_t visit) const {
-    if (visit != QueryWalk::kNone) return walk_.query().events[visit].met > 0;
+    if (visit != QueryWalk::kNone && walk_.query().events[visit].met == 0) return false;
     return overlap(*volumes_[0], a, walk_.query().poses[0], *volumes_[1], b, walk_.query().poses[1]);
   }
 
-  /// Lowers `best` to the number for a choice. `recorded`: the visit, if the engine chose the same.
-  void try_step(std::uint32_t a, std::uint32_t b, NodeStep step, std::uint32_t recorded,
-                std::uint32_t& best) {
+  /// Calls visit(x, y) for each pair that follows a choice, until it returns false. `recorded`: the visit, if
+  /// the engine chose the same. Returns false if the choice is not possible.
+  template <class Visit>
+  bool for_each_next(std::uint32_t a, std::uint32_t b, NodeStep step, std::uint32_t recorded,
+                     const Visit& visit) {
     const bool opens_a = step != NodeStep::descend_b, opens_b = step != NodeStep::descend_a;
-    if ((opens_a && !has_children(0, a)) || (opens_b && !has_children(1, b))) return;
-    if (opens_a && opens_b && !opens_both_) return;
+    if ((opens_a && !has_children(0, a)) || (opens_b && !has_children(1, b))) return false;
+    if (opens_a && opens_b && !opens_both_) return false;
+    if (recorded != QueryWalk::kNone && walk_.step(recorded) != step) recorded = QueryWalk::kNone;
     const std::uint32_t only_a[] = {a}, only_b[] = {b};
     const std::span<const std::uint32_t> all_a = opens_a ? trees_[0]->children(a) : std::span(only_a);
     const std::span<const std::uint32_t> all_b = opens_b ? trees_[1]->children(b) : std::span(only_b);
-    std::uint32_t sum = 1;
     for (const std::uint32_t x : all_a) {
       if (opens_a && walk_.index(0).parent[x] != a) continue;  // also another node's child
       for (const std::uint32_t y : all_b) {
         if (opens_b && walk_.index(1).parent[y] != b) continue;
         if (walk_.wide() && !is_visited(x, y, recorded)) continue;
-        if (sum >= best || gave_up_) return;
-        sum += least(x, y);
+        if (!visit(x, y)) return true;
       }
     }
-    best = std::min(best, sum);
+    return true;
+  }
+
+  /// Lowers `best` to the number for a choice.
+  void try_step(std::uint32_t a, std::uint32_t b, NodeStep step, std::uint32_t recorded,
+                std::uint32_t& best) {
+    std::uint32_t sum = 1;
+    const bool possible = for_each_next(a, b, step, recorded, [&](std::uint32_t x, std::uint32_t y) {
+      if (sum >= best || gave_up_) return false;
+      sum += least(x, y);
+      return true;
+    });
+    if (possible) best = std::min(best, sum);
   }
 
   /// Wide nodes: returns true if the volumes of two children overlap.
   bool is_visited(std::uint32_t x, std::uint32_t y, std::uint32_t recorded) const {
-    if (walk_.visit_of(x, y) != QueryWalk::kNone) return true;
-    return recorded == QueryWalk::kNone && overlaps(x, y, QueryWalk::kNone);
+    if (recorded != QueryWalk::kNone && walk_.visit_of(x, y) == QueryWalk::kNone) return false;
+    return overlaps(x, y, QueryWalk::kNone);
   }
 
   const QueryWalk& walk_;
   std::array<const capture::Tree*, 2> trees_;
   std::array<const Volumes*, 2> volumes_;
-  PairMap least_;
+  PairMap least_, reached_;
   bool opens_both_ = false, gave_up_ = false;
 };
 
@@ -97,7 +137,8 @@ std::uint32_t levels_of(const TreeIndex& index) {
 
 }  // namespace
 
-std::optional<std::uint64_t> least_visits(CapturedBodies& bodies, const QueryWalk& walk) {
+std::optional<std::uint64_t> least_visits(CapturedBodies& bodies, const QueryWalk& walk,
+                                          std::uint64_t* saved) {
   // The search recurses once for each level.
   if (levels_of(walk.index(0)) + levels_of(walk.index(1)) > kMaxLevels) return std::nullopt;
   Search search(bodies, walk);
@@ -106,6 +147,13 @@ std::optional<std::uint64_t> least_visits(CapturedBodies& bodies, const QueryWal
     if (walk.is_start(i) && walk.first_visit(i) == i)
       least += search.least(walk.query().events[i].a, walk.query().events[i].b);
   if (search.gave_up()) return std::nullopt;
+  if (saved == nullptr) return least;
+  const std::vector<capture::Event>& events = walk.query().events;
+  for (const std::uint32_t i : walk.from_root())
+    if (walk.is_start(i) && walk.first_visit(i) == i) search.reach(events[i].a, events[i].b);
+  for (const capture::Event& e : events)
+    if (e.kind == capture::EventKind::triangles)
+      *saved += !search.is_reached(walk.index(0).leaf[e.a], walk.index(1).leaf[e.b]);
   return least;
 }
 
@@ -145,13 +193,16 @@ bool is_exhaustive(const capture::Query& query) {
                               (query.kind == QueryKind::any && query.verdict == capture::Verdict::separate));
 }
 
-/// Returns true if two triangles share their pair of leaves with others, and only the volumes of the leaves
-/// were compared before.
+/// Returns true if two triangles share their pair of leaves with others, and their own volumes were not
+/// compared before, as those of the children of two wide leaves are.
 bool is_crowded(const QueryWalk& walk, std::size_t event) {
   const Event& e = walk.query().events[event];
   const std::uint32_t a = walk.index(0).leaf[e.a], b = walk.index(1).leaf[e.b], visit = walk.parent(event);
   if (a == kNull || b == kNull) return false;
-  if (visit != QueryWalk::kNone && walk.query().events[visit].tests > 1) return false;
+  if (visit != QueryWalk::kNone) {
+    const Event& test = walk.query().events[visit];
+    if (test.tests > 1 && test.a == a && test.b == b) return false;
+  }
   return std::uint64_t{walk.index(0).triangles_below[a]} * walk.index(1).triangles_below[b] > 1;
 }
 
@@ -161,6 +212,7 @@ Prices& Prices::operator+=(const Prices& other) {
   visits += other.visits;
   needed += other.needed;
   proof += other.proof;
+  test += other.test;
   volumes += other.volumes;
   order += other.order;
   unsplit += other.unsplit;
@@ -169,6 +221,9 @@ Prices& Prices::operator+=(const Prices& other) {
   triangle_tests += other.triangle_tests;
   triangle_tests_for_nothing += other.triangle_tests_for_nothing;
   crowded_tests += other.crowded_tests;
+  triangles_by_volumes += other.triangles_by_volumes;
+  triangles_by_test += other.triangles_by_test;
+  triangles_by_order += other.triangles_by_order;
   for (std::size_t i = 0; i < saved_by_leaves.size(); ++i) saved_by_leaves[i] += other.saved_by_leaves[i];
   return *this;
 }
@@ -199,8 +254,9 @@ Prices PriceBook::add(const capture::Query& query, const QueryWalk* walk, std::s
   const std::uint64_t wasted = std::exchange(out.unsplit, 0);
   if (one_is_enough) {
     out.order = wasted;
+    out.triangles_by_order = out.triangle_tests_for_nothing;
   } else if (wasted > 0 && split && is_exhaustive(query)) {
-    if (const auto least = least_visits(bodies_, *walk)) {
+    if (const auto least = least_visits(bodies_, *walk, &out.triangles_by_order)) {
       const std::uint64_t certain = out.needed + out.proof;
       out.volumes = std::min(*least > certain ? *least - certain : 0, wasted);
       out.order = wasted - out.volumes;
@@ -267,8 +323,9 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
   std::vector<std::uint32_t> owner(events.size(), kNone);  // the pair of proof at or above a visit
   std::vector<std::uint32_t> depth(events.size(), 0);
   std::vector<char> attached(events.size(), 0), wasted(events.size(), 0);
-  // With a distance: at this visit, or above it, the volumes are no closer.
-  std::vector<char> ends(distance ? events.size() : 0, 0);
+  // With a distance: at this visit, or above it, the volumes are no closer. Without: they are disjoint, and
+  // the engine went on beneath.
+  std::vector<char> ends(events.size(), 0);
   std::uint64_t known = 0;
   for (const std::uint32_t i : walk.from_root()) {
     const Event& e = events[i];
@@ -287,8 +344,12 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     }
     const bool below_needed = up == kNone || needed[up];
     owner[i] = below_needed ? first : owner[up];
-    const bool ended_above = distance && !below_needed && ends[up];
-    if (distance)
+    const bool ended_above = !below_needed && ends[up];
+    if (!distance)
+      ends[i] = ended_above || !((e.met == 0 && !walk.wide()) ||
+                                 overlap(bodies_.volumes(walk.trees()[0]), e.a, walk.query().poses[0],
+                                         bodies_.volumes(walk.trees()[1]), e.b, walk.query().poses[1]));
+    else
       ends[i] = ended_above || gap(bodies_.volumes(walk.trees()[0]), e.a, walk.query().poses[0],
                                    bodies_.volumes(walk.trees()[1]), e.b,
                                    walk.query().poses[1]) >= *distance * (1 - kRounding);
@@ -299,8 +360,10 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     }
     wasted[i] = 1;
     // A visit of wide nodes follows a comparison of their own volumes.
-    const bool by_order = distance && (repeated || ended_above || (walk.wide() && ends[i]));
-    ++(by_order ? out.order : out.unsplit);
+    const bool ended = ended_above || (walk.wide() && ends[i]);
+    const bool by_order = distance && (repeated || ended);
+    const bool by_test = !distance && !one_is_enough && !repeated && ended;
+    ++(by_order ? out.order : by_test ? out.test : out.unsplit);
     ++by_depth_[depth[i]].wasted;
     const std::uint32_t nodes[] = {e.a, e.b};
     for (std::size_t side = 0; side < 2; ++side) {
@@ -310,6 +373,14 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     }
   }
   out.unattributed = out.visits - known;
+  // Tests of triangles beneath pairs of nodes that are not needed.
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const std::uint32_t up = walk.parent(i);
+    if (events[i].kind != EventKind::triangles || up == kNone || !attached[up] || owner[up] == kNone)
+      continue;
+    ++out.triangles_by_volumes;
+    if (ends[up]) ++(distance ? out.triangles_by_order : out.triangles_by_test);
+  }
   // Waste by owner.
   std::map<std::uint32_t, std::uint64_t> beneath;
   for (const std::uint32_t i : walk.from_root())
@@ -333,7 +404,8 @@ void PriceBook::price_leaves(const QueryWalk& walk, Prices& out) {
     if (events[i].kind == EventKind::triangles && walk.parent(i) != kNone) ++beneath[walk.parent(i)];
   const std::vector<std::uint32_t>& order = walk.from_root();
   for (std::size_t k = order.size(); k-- > 0;)
-    if (const std::uint32_t up = walk.parent(order[k]); up != kNone) beneath[up] += 1 + beneath[order[k]];
+    if (const std::uint32_t up = walk.parent(order[k]); up != kNone)
+      beneath[up] += events[order[k]].tests + beneath[order[k]];
   for (std::size_t s = 0; s < kLargerLeaves.size(); ++s) {
     const auto would_be_leaves = [&](std::uint32_t i) {
       return walk.index(0).triangles_below[events[i].a] <= kLargerLeaves[s] &&
@@ -376,7 +448,7 @@ std::vector<double> PriceBook::waste_by_triangle(std::uint32_t tree) {
 }
 
 std::string advice(const Prices& sum) {
-  const std::uint64_t tests = sum.visits + sum.triangle_tests;
+  const std::uint64_t tests = sum.volume_tests + sum.triangle_tests;
   if (tests == 0) return "No tests were recorded.";
   if (sum.visits == 0)
     return "No tests of volumes were recorded (LRBCAP_NODE), so nothing can be said about volumes, order and "
@@ -385,29 +457,42 @@ std::string advice(const Prices& sum) {
     return "No visit is attributed, as for queries of shapes or of first contact, so nothing can be said about "
            "volumes, order and leaves.";
   struct Gain {
-    double tests;
+    double rank, most;  ///< tests saved: those ascribed to it, and an upper bound
     std::string change;
   };
   std::vector<Gain> gains;
-  if (sum.unsplit > sum.volumes + sum.order)
-    gains.push_back({static_cast<double>(sum.unsplit), "tighter volumes or another order of descent"});
-  else
-    gains = {{static_cast<double>(sum.order), "another order of descent"},
-             {static_cast<double>(sum.volumes), "tighter volumes"}};
-  gains.push_back({static_cast<double>(sum.crowded_tests), "smaller leaves"});
+  const auto add = [&gains](double rank, double most, const std::string& change) {
+    gains.push_back({rank, std::max(rank, most), change});
+  };
+  // A visit of wide nodes compares several volumes.
+  const double each = static_cast<double>(sum.volume_tests) / static_cast<double>(sum.visits);
+  const auto tests_of = [each](std::uint64_t visits, std::uint64_t triangles) {
+    return each * static_cast<double>(visits) + static_cast<double>(triangles);
+  };
+  const double all = tests_of(sum.wasted(), sum.triangles_by_volumes);
+  const double apart = static_cast<double>(sum.triangles_by_volumes) -
+                       static_cast<double>(std::min(sum.triangles_by_volumes, sum.crowded_tests));
+  if (sum.unsplit > sum.volumes + sum.order) {
+    add(tests_of(sum.unsplit, 0) + apart, all, "tighter volumes or another order of descent");
+  } else {
+    const double order = tests_of(sum.order, sum.triangles_by_order);
+    add(order, order, "another order of descent");
+    add(tests_of(sum.volumes, 0) + apart, all, "tighter volumes");
+  }
+  const double sharper = tests_of(sum.test, sum.triangles_by_test);
+  add(sharper, sharper, "a sharper test of these volumes");
+  add(static_cast<double>(sum.crowded_tests), 0, "smaller leaves");
   const auto best = std::max_element(sum.saved_by_leaves.begin(), sum.saved_by_leaves.end());
-  gains.push_back(
-      {static_cast<double>(*best),
-       "leaves of up to " +
-           std::to_string(kLargerLeaves[static_cast<std::size_t>(best - sum.saved_by_leaves.begin())]) +
-           " triangles"});
-  std::stable_sort(gains.begin(), gains.end(),
-                   [](const Gain& x, const Gain& y) { return x.tests > y.tests; });
+  add(static_cast<double>(*best), 0,
+      "leaves of up to " +
+          std::to_string(kLargerLeaves[static_cast<std::size_t>(best - sum.saved_by_leaves.begin())]) +
+          " triangles");
+  std::stable_sort(gains.begin(), gains.end(), [](const Gain& x, const Gain& y) { return x.rank > y.rank; });
   const auto share = [&](const Gain& gain) {
-    const double percent = 100 * gain.tests / static_cast<double>(tests);
+    const double percent = std::ceil(100 * gain.most / static_cast<double>(tests) - 1e-9);
     return std::to_string(std::max(0L, std::lround(percent))) + " %";
   };
-  if (!(gains[0].tests > 0)) return "Nothing to gain: every visit was needed.";
+  if (!(gains[0].rank > 0)) return "Nothing to gain: every visit was needed.";
   return "Most to gain: " + gains[0].change + ", at most " + share(gains[0]) + " of " +
          render::group_digits(tests) + " tests of volumes and triangles; next: " + gains[1].change +
          ", at most " + share(gains[1]) + ".";

@@ -6,6 +6,8 @@
 /// - needed: two intersecting triangles lie beneath the nodes. Any descent of these trees visits such pairs.
 /// - proof: the first pair beneath a needed one beneath which nothing intersects. Volumes that fit perfectly
 ///   would end the descent here. Together with the needed visits it is a proof of the answer.
+/// - test: the rest of the visits beneath a pair of disjoint volumes, of which the engine's test said that
+///   they overlap. A test on more axes, or without the error of a fast one, would end the descent there.
 /// - volumes: visits beneath a pair of proof that no order of descent avoids with these volumes:
 ///   least_visits() minus the needed visits and the visits of proof.
 /// - order: the rest of the visits beneath a pair of proof. Another choice of the node to open would have
@@ -53,29 +55,35 @@ namespace lrb::profile {
 /// pairs are visited makes no difference: it visits until nothing is left, so this is not for queries that
 /// may end early.
 ///
-/// Recorded tests are taken as they are. Other volumes are compared by overlap().
+/// Volumes overlap if the recorded test said so, if any, and overlap() agrees.
 ///
 /// Dynamic programming over pairs of nodes: the least number beneath a pair is 1, plus that of the pairs of
 /// children for the best choice. Parts of a choice that cannot become the best are skipped.
-std::optional<std::uint64_t> least_visits(CapturedBodies& bodies, const QueryWalk& walk);
+///
+/// `saved`: the number of recorded tests of triangles in pairs of leaves that this descent does not reach.
+std::optional<std::uint64_t> least_visits(CapturedBodies& bodies, const QueryWalk& walk,
+                                          std::uint64_t* saved = nullptr);
 
 /// Sizes of larger leaves that Prices::saved_by_leaves is about.
 inline constexpr std::array<std::uint32_t, 3> kLargerLeaves{2, 4, 8};
 
 struct Prices {
-  std::uint64_t visits = 0;  ///< the sum of the following six
-  std::uint64_t needed = 0, proof = 0, volumes = 0, order = 0, unsplit = 0, unattributed = 0;
+  std::uint64_t visits = 0;  ///< the sum of the following seven
+  std::uint64_t needed = 0, proof = 0, test = 0, volumes = 0, order = 0, unsplit = 0, unattributed = 0;
   std::uint64_t volume_tests = 0;  ///< sum over all visits; exceeds `visits` for wide nodes
   std::uint64_t triangle_tests = 0, triangle_tests_for_nothing = 0;
   /// Needless tests in pairs of leaves with more than one pair of triangles, which smaller leaves might
   /// save. Excludes triangles whose own volumes were compared, as at leaves of wide nodes.
   std::uint64_t crowded_tests = 0;
+  /// Tests of triangles that would end with the visits of a price: all beneath pairs of nodes beneath which
+  /// nothing intersects; those beneath disjoint volumes; those that the best order does not reach.
+  std::uint64_t triangles_by_volumes = 0, triangles_by_test = 0, triangles_by_order = 0;
   /// An estimate of the visits and tests of triangles that leaves of up to kLargerLeaves triangles would
   /// save: for each first visited pair of nodes of that size whose volumes overlap, the visits and tests
   /// beneath it, less the tests of all its pairs of triangles.
   std::array<std::int64_t, kLargerLeaves.size()> saved_by_leaves{};
 
-  std::uint64_t wasted() const { return volumes + order + unsplit; }
+  std::uint64_t wasted() const { return test + volumes + order + unsplit; }
   Prices& operator+=(const Prices& other);
   friend bool operator==(const Prices&, const Prices&) = default;
 };
@@ -129,7 +137,9 @@ class PriceBook {
 };
 
 /// Returns a sentence that says which change would save most of the tests of volumes and triangles, each
-/// counted as one, and at most what share; and which comes next.
+/// counted as one, and at most what share; and which comes next. Volumes could save the visits of all other
+/// prices too if they fitted perfectly: they are ranked by those that no order saves, without the tests of
+/// triangles that smaller leaves would save.
 std::string advice(const Prices& sum);
 
 }  // namespace lrb::profile

@@ -552,6 +552,10 @@ std::optional<double> TreeFigures::sah() const {
   return kInnerCost * *sah_inner + kTriangleCost * *sah_leaves;
 }
 
+TreeFaults faults_of(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index) {
+  return find_faults(volumes, mesh, index, NodeMeasures(volumes, index), TreeOptions{}.tolerance);
+}
+
 TreeReport report_tree(const capture::Tree& tree, const capture::Mesh& mesh, const TreeOptions& options) {
   if (tree.first_child.size() < 2)
     throw InputError("tree " + std::to_string(tree.id) +

@@ -198,6 +198,9 @@ struct TreeOptions {
 /// Measures a tree. Throws InputError for one without nodes, and as Volumes.
 TreeReport report_tree(const capture::Tree& tree, const capture::Mesh& mesh, const TreeOptions& options = {});
 
+/// Returns the faults alone, with the default tolerance.
+TreeFaults faults_of(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index);
+
 /// lrbscope's own tree in the form of a capture.
 struct OwnTree {
   capture::Mesh mesh;  ///< the real simplices; a segment repeats its second corner

@@ -136,6 +136,11 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
     io::write_text(folder + "/" + kTreesFile, trees_text(recording.trees));
   RunOutcome out;
   out.notes = recording.notes;
+  constexpr std::uintmax_t kMegabyte = 1'000'000, kLarge = 300 * kMegabyte;
+  if (const auto size = std::filesystem::file_size(folder + "/" + trace_file, error); !error && size > kLarge)
+    out.notes.push_back(
+        folder + "/" + trace_file + " has " + std::to_string(size / kMegabyte) +
+        " MB, more than most viewers load; ask for fewer poses or, by --events, fewer events");
   out.mismatches = mismatches(scenario, recording);
   out.summary = trace::summary_json(recording.trace, summary_bodies(recorded));
   io::write_text(folder + "/summary.json", out.summary);

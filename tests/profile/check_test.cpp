@@ -131,6 +131,18 @@ TEST_CASE("Poses that are recorded wrongly are named, and only these") {
   CHECK(check(c.engine.capture, {}).pose_error.empty());
 }
 
+TEST_CASE("Faults of the trees are noted, because they make prices wrong") {
+  Captures c;
+  c.engine.ask(c.a, {}, c.b, c.pose);
+  CHECK(check(c.engine.capture, {}).tree_faults.empty());
+  // A volume in another frame.
+  c.engine.capture.trees[c.b].volumes[0] += 100;
+  c.engine.capture.trees[c.b].volumes[3] += 100;
+  const std::string faults = check(c.engine.capture, {}).tree_faults;
+  CHECK(faults.find("The trees have ") == 0);
+  CHECK(faults.find("lies outside node 0") != std::string::npos);
+}
+
 TEST_CASE("A recording of lrbscope is a capture whose answers are right and whose visits are the counters'") {
   for (const Mode mode : {Mode::all_pairs, Mode::any_pair}) {
     const run::Recording recorded = recorded_tori(EventLevel::nodes, mode);

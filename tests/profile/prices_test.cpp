@@ -18,7 +18,7 @@ using capture::QueryKind;
 namespace {
 
 std::uint64_t sum_of(const Prices& p) {
-  return p.needed + p.proof + p.volumes + p.order + p.unsplit + p.unattributed;
+  return p.needed + p.proof + p.test + p.volumes + p.order + p.unsplit + p.unattributed;
 }
 
 /// A query priced with all that belongs to it.
@@ -160,6 +160,53 @@ TEST_CASE("The prices of random descents are those of their definition, and of a
   }
   CHECK(with_order > 20);
   CHECK(with_volumes > 20);
+}
+
+TEST_CASE("What a price could save is what other engines with the same trees save") {
+  std::mt19937_64 random(5);
+  std::uint64_t by_test = 0, by_order = 0;
+  for (int round = 0; round < 60; ++round) {
+    CAPTURE(round);
+    FaultyEngine engine;
+    const bool wide = round % 3 == 2;
+    const auto grow = [&] {
+      return engine.grow(engine.add(soup_mesh(random, 40, 0.2)), random, 3, wide ? 4 : 2);
+    };
+    const std::uint32_t a = grow(), b = grow();
+    const Pose pose = Pose::translation({0.3, 0.2, 0.1});
+    const auto tests = [&](const FaultyQuery& how) {
+      std::uint64_t sum = 0;
+      for (const capture::Event& e : engine.ask(a, {}, b, pose, how).events) sum += e.tests;
+      return sum;
+    };
+    const FaultyQuery loose{.order = kOrders[round % 4], .wide = wide, .reach = 0.1};
+    FaultyQuery sharp = loose;
+    sharp.reach = 0;
+    const std::uint64_t all = tests(loose), fewer = tests(sharp);
+    const Prices p = Priced(engine.capture).prices;
+    CHECK(sum_of(p) == p.visits);
+    CHECK(all == p.volume_tests + p.triangle_tests);
+    // A sharper test saves the visits and tests beneath: exactly, if each visit is one test.
+    if (!wide) CHECK(all - fewer == p.test + p.triangles_by_test);
+    CHECK(Priced(engine.capture, 1).prices.test == 0);
+    by_test += p.test;
+    // No volumes end the descent above a needed visit or one of proof.
+    const Prices exact = Priced(engine.capture, 1).prices;
+    CHECK(p.needed == exact.needed);
+    CHECK(exact.wasted() + exact.needed + exact.proof == exact.visits);
+    // No other order of descent saves more than the bound.
+    if (wide) continue;
+    for (const OpeningOrder order : kOrders) {
+      if ((order == OpeningOrder::both) != (loose.order == OpeningOrder::both)) continue;
+      FaultyQuery other = sharp;
+      other.order = order;
+      const std::uint64_t saved = exact.order + exact.triangles_by_order;
+      CHECK(tests(other) + saved >= fewer);
+      by_order += saved;
+    }
+  }
+  CHECK(by_test > 100);
+  CHECK(by_order > 100);
 }
 
 TEST_CASE("Without a split, waste is one sum") {
@@ -361,11 +408,11 @@ TEST_CASE("Trees too deep to search are not split") {
 
 TEST_CASE("The advice names the change with most to gain, and the next") {
   Prices p;
-  p.visits = 800;
+  p.visits = p.volume_tests = 800;
   p.needed = 100, p.proof = 100, p.volumes = 200, p.order = 400;
   p.triangle_tests = 200;
   CHECK(advice(p) == "Most to gain: another order of descent, at most 40 % of " + render::group_digits(1000) +
-                         " tests of volumes and triangles; next: tighter volumes, at most 20 %.");
+                         " tests of volumes and triangles; next: tighter volumes, at most 60 %.");
   p.crowded_tests = 190;
   p.order = 0, p.volumes = 600;
   CHECK(advice(p).find("Most to gain: tighter volumes, at most 60 %") == 0);
@@ -375,12 +422,20 @@ TEST_CASE("The advice names the change with most to gain, and the next") {
   p.saved_by_leaves = {};
   p.volumes = 0, p.unsplit = 600;
   CHECK(advice(p).find("Most to gain: tighter volumes or another order of descent, at most 60 %") == 0);
+  p.unsplit = 0, p.volumes = p.order = 200, p.test = 200;
+  p.triangles_by_volumes = p.triangles_by_test = 150;
+  CHECK(advice(p) == "Most to gain: a sharper test of these volumes, at most 35 % of " +
+                         render::group_digits(1000) +
+                         " tests of volumes and triangles; next: another order of descent, at most 20 %.");
+  // Wide nodes compare several volumes in a visit.
+  p.volume_tests = 1600;
+  CHECK(advice(p).find("Most to gain: a sharper test of these volumes, at most 31 %") == 0);
   CHECK(advice({}) == "No tests were recorded.");
   Prices triangles;
   triangles.triangle_tests = 100, triangles.triangle_tests_for_nothing = 90;
   CHECK(advice(triangles).find("No tests of volumes were recorded (LRBCAP_NODE)") == 0);
   Prices needed;
-  needed.visits = needed.needed = 10;
+  needed.visits = needed.volume_tests = needed.needed = 10;
   CHECK(advice(needed) == "Nothing to gain: every visit was needed.");
   needed.needed = 0, needed.unattributed = 10;
   CHECK(advice(needed).find("No visit is attributed") == 0);

@@ -27,6 +27,7 @@ struct FaultyQuery {
   capture::QueryKind kind = capture::QueryKind::all_pairs;
   OpeningOrder order = OpeningOrder::larger;
   bool wide = false;  ///< compare all children, and visit pairs of children that overlap
+  double reach = 0;   ///< volumes up to this far apart pass for overlapping
   // Faults.
   std::set<NumberPair> lies = {};            ///< pairs of triangles whose test gives the opposite answer
   std::optional<NumberPair> forgetful = {};  ///< a pair of nodes whose last pair of children is not visited
@@ -123,9 +124,10 @@ class FaultyEngine {
     q.parts = {{0, 0, q.events.size()}};
   }
 
-  bool volumes_overlap(const capture::Query& q, std::uint32_t i, std::uint32_t j) const {
-    return profile::overlap(profile::Volumes(capture.trees[q.trees[0]]), i, q.poses[0],
-                            profile::Volumes(capture.trees[q.trees[1]]), j, q.poses[1]);
+  bool volumes_overlap(const capture::Query& q, std::uint32_t i, std::uint32_t j, double reach = 0) const {
+    const profile::Volumes a(capture.trees[q.trees[0]]), b(capture.trees[q.trees[1]]);
+    return profile::overlap(a, i, q.poses[0], b, j, q.poses[1]) ||
+           profile::gap(a, i, q.poses[0], b, j, q.poses[1]) < reach;
   }
 
  private:
@@ -151,10 +153,10 @@ class FaultyEngine {
     capture::Event e{.a = i, .b = j, .kind = capture::EventKind::nodes};
     if (how.wide && !leaves) {
       e.tests = static_cast<std::uint8_t>(next.size());
-      std::erase_if(next, [&](const NumberPair& p) { return !volumes_overlap(q, p[0], p[1]); });
+      std::erase_if(next, [&](const NumberPair& p) { return !volumes_overlap(q, p[0], p[1], how.reach); });
       e.met = static_cast<std::uint8_t>(next.size());
     } else {
-      e.met = volumes_overlap(q, i, j);
+      e.met = volumes_overlap(q, i, j, how.reach);
     }
     q.events.push_back(e);
     if (e.met == 0) return false;
