@@ -7,8 +7,7 @@
 ///     recorder.end_step(collide(a, pose_a, b, pose_b, request, workspace, &recorder).value());
 ///   Trace trace = recorder.take();
 ///
-/// An event costs some nanoseconds on the event clock (measured by bench/micro/record_bench.cpp). The wall
-/// clock adds one read of steady_clock.
+/// An event costs some nanoseconds on the event clock. The wall clock adds one read of steady_clock.
 
 #include <algorithm>
 #include <array>
