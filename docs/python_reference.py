@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """python_reference.py TREE: prints the reference of the Python package as Markdown, for docs/site.sh.
 
-Names, signatures and types come from the stub _core.pyi and the sources of the package. Texts of compiled classes and functions
-are the docstrings of the built module; without it (PYTHONPATH), only their signatures are printed. Exits with 1 if the package
-exports a name that the reference lacks, or a public function lacks its text.
+Names, signatures and types come from the sources of the package and, for compiled classes and functions, from the stub _core.pyi of
+the built package (PYTHONPATH), which has their texts; without it they are left out. Exits with 1 if the package exports a name that
+the reference lacks, or a public function lacks its text.
 """
 
 import ast
-import importlib
 import os
 import re
 import sys
@@ -24,33 +23,29 @@ built = os.path.isdir(os.environ.get("PYTHONPATH", "nowhere"))
 missing = []
 
 
-def parsed(file):
+def parsed(file, folder=folder):
     with open(os.path.join(folder, file), encoding="utf-8") as source:
         return ast.parse(source.read()).body
 
 
 def exported(nodes):
     for node in nodes:
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__" and isinstance(node.value, ast.List):
             return list(ast.literal_eval(node.value))
-    return [n.name for n in nodes if isinstance(n, (ast.ClassDef, ast.FunctionDef)) and not n.name.startswith("_")]
+    if any(isinstance(n, ast.ImportFrom) and n.names[0].name == "*" for n in nodes):
+        nodes = nodes + [n for n in core if getattr(n, "name", "") != "EnvironmentError"]
+    names = [a.asname for n in nodes if isinstance(n, ast.ImportFrom) for a in n.names]
+    names += [n.name for n in nodes if isinstance(n, (ast.ClassDef, ast.FunctionDef))]
+    return list(dict.fromkeys(name for name in names if name and not name.startswith("_")))
 
 
 def docstring(node, *path):
-    """Return the text of a name: that of the source or, of compiled code, that of the built module."""
+    """Return the text of a name."""
     text = ast.get_docstring(node) or ""
-    needed = built and isinstance(node, ast.FunctionDef) and len(path) == 2
-    if not text and built:
-        found = importlib.import_module(path[0])
-        for name in path[1:]:
-            found = getattr(found, name, None)
-        text = (getattr(found, "__doc__", None) or "").strip()
-        if path[-1] == "__init__":
-            path = path[:-1]
-        if text.startswith(path[-1] + "("):  # pybind11's signature, which the stub states with types
-            text = text.partition("\n\n")[2]
-    if needed and not text:
+    if isinstance(node, ast.FunctionDef) and len(path) == 2 and not text:
         missing.append(".".join(path))
+    if text.startswith(path[-1] + "("):  # a class: its signature, which the stub states with types
+        text = text.partition("\n\n")[2]
     return text
 
 
@@ -183,7 +178,7 @@ def class_page(node, module, name):
     return out
 
 
-core = parsed("_core.pyi")
+core = parsed("_core.pyi", os.path.join(os.environ["PYTHONPATH"], "lrbscope")) if built else []
 ALIASES = {
     n.targets[0].id: ast.unparse(n.value)
     for n in core

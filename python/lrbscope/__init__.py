@@ -16,52 +16,14 @@ seconds. Answers are exact for the vertices' world coordinates, and do not depen
 """
 
 from . import _core
-from ._core import (
-    Body,
-    Clash,
-    CoherentQuery,
-    ContactRegion,
-    Distance,
-    Distances,
-    EnvironmentError,
-    FirstContact,
-    FirstContacts,
-    InputError,
-    Manifolds,
-    Meetings,
-    NearPairs,
-    Outcome,
-    PairExplanation,
-    PointDistances,
-    Result,
-    Results,
-    Scenario,
-    Scene,
-    SelfIntersections,
-    SweepAndPrune,
-    Trace,
-    WalkExplanation,
-    Wrapper,
-    __version__,
-    clash,
-    collide,
-    collide_pairs,
-    contact_manifolds,
-    contacts,
-    distance,
-    explain_pair,
-    explain_walk,
-    first_contact,
-    near_pairs,
-    render,
-    scenarios,
-    self_intersections,
-    signed_distance,
-    trace,
-)
-from ._picture import Picture
-from .collision import CollisionManager, ContactData, DistanceData
-from .report import Interference, Report
+from ._core import *
+from ._core import __version__ as __version__
+from ._picture import Picture as Picture
+from .collision import CollisionManager as CollisionManager
+from .collision import ContactData as ContactData
+from .collision import DistanceData as DistanceData
+from .report import Interference as Interference
+from .report import Report as Report
 from .report import report as _report
 
 # Classes report, and pickle, the module that users import them from.
@@ -71,53 +33,8 @@ for _name in dir(_core):
         _object.__module__ = __name__
 del _name, _object
 
-Scene.report = _report  # type: ignore[method-assign]
+_core.Scene.report = _report  # type: ignore[method-assign]
 
 # EnvironmentError is not exported: it would hide Python's own.
-__all__ = [
-    "Body",
-    "Clash",
-    "CoherentQuery",
-    "CollisionManager",
-    "ContactData",
-    "ContactRegion",
-    "Distance",
-    "DistanceData",
-    "Distances",
-    "FirstContact",
-    "FirstContacts",
-    "InputError",
-    "Interference",
-    "Manifolds",
-    "Meetings",
-    "NearPairs",
-    "Outcome",
-    "PairExplanation",
-    "Picture",
-    "PointDistances",
-    "Report",
-    "Result",
-    "Results",
-    "Scenario",
-    "Scene",
-    "SelfIntersections",
-    "SweepAndPrune",
-    "Trace",
-    "WalkExplanation",
-    "Wrapper",
-    "clash",
-    "collide",
-    "collide_pairs",
-    "contact_manifolds",
-    "contacts",
-    "distance",
-    "explain_pair",
-    "explain_walk",
-    "first_contact",
-    "near_pairs",
-    "render",
-    "scenarios",
-    "self_intersections",
-    "signed_distance",
-    "trace",
-]
+__all__ = sorted(name for name in dir() if name[0].isupper() and name != "EnvironmentError")
+__all__ += [name for name in dir(_core) if name[0].islower()]

@@ -134,9 +134,10 @@ def contacts_of(result: Result, a: _Placed, b: _Placed) -> Iterator[tuple[int, _
 
 
 class _OfPair(Shown):
-    def __init__(self, names: _Names, faces: Sequence[int]) -> None:
+    def __init__(self, names: _Names, faces: Sequence[int], **values: Any) -> None:
         self.names: set[Any] = set(names)
         self._faces: dict[Any, int] = dict(zip(names, faces))
+        vars(self).update(values)
 
     def index(self, name: Hashable) -> int:
         """Return the intersecting, or closest, face of the object of this name."""
@@ -151,22 +152,16 @@ class ContactData(_OfPair):
     second, or zero if undefined. World frame.
     """
 
-    def __init__(
-        self, names: _Names, faces: Sequence[int], point: _Floats, normal: _Floats, depth: float
-    ) -> None:
-        super().__init__(names, faces)
-        self.point: _Floats = point
-        self.normal: _Floats = normal
-        self.depth: float = depth
+    point: _Floats
+    normal: _Floats
+    depth: float
 
 
 class DistanceData(_OfPair):
     """The closest points of two objects. names: set of their names; distance: float, the world's unit."""
 
-    def __init__(self, names: _Names, faces: Sequence[int], points: _Floats, distance: float) -> None:
-        super().__init__(names, faces)
-        self._points: dict[Any, _Floats] = dict(zip(names, points))
-        self.distance: float = distance
+    distance: float
+    _points: dict[Any, _Floats]
 
     def point(self, name: Hashable) -> _Floats:
         """Return the closest point on the object of this name, (3,) float, world frame."""
@@ -349,7 +344,7 @@ class CollisionManager:
             first = other if isinstance(other, tuple) else self._crowd.placed(a)
             faces = result.face_pairs.tolist()
             for i, point, normal, depth in contacts_of(result, first, theirs.placed(b)):
-                data.append(ContactData(pair, faces[i], point, normal, depth))
+                data.append(ContactData(pair, faces[i], point=point, normal=normal, depth=depth))
         return bool(names), names, data
 
     def _nearest(self, other: Crowd | _Placed | None = None) -> tuple[float, _Names, _Nearest]:
@@ -360,7 +355,8 @@ class CollisionManager:
             return math.inf, (None, None), None
         a, b, nearest = found
         names, distance = names_of(a, b), nearest.solids[1]
-        return distance, names, DistanceData(names, nearest.faces, nearest.points, distance)
+        points = dict(zip(names, nearest.points))
+        return distance, names, DistanceData(names, nearest.faces, distance=distance, _points=points)
 
 
 def scene_to_collision(scene: Any) -> tuple[CollisionManager, dict[Any, Body]]:

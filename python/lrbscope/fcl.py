@@ -76,27 +76,27 @@ class _Posed:
     """A rotation and a translation."""
 
     def __init__(self) -> None:
-        self._r, self._t = np.eye(3), np.zeros(3)
+        self._pose = np.eye(4)
 
     def getTranslation(self) -> _Floats:
         """Return the translation, (3,)."""
-        return self._t.copy()
+        return self._pose[:3, 3].copy()
 
     def setTranslation(self, T: npt.ArrayLike) -> None:
         """Set the translation, (3,)."""
-        self._t = _array(T, (3,), "a translation")
+        self._pose[:3, 3] = _array(T, (3,), "a translation")
 
     def getRotation(self) -> _Floats:
         """Return the rotation, (3, 3)."""
-        return self._r.copy()
+        return self._pose[:3, :3].copy()
 
     def setRotation(self, R: npt.ArrayLike) -> None:
         """Set the rotation, (3, 3)."""
-        self._r = _array(R, (3, 3), "a rotation")
+        self._pose[:3, :3] = _array(R, (3, 3), "a rotation")
 
     def getQuatRotation(self) -> _Floats:
         """Return the rotation as w, x, y, z with w >= 0."""
-        r = self._r
+        r = self._pose[:3, :3]
         squares = np.array([np.trace(r), *(2 * np.diag(r) - np.trace(r))]) + 1
         differences = {(0, 1): r[2, 1] - r[1, 2], (0, 2): r[0, 2] - r[2, 0], (0, 3): r[1, 0] - r[0, 1]}
         sums = {(1, 2): r[0, 1] + r[1, 0], (1, 3): r[0, 2] + r[2, 0], (2, 3): r[1, 2] + r[2, 1]}
@@ -113,14 +113,12 @@ class _Posed:
         if not length > 0:
             raise ValueError("a quaternion: expected one other than zero")
         w, v = q[0] / length, q[1:] / length
-        self._r = (w * w - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * np.cross(v, np.eye(3)).T
+        self.setRotation((w * w - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * np.cross(v, np.eye(3)).T)
 
     @property
     def pose(self) -> _Floats:
         """(4, 4) float: the pose."""
-        pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = self._r, self._t
-        return pose
+        return self._pose.copy()
 
 
 class Transform(_Posed):
@@ -134,7 +132,7 @@ class Transform(_Posed):
         if len(given) > 2:
             raise ValueError("Too many arguments to Transform().")
         if len(given) == 1 and isinstance(given[0], _Posed):
-            given = [given[0].getRotation(), given[0].getTranslation()]
+            self._pose = given.pop().pose
         if len(given) == 2 or (given and np.shape(given[0]) == (3,)):
             self.setTranslation(given.pop())
         if given and np.shape(given[0]) == (3, 3):
@@ -145,7 +143,8 @@ class Transform(_Posed):
             raise ValueError("Invalid input to Transform().")
 
     def __repr__(self) -> str:
-        rotation, translation = (np.array2string(x, separator=", ") for x in (self._r, self._t))
+        parts = (self.getRotation(), self.getTranslation())
+        rotation, translation = (np.array2string(x, separator=", ") for x in parts)
         return f"<lrbscope.fcl.Transform {' '.join(rotation.split())}, {' '.join(translation.split())}>"
 
 
@@ -442,7 +441,7 @@ class CollisionObject(_Posed):
 
     def setTransform(self, tf: Transform) -> None:
         """Set the pose."""
-        self._r, self._t = tf.getRotation(), tf.getTranslation()
+        self._pose = tf.pose
 
     def isOccupied(self) -> bool:
         """Return True: there are no octree cells."""
@@ -598,10 +597,7 @@ def _contacts(o1: CollisionObject, o2: CollisionObject, result: Result, full: bo
 
 
 def collide(
-    o1: CollisionObject,
-    o2: CollisionObject,
-    request: CollisionRequest | None = None,
-    result: CollisionResult | None = None,
+    o1: CollisionObject, o2: CollisionObject, request: CollisionRequest | None = None, result: CollisionResult | None = None
 ) -> int:
     """Find the contacts of two objects. Returns their number; adds them to `result`."""
     request, result = request or CollisionRequest(), result or CollisionResult()
@@ -624,10 +620,7 @@ def collide(
 
 
 def distance(
-    o1: CollisionObject,
-    o2: CollisionObject,
-    request: DistanceRequest | None = None,
-    result: DistanceResult | None = None,
+    o1: CollisionObject, o2: CollisionObject, request: DistanceRequest | None = None, result: DistanceResult | None = None
 ) -> float:
     """Return the distance of two objects, in the world's unit.
 

@@ -34,14 +34,9 @@ py::array_t<std::uint32_t> pairs_of(const py::object& self) {
 }
 
 py::array_t<std::uint32_t> face_pairs_of(const Answer& answer) {
-  const auto& pairs = answer.result->pairs;
-  py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
-  std::uint32_t* to = out.mutable_data();
-  for (const SimplexPair& p : pairs) {
-    *to++ = answer.a->face_of_simplex(p.a);
-    *to++ = answer.b->face_of_simplex(p.b);
-  }
-  return out;
+  return column(answer.result->pairs, [&](const SimplexPair& p) {
+    return std::array{answer.a->face_of_simplex(p.a), answer.b->face_of_simplex(p.b)};
+  });
 }
 
 /// Returns the corners of all pairs' intersections, and the number of each corner's pair.
@@ -55,15 +50,15 @@ py::tuple points_of(const Answer& answer) {
       of_pair.push_back(i);
     }
   }
-  return py::make_tuple(array_of(points), array_of_ids(std::span<const std::uint32_t>(of_pair)));
+  return py::make_tuple(to_python(points), to_python(of_pair));
 }
 
 py::object separation_of(const Answer& answer) {
   if (!answer.result->separation) return py::none();
   const Separation& s = *answer.result->separation;
   py::dict d;
-  d["regions_a"] = array_of_ids(std::span<const RegionId>(s.refined[0]));
-  d["regions_b"] = array_of_ids(std::span<const RegionId>(s.refined[1]));
+  d["regions_a"] = to_python(s.refined[0]);
+  d["regions_b"] = to_python(s.refined[1]);
   d["faces_a"] = s.face_count[0];
   d["faces_b"] = s.face_count[1];
   return d;
@@ -78,55 +73,49 @@ std::string shown(const Answer& answer) {
 void bind_result(py::module_& m) {
   py::class_<Answer> c(
       m, "Result", "The answer to one query. Made by collide(). Arrays are read-only and share its memory.");
-  const auto of_result = [&c](const char* name, const auto& get, const char* text) {
-    property(
-        c, name, [get](const Answer& a) { return to_python(std::invoke(get, *a.result)); }, text);
-  };
+  const auto of_result = properties_of(
+      c, [](const Answer& a) -> const auto& { return *a.result; });
   of_result(
-      "relation", &CollideResult::relation,
+      "relation",
       R"(str: 'separate', 'crossing', 'touching', 'a_inside_b', 'b_inside_a', 'undefined' (the surfaces are
-disjoint, the bodies' boxes overlap, and a body is not closed), 'unresolved' (only with limits).)");
+disjoint, the bodies' boxes overlap, and a body is not closed), 'unresolved' (only with limits).)",
+      &CollideResult::relation);
   c.def_property_readonly(
       "pairs", &pairs_of,
       "(p, 2) uint32: the intersecting triangles of A and of B, ascending. At most one pair unless mode is 'all'.");
-  property(c, "face_pairs", &face_pairs_of,
-           "(p, 2) uint32: the faces of these triangles; differs from `pairs` for polygons only.");
-  of_result(
-      "crosses",
-      [](const CollideResult& r) {
-        return column(r.meets, [](exact::Meet meet) { return meet == exact::Meet::cross; });
-      },
-      "(p,) bool: True if the pair crosses; False if it touches.");
-  of_result(
-      "fingerprint", [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); },
-      "str: 16 hexadecimal digits, a hash of `pairs`.");
-  of_result("interiors_overlap", &CollideResult::interiors_overlap,
-            "bool or None: True if the bodies share a volume; None if not known or not requested.");
-  c.def_property_readonly("regions", &regions_of, "list of ContactRegion, if contacts were requested.");
+  property(c, "face_pairs",
+           "(p, 2) uint32: the faces of these triangles; differs from `pairs` for polygons only.",
+           &face_pairs_of);
+  of_result("crosses", "(p,) bool: True if the pair crosses; False if it touches.",
+            [](const CollideResult& r) {
+              return column(r.meets, [](exact::Meet meet) { return meet == exact::Meet::cross; });
+            });
+  of_result("fingerprint", "str: 16 hexadecimal digits, a hash of `pairs`.",
+            [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); });
+  of_result("interiors_overlap",
+            "bool or None: True if the bodies share a volume; None if not known or not requested.",
+            &CollideResult::interiors_overlap);
+  c.def_property_readonly("regions", &regions_of, "list of ContactRegion: if contacts were requested.");
   property(
-      c, "points", &points_of,
+      c, "points",
       R"(((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and the pair of each, if
-contacts were requested.)");
-  of_result(
-      "counters",
-      [](const CollideResult& r) {
-        py::dict d;
-        for_each_field<Counters>([&](const auto& field) { d[field.name.data()] = r.counters.*field.member; });
-        return d;
-      },
-      "dict: the work of the query, in numbers of operations.");
-  of_result("error_bound", &CollideResult::error_bound,
+contacts were requested.)",
+      &points_of);
+  of_result("counters", "dict: the work of the query, in numbers of operations.", [](const CollideResult& r) {
+    py::dict d;
+    for_each_field<Counters>([&](const auto& field) { d[field.name.data()] = r.counters.*field.member; });
+    return d;
+  });
+  of_result("error_bound",
             "float: 0 if the answer is exact; else the sum of both intersecting wrappers' maximum deviations "
-            "from their bodies, world's unit.");
-  of_result("finished", &CollideResult::finished, "bool: False if a limit was reached before the tolerance.");
-  property(c, "separation", &separation_of,
-           "dict or None: the regions that prove the bodies separate when refined, if requested.");
-  of_result(
-      "opened",
-      [](const CollideResult& r) {
-        return py::make_tuple(column(r.opened[0], std::identity()), column(r.opened[1], std::identity()));
-      },
-      "((i,) uint32, (j,) uint32): regions of A and of B that were refined, in order.");
+            "from their bodies, world's unit.",
+            &CollideResult::error_bound);
+  of_result("finished", "bool: False if a limit was reached before the tolerance.", &CollideResult::finished);
+  property(c, "separation",
+           "dict or None: the regions that prove the bodies separate when refined, if requested.",
+           &separation_of);
+  of_result("opened", "((i,) uint32, (j,) uint32): regions of A and of B that were refined, in order.",
+            &CollideResult::opened);
   c.def(
       "__bool__", [](const Answer& a) { return in_contact(*a.result); },
       R"(True if the bodies are known to have a point in common: surfaces intersect, or one body is inside the other.)");
@@ -143,17 +132,10 @@ py::array names(const Answers& answers, const Name& name) {
 
 /// Returns all pairs of all poses as rows pose, triangle of A, triangle of B.
 py::array_t<std::uint32_t> all_pairs(const Answers& answers) {
-  std::size_t n = 0;
-  for (const CollideResult& r : *answers.all) n += r.pairs.size();
-  py::array_t<std::uint32_t> out({static_cast<py::ssize_t>(n), py::ssize_t{3}});
-  std::uint32_t* to = out.mutable_data();
-  for (std::size_t i = 0; i < answers.all->size(); ++i)
-    for (const SimplexPair& p : (*answers.all)[i].pairs) {
-      *to++ = static_cast<std::uint32_t>(i);
-      *to++ = p.a;
-      *to++ = p.b;
-    }
-  return out;
+  std::vector<std::array<std::uint32_t, 3>> rows;
+  for (std::uint32_t i = 0; i < answers.all->size(); ++i)
+    for (const SimplexPair& p : (*answers.all)[i].pairs) rows.push_back({i, p.a, p.b});
+  return column(rows, std::identity());
 }
 
 py::object item(const Answers& answers, const py::object& which) {
@@ -173,38 +155,27 @@ py::object item(const Answers& answers, const py::object& which) {
 void bind_results(py::module_& m) {
   py::class_<Answers> c(m, "Results",
                         "Answers for k poses: a sequence of Result, in the order of the poses.");
-  c.def("__len__", [](const Answers& a) { return a.all->size(); });
   c.def("__getitem__", &item);
   bind_iterator(c);
-  c.def_property_readonly(
-      "relations",
-      [](const Answers& a) { return names(a, [](const CollideResult& r) { return to_string(r.relation); }); },
-      "(k,) str: Result.relation of each.");
-  c.def_property_readonly(
-      "fingerprints",
-      [](const Answers& a) {
-        return names(a, [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); });
-      },
-      "(k,) str: Result.fingerprint of each.");
-  property(
-      c, "counts",
-      [](const Answers& a) {
-        return column(*a.all,
-                      [](const CollideResult& r) { return static_cast<std::int64_t>(r.pairs.size()); });
-      },
-      "(k,) int64: the number of pairs of each.");
-  property(
-      c, "hits", [](const Answers& a) { return column(*a.all, &in_contact); }, "(k,) bool: bool() of each.");
-  c.def_property_readonly("all_pairs", &all_pairs,
-                          "(n, 3) uint32: the pairs of all poses: pose, triangle of A, triangle of B.");
-  c.def("__repr__",
-        [](const Answers& a) { return "<lrbscope.Results of " + std::to_string(a.all->size()) + " poses>"; });
+  const auto of_each = rows_of(
+      c, "poses", [](const Answers& a) -> const auto& { return *a.all; });
+  property(c, "relations", "(k,) str: Result.relation of each.", [](const Answers& a) {
+    return names(a, [](const CollideResult& r) { return to_string(r.relation); });
+  });
+  property(c, "fingerprints", "(k,) str: Result.fingerprint of each.", [](const Answers& a) {
+    return names(a, [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); });
+  });
+  of_each("counts", "(k,) int64: the number of pairs of each.",
+          [](const CollideResult& r) { return static_cast<std::int64_t>(r.pairs.size()); });
+  of_each("hits", "(k,) bool: bool() of each.", &in_contact);
+  property(c, "all_pairs", "(n, 3) uint32: the pairs of all poses: pose, triangle of A, triangle of B.",
+           &all_pairs);
 }
 
 py::list curves_of(const Region& r) {
   py::list out;
   for (const ContactLoop& loop : r.region->loops)
-    out.append(py::make_tuple(array_of(loop.points), loop.closed));
+    out.append(py::make_tuple(to_python(loop.points), loop.closed));
   return out;
 }
 
@@ -212,26 +183,23 @@ void bind_region(py::module_& m) {
   py::class_<Region> c(
       m, "ContactRegion",
       "A connected part of the intersection of two surfaces; world frame, the meshes' unit.");
-  const auto of_region = [&c](const char* name, const auto& get, const char* text) {
-    property(
-        c, name, [get](const Region& r) { return to_python(std::invoke(get, *r.region)); }, text);
-  };
-  of_region(
-      "pairs", [](const ContactRegion& r) { return column(r.pairs, std::identity()); },
-      "(i,) uint32: indices into Result.pairs, ascending.");
-  property(c, "curves", &curves_of,
-           "list of ((q, 3) float64, bool): the points of each curve, and whether it is closed.");
-  of_region("length", &ContactRegion::length, "float: of all curves.");
-  of_region("area", &ContactRegion::area,
-            "float: of the coplanar contact or the area spanned by closed curves; unit squared.");
-  of_region("centroid", &ContactRegion::centroid, "(3,) float64");
+  const auto of_region = properties_of(
+      c, [](const Region& r) -> const auto& { return *r.region; });
+  of_region("pairs", "(i,) uint32: indices into Result.pairs, ascending.", &ContactRegion::pairs);
+  property(c, "curves", "list of ((q, 3) float64, bool): the points of each curve, and whether it is closed.",
+           &curves_of);
+  of_region("length", "float: of all curves.", &ContactRegion::length);
+  of_region("area", "float: of the coplanar contact or the area spanned by closed curves; unit squared.",
+            &ContactRegion::area);
+  of_region("centroid", "(3,) float64", &ContactRegion::centroid);
   property(
-      c, "normal", [](const Region& r) { return r.found.normal; },
+      c, "normal",
       "(3,) float64: unit, from A to B, of the contact manifold of the region's pairs that overlaps least; "
-      "zero if undefined.");
-  property(
-      c, "depth_estimate", [](const Region& r) { return r.found.depth; },
-      "float: the depth of this manifold, along `normal`; 0 if the bodies only touch.");
+      "zero if undefined.",
+      [](const Region& r) { return r.found.normal; });
+  property(c, "depth_estimate",
+           "float: the depth of this manifold, along `normal`; 0 if the bodies only touch.",
+           [](const Region& r) { return r.found.depth; });
   c.def("__repr__", [](const Region& r) {
     return "<lrbscope.ContactRegion of " + std::to_string(r.region->pairs.size()) + " pairs>";
   });

@@ -260,14 +260,4 @@ std::vector<Eigen::Vector3d> points(py::handle given, const char* what, int dim)
   return out;
 }
 
-py::array_t<double> array_of(std::span<const Eigen::Vector3d> points) {
-  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-  return py::array_t<double>({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}},
-                             reinterpret_cast<const double*>(points.data()));
-}
-
-py::array_t<double> array_of(const Eigen::Vector3d& v) {
-  return py::array_t<double>(3, v.data());
-}
-
 }  // namespace lrb::python

@@ -89,16 +89,4 @@ py::array_t<std::uint32_t> view_of_ids(std::span<const Id> ids, py::ssize_t colu
   return view(std::move(shape), reinterpret_cast<const std::uint32_t*>(ids.data()), owner);
 }
 
-/// Copies points into an (n, 3) array.
-py::array_t<double> array_of(std::span<const Eigen::Vector3d> points);
-/// Copies a vector into a (3) array.
-py::array_t<double> array_of(const Eigen::Vector3d& v);
-/// Copies ids into an array.
-template <class Id>
-py::array_t<std::uint32_t> array_of_ids(std::span<const Id> ids) {
-  py::array_t<std::uint32_t> out(static_cast<py::ssize_t>(ids.size()));
-  for (std::size_t i = 0; i < ids.size(); ++i) out.mutable_data()[i] = ids[i];
-  return out;
-}
-
 }  // namespace lrb::python

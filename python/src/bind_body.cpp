@@ -126,13 +126,8 @@ py::object triangles_of(const py::object& self) {
 
 py::array_t<std::uint32_t> face_of_triangle(const Body& body) {
   const LrbRep& rep = body.rep();
-  py::array_t<std::uint32_t> out(static_cast<py::ssize_t>(rep.real_simplex_count()));
-  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) out.mutable_data()[s] = rep.face_of_simplex(s);
-  return out;
-}
-
-py::object parsed_json(const std::string& text) {
-  return py::module_::import("json").attr("loads")(text);
+  return column(std::views::iota(0u, rep.real_simplex_count()),
+                [&](std::uint32_t s) { return rep.face_of_simplex(SimplexId(s)); });
 }
 
 py::object figures(const Body& body) {
@@ -161,12 +156,7 @@ py::object levels(const Body& body, py::handle threads) {
 
 py::array_t<double> box(const Body& body, py::handle given) {
   const Eigen::AlignedBox3d found = body.extent().in_world(pose(given, "pose"));
-  py::array_t<double> out({2, 3});
-  for (int i = 0; i < 3; ++i) {
-    out.mutable_data()[i] = found.min()[i];
-    out.mutable_data()[3 + i] = found.max()[i];
-  }
-  return out;
+  return column(std::array<Eigen::Vector3d, 2>{found.min(), found.max()}, std::identity());
 }
 
 /// Returns the bytes of trivially copyable numbers.
@@ -259,9 +249,10 @@ have regions (open, not manifold) gives a body without them.)"));
       Signature(R"(load(path, *, regions=True, lean=False, seed=1, threads=0, progress=None, cache=None)
 
 Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)"));
-  define(c, &save,
+  define(c,
          "save(path)\n\n"
-         "Writes the body: with its regions as .lrb, its faces alone as .ply or .obj.");
+         "Writes the body: with its regions as .lrb, its faces alone as .ply or .obj.",
+         &save);
   c.def(py::pickle(&pickled, &unpickled));
   c.def("__copy__", &itself);
   c.def("__deepcopy__", [](const py::object& self, const py::handle&) { return itself(self); });
@@ -284,52 +275,48 @@ void bind_geometry(BodyClass& c) {
       [](const py::object& self) {
         return faces_of(self, FaceId{0}, FaceId(self.cast<const Body&>().rep().real_face_count()));
       },
-      "(m, 3) uint32, in 2D (m, 2): the corners of each face; a list of arrays if faces differ "
-      "in their number of corners.");
+      "(m, 3) uint32 or list of (k,) uint32: the corners of each face, in 2D (m, 2); a list if faces differ in "
+      "their number of corners.");
   c.def_property_readonly(
       "triangles", &triangles_of,
       "(t, 3) uint32, in 2D (t, 2): the corners of each triangle; pairs index this array. A "
       "convex polygon is the fan of triangles from its first corner (docs/meshes.md).");
   c.def_property_readonly("face_of_triangle", &face_of_triangle, "(t,) uint32: the face of each triangle.");
-  define(c, &box,
+  define(c,
          "box(pose=None)\n\n"
          "Returns the exact bounding box of the body at a pose, (2, 3) float64: minimum and "
-         "maximum coordinates.");
+         "maximum coordinates.",
+         &box);
 }
 
 void bind_numbers(BodyClass& c) {
-  const auto of_rep = [&c](const char* name, const auto& get, const char* text) {
-    property(
-        c, name, [get](const Body& b) { return std::invoke(get, b.rep()); }, text);
-  };
-  of_rep(
-      "name", [](const LrbRep& rep) { return printable(rep.name()); }, "str: for messages.");
-  of_rep("dim", &LrbRep::dim, "int: 3, or 2 for a 2D body.");
-  of_rep("is_solid", &LrbRep::closed, "bool: the faces bound a solid, so that 'inside' is defined.");
-  of_rep("real_face_count", &LrbRep::real_face_count, "int: faces of the mesh.");
-  of_rep("face_count", &LrbRep::face_count, "int: faces of the LRB-rep, including pseudo faces.");
-  of_rep("region_count", &LrbRep::region_count, "int: number of regions of the LRB-rep.");
-  of_rep("layer_count", &LrbRep::layer_count, "int: passes of the build that made regions.");
-  of_rep(
-      "hash", [](const LrbRep& rep) { return trace::to_hex(rep.hash()); },
-      "str: 16 hexadecimal digits, equal for equal LRB-reps.");
-  of_rep("memory_bytes", &LrbRep::memory_bytes, "int");
-  property(
-      c, "notes", [](const Body& b) { return printable(b.notes()); },
-      "list of str: changes made to the mesh and features not available, as text.");
-  property(c, "build_seconds", &Body::build_seconds,
-           "float: duration of the build; 0 if the body was not built.");
-  define(c, &figures,
+  const auto of_rep = properties_of(c, &Body::rep);
+  of_rep("name", "str: for messages.", [](const LrbRep& rep) { return printable(rep.name()); });
+  of_rep("dim", "int: 3, or 2 for a 2D body.", &LrbRep::dim);
+  of_rep("is_solid", "bool: the faces bound a solid, so that 'inside' is defined.", &LrbRep::closed);
+  of_rep("real_face_count", "int: faces of the mesh.", &LrbRep::real_face_count);
+  of_rep("face_count", "int: faces of the LRB-rep, including pseudo faces.", &LrbRep::face_count);
+  of_rep("region_count", "int: number of regions of the LRB-rep.", &LrbRep::region_count);
+  of_rep("layer_count", "int: passes of the build that made regions.", &LrbRep::layer_count);
+  of_rep("hash", "str: 16 hexadecimal digits, equal for equal LRB-reps.",
+         [](const LrbRep& rep) { return trace::to_hex(rep.hash()); });
+  of_rep("memory_bytes", "int", &LrbRep::memory_bytes);
+  property(c, "notes", "list of str: changes made to the mesh and features not available, as text.",
+           [](const Body& b) { return printable(b.notes()); });
+  property(c, "build_seconds", "float: duration of the build; 0 if the body was not built.",
+           &Body::build_seconds);
+  define(c,
          "figures()\n\n"
          "Returns statistics of the LRB-rep, a dict with the keys of `lrbscope build --json`: "
          "faces, regions, layers,\n"
-         "volumes (unit cubed) of solid, outermost wrapper and hull, bytes, build_seconds.");
-  define(c, &levels,
-         R"(levels(*, threads=0)
+         "volumes (unit cubed) of solid, outermost wrapper and hull, bytes, build_seconds.",
+         &figures);
+  define(c, R"(levels(*, threads=0)
 
 Returns the levels of detail used by queries with a tolerance, coarsest first: a list of dicts with `bound`
 (maximum distance of the wrapper's points from the body, in the mesh's unit), `faces`, `pseudo_faces`.
-The first call makes them.)");
+The first call makes them.)",
+         &levels);
 }
 
 }  // namespace

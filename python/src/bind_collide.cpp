@@ -50,11 +50,7 @@ py::dict statistics(QueryHandle& self) {
     const std::lock_guard lock(self.mutex);
     s = self.query.statistics();
   }
-  return dict_of({{"from_cache", s.from_cache},
-                  {"caches_made", s.caches_made},
-                  {"swept_caches", s.swept_caches},
-                  {"from_scratch", s.from_scratch},
-                  {"tests_saved", s.tests_saved}});
+  return dict_of(s, {"from_cache", "caches_made", "swept_caches", "from_scratch", "tests_saved"});
 }
 
 constexpr const char* kCoherentText =
@@ -75,9 +71,10 @@ tests).
 void bind_coherent(py::module_& m) {
   py::class_<QueryHandle, QueryHandlePtr> c(m, "CoherentQuery", kCoherentText);
   c.def(py::init(&make), Signature(kCoherentText));
-  define(c, &collide_next,
+  define(c,
          "collide(pose_b=None, pose_a=None)\n\n"
-         "Returns the Result for these poses, (4, 4); None: the identity.");
+         "Returns the Result for these poses, (4, 4); None: the identity.",
+         &collide_next);
   c.def("__repr__", [](const QueryHandle& q) {
     return printable("<lrbscope.CoherentQuery of '" + q.a->rep().name() + "' and '" + q.b->rep().name() +
                      "'>");
@@ -86,8 +83,8 @@ void bind_coherent(py::module_& m) {
       "statistics", &statistics,
       R"(dict of int: queries answered from_cache, caches_made for a query (swept_caches of them for a motion),
 queries from_scratch, tests_saved.)");
-  property(c, "a", &QueryHandle::a, "Body");
-  property(c, "b", &QueryHandle::b, "Body");
+  property(c, "a", "Body", &QueryHandle::a);
+  property(c, "b", "Body", &QueryHandle::b);
 }
 
 }  // namespace lrb::python
@@ -280,10 +277,10 @@ CollideRequest request_of(const RequestArguments& given) {
 }
 
 void bind_collide(py::module_& m) {
-  define(m, &collide, kCollideText);
-  define(m, &collide_pairs, kCollidePairsText);
+  define(m, kCollideText, &collide);
+  define(m, kCollidePairsText, &collide_pairs);
   m.def("_collide_alone", &collide_alone);
-  define(m, &contacts, kContactsText);
+  define(m, kContactsText, &contacts);
 }
 
 }  // namespace lrb::python

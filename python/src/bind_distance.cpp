@@ -35,30 +35,33 @@ void bind_result(py::module_& m) {
       R"(Kind and depth of the contact of two solids. Lengths are in the world's unit; intervals are proven
 bounds. Made by clash().)");
   property(
-      c, "kind", &ClashResult::kind,
+      c, "kind",
       R"(str: 'apart' (separate), 'within_clearance', 'touching_point', 'touching_edge', 'touching_face', 'protrudes',
 'pierces' (A passes through B), 'cuts_through' (A divides B), 'a_inside_b', 'b_inside_a', 'equal',
-'undecided' (see `reason`).)");
+'undecided' (see `reason`).)",
+      &ClashResult::kind);
+  property(c, "reason",
+           "str or None: why the kind is 'undecided', such as 'A intersects itself'; None if it is decided.",
+           [](const ClashResult& r) {
+             return r.reason == ClashReason::none ? std::nullopt : std::optional(r.reason);
+           });
+  property(c, "interiors_overlap", "bool or None: True if the solids share a volume; None if not known.",
+           &ClashResult::interiors_overlap);
+  property(c, "shares_faces",
+           "bool: the surfaces coincide over an area, with both solids on the same side of it.",
+           &ClashResult::shares_faces);
+  property(c, "distance", "(float, float): of the solids.", &ClashResult::distance);
   property(
-      c, "reason",
-      [](const ClashResult& r) {
-        return r.reason == ClashReason::none ? std::nullopt : std::optional(r.reason);
-      },
-      "str or None: why the kind is 'undecided', such as 'A intersects itself'; None if it is decided.");
-  property(c, "interiors_overlap", &ClashResult::interiors_overlap,
-           "bool or None: True if the solids share a volume; None if not known.");
-  property(c, "shares_faces", &ClashResult::shares_faces,
-           "bool: the surfaces coincide over an area, with both solids on the same side of it.");
-  property(c, "distance", &ClashResult::distance, "(float, float): of the solids.");
+      c, "depth",
+      "(float, float) or None: length of the shortest translation of B after which they share no volume.",
+      &ClashResult::depth);
   property(
-      c, "depth", &ClashResult::depth,
-      "(float, float) or None: length of the shortest translation of B after which they share no volume.");
-  property(
-      c, "translation", &ClashResult::translation,
-      "(3,) float64: after this translation, B is proven to share no volume with A; its length is depth[1].");
-  property(c, "along", &ClashResult::along,
-           "(float, float) or None: how far B has to move in the given direction.");
-  property(c, "volume", &ClashResult::volume, "(float, float) or None: the shared volume, unit cubed.");
+      c, "translation",
+      "(3,) float64: after this translation, B is proven to share no volume with A; its length is depth[1].",
+      &ClashResult::translation);
+  property(c, "along", "(float, float) or None: how far B has to move in the given direction.",
+           &ClashResult::along);
+  property(c, "volume", "(float, float) or None: the shared volume, unit cubed.", &ClashResult::volume);
   c.def("__repr__",
         [](const ClashResult& r) { return "<lrbscope.Clash " + std::string(to_string(r.kind)) + ">"; });
 }
@@ -67,8 +70,7 @@ bounds. Made by clash().)");
 
 void bind_clash(py::module_& m) {
   bind_result(m);
-  define(m, &clash,
-         R"(clash(a, b, poses_b=None, pose_a=None, *, clearance=0, along=None, depth=True, volume=True,
+  define(m, R"(clash(a, b, poses_b=None, pose_a=None, *, clearance=0, along=None, depth=True, volume=True,
       threads=0)
 
 Finds the kind and depth of the contact of two solids.
@@ -81,7 +83,8 @@ Returns a Clash, or for (k, 4, 4) a list of them.
 
 >>> c = clash(cube, cube, shifted(0.75, 0.25, 0.125))
 >>> c.kind, c.depth[0] <= 0.25 <= c.depth[1]
-('protrudes', True))");
+('protrudes', True))",
+         &clash);
 }
 
 namespace {
@@ -128,40 +131,33 @@ const auto kPointsOf = [](const auto& answer) {
 void bind_single_distance(py::module_& m) {
   py::class_<DistanceResult> c(m, "Distance",
                                "Distance of two surfaces, as a proven interval. Made by distance().");
-  property(c, "lower", &DistanceResult::lower, "float: the world's unit.");
-  property(c, "upper", &DistanceResult::upper, "float: the world's unit.");
-  property(
-      c, "solids", [](const DistanceResult& r) { return py::make_tuple(r.solids_lower(), r.solids_upper()); },
-      "(float, float): the interval for the solids; also 0 if one body contains the other.");
-  property(c, "meet", &DistanceResult::meet, "bool: the surfaces have a point in common.");
-  property(c, "within", &DistanceResult::within,
-           "bool or None: True if the distance is at most `within`; None if not requested or not decided.");
-  property(c, "finished", &DistanceResult::finished, "bool: no limit was reached.");
-  property(c, "relation", &DistanceResult::relation,
-           "str: as Result.relation; for intersecting surfaces, derived from the first pair.");
-  property(c, "points", kPointsOf, "(2, 3) float64: the closest points of A and of B, world frame.");
-  property(c, "triangles", of_both(&Witness::simplex),
-           "(int, int): the triangles of these points; None for a body without faces.");
-  property(c, "faces", of_both(&Witness::face), "(int, int): the faces of these triangles.");
-  property(c, "features", of_both([](const Witness& w) {
+  property(c, "lower", "float: the world's unit.", &DistanceResult::lower);
+  property(c, "upper", "float: the world's unit.", &DistanceResult::upper);
+  property(c, "solids", "(float, float): the interval for the solids; also 0 if one body contains the other.",
+           [](const DistanceResult& r) { return py::make_tuple(r.solids_lower(), r.solids_upper()); });
+  property(c, "meet", "bool: the surfaces have a point in common.", &DistanceResult::meet);
+  property(c, "within",
+           "bool or None: True if the distance is at most `within`; None if not requested or not decided.",
+           &DistanceResult::within);
+  property(c, "finished", "bool: no limit was reached.", &DistanceResult::finished);
+  property(c, "relation", "str: as Result.relation; for intersecting surfaces, derived from the first pair.",
+           &DistanceResult::relation);
+  property(c, "points", "(2, 3) float64: the closest points of A and of B, world frame.", kPointsOf);
+  property(c, "triangles", "(int, int): the triangles of these points; None for a body without faces.",
+           of_both(&Witness::simplex));
+  property(c, "faces", "(int, int): the faces of these triangles.", of_both(&Witness::face));
+  property(c, "features", "(str, str): 'corner', 'edge' or 'inside' of the triangle.",
+           of_both([](const Witness& w) {
              return py::str(w.feature.dim == 0 ? "corner" : w.feature.dim == 1 ? "edge" : "inside");
-           }),
-           "(str, str): 'corner', 'edge' or 'inside' of the triangle.");
-  property(c, "corners", of_both([](const Witness& w) {
-             return array_of_ids(std::span(w.corners).first(static_cast<std::size_t>(w.corner_count)));
-           }),
-           "((i,) uint32, (j,) uint32): the vertices that span the features.");
-  property(
-      c, "counters",
-      [](const DistanceResult& r) {
-        const DistanceCounters& n = r.counters;
-        return dict_of({{"steps", n.steps},
-                        {"box_tests", n.box_tests},
-                        {"pairs_in_floats", n.pairs_in_floats},
-                        {"pairs_in_doubles", n.pairs_in_doubles},
-                        {"pairs_exact", n.pairs_exact}});
-      },
-      "dict: the work, in numbers of operations.");
+           }));
+  property(c, "corners", "((i,) uint32, (j,) uint32): the vertices that span the features.",
+           of_both([](const Witness& w) {
+             return column(std::span(w.corners).first(static_cast<std::size_t>(w.corner_count)),
+                           std::identity());
+           }));
+  property(c, "counters", kCountersText, [](const DistanceResult& r) {
+    return dict_of(r.counters, {"steps", "box_tests", "pairs_in_floats", "pairs_in_doubles", "pairs_exact"});
+  });
   c.def(
       "__float__", [](const DistanceResult& r) { return r.upper; }, "The upper end.");
   c.def("__repr__", [](const DistanceResult& r) {
@@ -170,23 +166,16 @@ void bind_single_distance(py::module_& m) {
   });
 }
 
-/// Adds an array of a member of each answer.
-template <class Result>
-void bind_each(py::class_<Sequence<Result>>& c, const char* name, double Result::*member, const char* text) {
-  property(
-      c, name, [member](const Sequence<Result>& s) { return column(s.all, member); }, text);
-}
-
 }  // namespace
 
 void bind_distance(py::module_& m) {
   bind_single_distance(m);
   auto c = bind_sequence<DistanceResult>(
-      m, "Distances", "poses", "Distances for k poses: a sequence of Distance, in the order of the poses.");
-  bind_each(c, "lower", &DistanceResult::lower, "(k,) float64");
-  bind_each(c, "upper", &DistanceResult::upper, "(k,) float64");
-  define(m, &distance,
-         R"(distance(a, b, poses_b=None, pose_a=None, *, within=None, tolerance=0, relative_tolerance=0,
+      m, "Distances", "Distances for k poses: a sequence of Distance, in the order of the poses.");
+  const auto of_each = rows_of(c, "poses", &Sequence<DistanceResult>::all);
+  of_each("lower", "(k,) float64", &DistanceResult::lower);
+  of_each("upper", "(k,) float64", &DistanceResult::upper);
+  define(m, R"(distance(a, b, poses_b=None, pose_a=None, *, within=None, tolerance=0, relative_tolerance=0,
          max_steps=0, relation=True, threads=0)
 
 Finds the distance of the surfaces of two bodies, as a proven interval.
@@ -201,7 +190,8 @@ Returns a Distance, or for (k, 4, 4) a Distances.
 
 >>> d = distance(cube, cube, shifted(3, 0, 0))
 >>> d.lower <= 2 <= d.upper, d.points[:, 0].tolist()
-(True, [1.0, 3.0]))");
+(True, [1.0, 3.0]))",
+         &distance);
 }
 
 namespace {
@@ -223,17 +213,17 @@ struct Motions {
 
 /// Reads (4, 4), at rest, or (m, 4, 4), through m poses, as one motion; (k, m, 4, 4) as many.
 Motions motions(py::handle given, const char* what) {
-  const bool many = py::isinstance<py::array>(given) && py::reinterpret_borrow<py::array>(given).ndim() == 4;
   Motions out;
-  out.one = !many;
-  const py::list each = many ? py::list(py::reinterpret_borrow<py::object>(given)) : py::list();
+  out.one = !py::isinstance<py::array>(given) || py::reinterpret_borrow<py::array>(given).ndim() != 4;
   const auto add = [&](py::handle one) {
     const std::vector<Pose> through = poses(one, what).to_vector();
     if (through.empty()) throw InputError(std::string(what) + ": expected at least one pose, got none");
     out.all.push_back(motion_through(through));
   };
-  if (!many) add(given);
-  for (const py::handle one : each) add(one);
+  if (out.one)
+    add(given);
+  else
+    for (const py::handle one : py::reinterpret_borrow<py::iterable>(given)) add(one);
   return out;
 }
 
@@ -263,53 +253,45 @@ void bind_single_contact(py::module_& m) {
       R"(First contact of two moving bodies, as a proven interval of the time t from 0 to 1. Made by
 first_contact().)");
   property(
-      c, "outcome", &Contact::outcome,
-      "str: 'contact'; 'never', which is proven; 'undecided': too close to each other for double precision.");
-  property(c, "t0", &Contact::t0, "float: no contact before this time; 1 if never.");
-  property(c, "t1", &Contact::t1,
-           "float: in contact at this time; if undecided, no contact after it; 1 if never.");
-  property(c, "at_start", &Contact::at_start, "bool: in contact at t = 0.");
-  property(c, "grazing", &Contact::grazing,
-           "bool: the interval is wider than requested, because of an earlier tangential contact.");
-  property(c, "passed", &Contact::passed, "bool: in contact at some time up to t1, though not at t1 itself.");
-  property(c, "finished", &Contact::finished, "bool: no step limit was reached.");
+      c, "outcome",
+      "str: 'contact'; 'never', which is proven; 'undecided': too close to each other for double precision.",
+      &Contact::outcome);
+  property(c, "t0", "float: no contact before this time; 1 if never.", &Contact::t0);
+  property(c, "t1", "float: in contact at this time; if undecided, no contact after it; 1 if never.",
+           &Contact::t1);
+  property(c, "at_start", "bool: in contact at t = 0.", &Contact::at_start);
+  property(c, "grazing",
+           "bool: the interval is wider than requested, because of an earlier tangential contact.",
+           &Contact::grazing);
+  property(c, "passed", "bool: in contact at some time up to t1, though not at t1 itself.", &Contact::passed);
+  property(c, "finished", "bool: no step limit was reached.", &Contact::finished);
   property(
       c, "unresolved",
+      R"(str or None: why the interval is wider than requested, or contact in it is undecided: 'rounding': the
+bodies are as close as rounding errors; 'steps': a step limit was reached.)",
       [](const Contact& f) {
         return f.unresolved == Unresolved::nothing ? std::nullopt : std::optional(f.unresolved);
-      },
-      R"(str or None: why the interval is wider than requested, or contact in it is undecided: 'rounding': the
-bodies are as close as rounding errors; 'steps': a step limit was reached.)");
-  property(c, "speed", &Contact::speed,
-           "float: approach speed of the closest points along the normal; world's unit per unit of t.");
-  property(c, "at_begin", &Contact::at_begin,
-           "str: relation of the bodies at the start, as Result.relation.");
-  property(
-      c, "ambiguous",
-      [](const Contact& f) {
-        static_assert(sizeof(TimeSpan) == 2 * sizeof(double));
-        return py::array_t<double>({static_cast<py::ssize_t>(f.ambiguous.size()), py::ssize_t{2}},
-                                   reinterpret_cast<const double*>(f.ambiguous.data()));
-      },
-      "(d, 2) float64: time intervals that are undecided.");
-  property(
-      c, "pair",
-      [](const Contact& f) -> py::object {
-        if (f.pair.a == kNull) return py::none();
-        return py::make_tuple(f.pair.a.value(), f.pair.b.value());
-      },
-      "(int, int) or None: triangles of A and of B that intersect at t1.");
-  property(c, "points", kPointsOf, "(2, 3) float64: the closest points of A and of B at t0, world frame.");
-  property(c, "normal", &Contact::normal,
-           "(3,) float64: unit, from A to B, at t0; 0 at the start, and if it is below rounding errors.");
-  property(
-      c, "counters",
-      [](const Contact& f) {
-        const FirstContactCounters& n = f.counters;
-        return dict_of(
-            {{"spans", n.spans}, {"pairs", n.pairs}, {"steps", n.steps}, {"exact_queries", n.exact_queries}});
-      },
-      "dict: the work, in numbers of operations.");
+      });
+  property(c, "speed",
+           "float: approach speed of the closest points along the normal; world's unit per unit of t.",
+           &Contact::speed);
+  property(c, "at_begin", "str: relation of the bodies at the start, as Result.relation.",
+           &Contact::at_begin);
+  property(c, "ambiguous", "(d, 2) float64: time intervals that are undecided.", [](const Contact& f) {
+    return column(f.ambiguous, [](const TimeSpan& span) { return std::array{span.begin, span.end}; });
+  });
+  property(c, "pair", "(int, int) or None: triangles of A and of B that intersect at t1.",
+           [](const Contact& f) {
+             return f.pair.a == kNull ? py::object(py::none())
+                                      : py::make_tuple(f.pair.a.value(), f.pair.b.value());
+           });
+  property(c, "points", "(2, 3) float64: the closest points of A and of B at t0, world frame.", kPointsOf);
+  property(c, "normal",
+           "(3,) float64: unit, from A to B, at t0; 0 at the start, and if it is below rounding errors.",
+           &Contact::normal);
+  property(c, "counters", kCountersText, [](const Contact& f) {
+    return dict_of(f.counters, {"spans", "pairs", "steps", "exact_queries"});
+  });
   c.def("__bool__", &Contact::is_contact, "True if the outcome is 'contact'.");
   c.def("__repr__", [](const Contact& f) {
     const std::string t0 = py::str(py::float_(f.t0)), t1 = py::str(py::float_(f.t1));
@@ -322,11 +304,11 @@ bodies are as close as rounding errors; 'steps': a step limit was reached.)");
 void bind_first_contact(py::module_& m) {
   bind_single_contact(m);
   auto c = bind_sequence<FirstContactResult>(
-      m, "FirstContacts", "motions",
-      "First contacts for k motions: a sequence of FirstContact, in their order.");
-  bind_each(c, "t0", &FirstContactResult::t0, "(k,) float64: FirstContact.t0 of each.");
-  bind_each(c, "t1", &FirstContactResult::t1, "(k,) float64: FirstContact.t1 of each.");
-  define(m, &first_contact,
+      m, "FirstContacts", "First contacts for k motions: a sequence of FirstContact, in their order.");
+  const auto of_each = rows_of(c, "motions", &Sequence<FirstContactResult>::all);
+  of_each("t0", "(k,) float64: FirstContact.t0 of each.", &FirstContactResult::t0);
+  of_each("t1", "(k,) float64: FirstContact.t1 of each.", &FirstContactResult::t1);
+  define(m,
          R"(first_contact(a, b, motion_b, motion_a=None, *, tolerance=1e-9, max_steps=10000000, relation=True,
               threads=0)
 
@@ -344,7 +326,8 @@ Returns a FirstContact, or for (k, m, 4, 4) a FirstContacts.
 
 >>> f = first_contact(cube, cube, [shifted(3, 0.1, 0.2), shifted(0, 0.1, 0.2)])
 >>> f.outcome, round(f.t0, 6)
-('contact', 0.666667))");
+('contact', 0.666667))",
+         &first_contact);
 }
 
 }  // namespace lrb::python

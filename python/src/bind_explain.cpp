@@ -26,10 +26,6 @@ struct OfWalk {
   std::string json() const { return run::explanation_json(reported).dump(); }
 };
 
-py::object parsed(const std::string& json) {
-  return py::module_::import("json").attr("loads")(json);
-}
-
 SimplexPair pair_of(py::handle given) {
   const auto reject = [&] {
     throw InputError("pair: expected a triangle of A and one of B, as in Result.pairs, got " +
@@ -65,10 +61,10 @@ OfWalk explain_walk(py::handle a, py::handle b, py::handle pose_b, py::handle po
 
 /// Returns the points of a contact, or the closest points of disjoint faces.
 py::array_t<double> points_of(const OfPair& e) {
-  if (e.reported.meet == exact::Meet::disjoint) return array_of(e.reported.nearest);
-  std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < e.reported.contact.corner_count; ++i) points.push_back(e.reported.contact.corners[i].x);
-  return array_of(points);
+  const PairExplanation& x = e.reported;
+  if (x.meet == exact::Meet::disjoint) return column(x.nearest, std::identity());
+  return column(std::span(x.contact.corners).first(static_cast<std::size_t>(x.contact.corner_count)),
+                &exact::ContactCorner::x);
 }
 
 void bind_pair(py::module_& m) {
@@ -79,29 +75,24 @@ void bind_pair(py::module_& m) {
     return "<lrbscope.PairExplanation " + std::string(name_of(e.reported.meet)) + ", decided by " +
            std::string(name_of(e.reported.decided_by)) + ">";
   });
-  property(
-      c, "meet", [](const OfPair& e) { return e.reported.meet; }, "str: 'disjoint', 'touch' or 'cross'.");
-  property(
-      c, "decided_by", [](const OfPair& e) { return e.reported.decided_by; },
-      "str: 'node_boxes', 'node_edges', 'face_boxes', 'planes', 'floats' or 'exact'.");
-  property(
-      c, "hidden_by",
-      [](const OfPair& e) {
-        const auto& [of_a, of_b] = e.reported.hidden_by;
-        return py::make_tuple(column(of_a, std::identity()), column(of_b, std::identity()));
-      },
+  const auto of_pair = properties_of(c, &OfPair::reported);
+  of_pair("meet", "str: 'disjoint', 'touch' or 'cross'.", &PairExplanation::meet);
+  of_pair("decided_by", "str: 'node_boxes', 'node_edges', 'face_boxes', 'planes', 'floats' or 'exact'.",
+          &PairExplanation::decided_by);
+  of_pair(
+      "hidden_by",
       "((i,) uint32, (j,) uint32): the regions that hide the faces of A and B in the outermost wrapper, from the "
-      "outside inward.");
+      "outside inward.",
+      &PairExplanation::hidden_by);
   property(
-      c, "points", &points_of,
-      "(c, 3) float64: corners of the triangles' intersection, or (2, 3) their closest points; world frame.");
+      c, "points",
+      "(c, 3) float64: corners of the triangles' intersection, or (2, 3) their closest points; world frame.",
+      &points_of);
   property(
-      c, "distance",
-      [](const OfPair& e) { return e.reported.meet == exact::Meet::disjoint ? e.reported.distance : 0.0; },
-      "float: of the triangles, in double arithmetic; the world's unit.");
-  define(
-      c, [](const OfPair& e) { return parsed(e.json()); },
-      "dict()\n\nReturns everything: a dict with the keys of `lrbscope why --pair --json`.");
+      c, "distance", "float: of the triangles, in double arithmetic; the world's unit.",
+      [](const OfPair& e) { return e.reported.meet == exact::Meet::disjoint ? e.reported.distance : 0.0; });
+  define(c, "dict()\n\nReturns everything: a dict with the keys of `lrbscope why --pair --json`.",
+         [](const OfPair& e) { return parsed_json(e.json()); });
   c.def("__str__", [](const OfPair& e) { return printable(e.text()); });
 }
 
@@ -112,27 +103,24 @@ void bind_walk(py::module_& m) {
   c.def("__repr__", [](const OfWalk& e) {
     return "<lrbscope.WalkExplanation " + std::string(name_of(e.reported.result.relation)) + ">";
   });
-  property(
-      c, "result",
-      [](const OfWalk& e) {
-        return Answer{std::make_shared<const CollideResult>(e.reported.result), e.a, e.b, e.pose_a, e.pose_b};
-      },
-      "Result: the answer.");
+  property(c, "result", "Result: the answer.", [](const OfWalk& e) {
+    return Answer{std::make_shared<const CollideResult>(e.reported.result), e.a, e.b, e.pose_a, e.pose_b};
+  });
   property(
       c, "plane",
+      "((3,) float64, float, float) or None: normal n and numbers f < g with n x <= f for all of A, n x >= g for "
+      "all of B.",
       [](const OfWalk& e) -> py::object {
         if (!e.reported.plane) return py::none();
-        return py::make_tuple(array_of(e.reported.plane->normal), e.reported.plane->of_a,
+        return py::make_tuple(to_python(e.reported.plane->normal), e.reported.plane->of_a,
                               e.reported.plane->of_b);
-      },
-      "((3,) float64, float, float) or None: normal n and numbers f < g with n x <= f for all of A, n x >= g for "
-      "all of B.");
+      });
   property(
-      c, "near_pairs", [](const OfWalk& e) { return column(e.reported.near, kPairOf); },
-      R"((p, 2) uint32: triangle pairs that were compared individually and are disjoint, closest first; at most five.)");
-  define(
-      c, [](const OfWalk& e) { return parsed(e.json()); },
-      "dict()\n\nReturns everything: a dict with the keys of `lrbscope why --json`.");
+      c, "near_pairs",
+      R"((p, 2) uint32: triangle pairs that were compared individually and are disjoint, closest first; at most five.)",
+      [](const OfWalk& e) { return column(e.reported.near, kPairOf); });
+  define(c, "dict()\n\nReturns everything: a dict with the keys of `lrbscope why --json`.",
+         [](const OfWalk& e) { return parsed_json(e.json()); });
   c.def("__str__", [](const OfWalk& e) { return printable(e.text()); });
 }
 
@@ -141,8 +129,7 @@ void bind_walk(py::module_& m) {
 void bind_explain(py::module_& m) {
   bind_pair(m);
   bind_walk(m);
-  define(m, &explain_pair,
-         R"(explain_pair(a, b, pair, pose_b=None, pose_a=None)
+  define(m, R"(explain_pair(a, b, pair, pose_b=None, pose_a=None)
 
 Explains why two triangles are in an answer or not: the box pairs from the roots of both trees down, then the
 test that decides between the triangles.
@@ -151,9 +138,9 @@ pair: a triangle of A and one of B, as numbered in Result.pairs; poses: (4, 4). 
 
 >>> e = explain_pair(cube, cube, (0, 0), shifted(5, 0, 0))
 >>> e.meet, e.decided_by, e.distance
-('disjoint', 'node_boxes', 5.0))");
-  define(m, &explain_walk,
-         R"(explain_walk(a, b, pose_b=None, pose_a=None)
+('disjoint', 'node_boxes', 5.0))",
+         &explain_pair);
+  define(m, R"(explain_walk(a, b, pose_b=None, pose_a=None)
 
 Explains how the complete query traverses both trees and, for disjoint bodies, what proves them separate.
 
@@ -161,7 +148,8 @@ Poses: (4, 4). Returns a WalkExplanation.
 
 >>> normal, of_a, of_b = explain_walk(cube, cube, shifted(5, 0, 0)).plane
 >>> normal.tolist(), round(of_b - of_a, 9)
-([1.0, 0.0, 0.0], 4.0))");
+([1.0, 0.0, 0.0], 4.0))",
+         &explain_walk);
 }
 
 }  // namespace lrb::python

@@ -106,7 +106,7 @@ py::object summary_of(const Recorded& r) {
   std::vector<trace::SummaryBody> bodies;
   for (std::size_t i = 0; i < r.bodies.size(); ++i)
     bodies.push_back({r.bodies[i].get(), i < r.trees.size() ? &r.trees[i] : nullptr});
-  return py::module_::import("json").attr("loads")(trace::summary_json(r.trace, bodies));
+  return parsed_json(trace::summary_json(r.trace, bodies));
 }
 
 void save(const Recorded& r, py::handle file) {
@@ -172,6 +172,13 @@ that shows the bodies, rotatable, after any event.)");
       R"((e,) records of a, b, cause, boundary (uint32), depth_a, depth_b (uint16), kind, side, meet, detail (uint8);
 `kind` indexes `kinds` and determines the meaning of a and b (docs/scenarios.md). Shares the trace's memory.)");
   c.attr("kinds") = names<EventKind>();
+  py::dict words;  // of parameters, for stub.py
+  words["mode"] = names<Mode>();
+  words["Wrapper.mode"] = names<WrapperMode>();
+  words["recursion"] = names<Recursion>();
+  words["events"] = names<EventLevel>();
+  words["colour_by"] = names<decltype(render::FrameSpec::colour_by)>();
+  m.attr("_words") = words;
   c.def_property_readonly(
       "steps", &steps_of,
       "(s,) records of index, relation, pairs, first_event, events, face_tests, refinements.");
@@ -186,10 +193,11 @@ that shows the bodies, rotatable, after any event.)");
       "Results: the answers of the steps.");
   c.def_property_readonly(
       "notes", [](const Recorded& r) { return printable(r.notes); }, "list of str: notes as text.");
-  define(c, &json_of,
-         "json()\n\nReturns the trace as text that ui.perfetto.dev opens (trace/schema/trace.schema.json).");
-  define(c, &summary_of, "summary()\n\nReturns the run's statistics, a dict with the keys of summary.json.");
-  define(c, &save, "save(path)\n\nWrites json(), gzip-compressed if the path ends in .gz.");
+  define(c,
+         "json()\n\nReturns the trace as text that ui.perfetto.dev opens (trace/schema/trace.schema.json).",
+         &json_of);
+  define(c, "summary()\n\nReturns the run's statistics, a dict with the keys of summary.json.", &summary_of);
+  define(c, "save(path)\n\nWrites json(), gzip-compressed if the path ends in .gz.", &save);
   c.def(
       "html", [](const Recorded& r) { return printable(html_of(r)); },
       "html()\n\nReturns the run's page: one file that opens in any browser.");
@@ -202,17 +210,17 @@ that shows the bodies, rotatable, after any event.)");
   });
   define(
       c,
+      R"(picture(step=-1, *, size=(960, 720), view_from=None, up=(0, 0, 1), look_at=None, zoom=1, orthographic=False,
+        wrappers=False, close_up=False, colour_by='kind', transparent=False)
+
+Draws the end of a step, counted from the end if negative. Options and result as in render().)",
       [](const Recorded& r, py::handle step, py::handle size, py::handle view_from, py::handle up,
          py::handle look_at, py::handle zoom, py::handle orthographic, py::handle wrappers,
          py::handle close_up, py::handle colour_by, py::handle transparent) {
         return picture(
             r, step,
             {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
-      },
-      R"(picture(step=-1, *, size=(960, 720), view_from=None, up=(0, 0, 1), look_at=None, zoom=1, orthographic=False,
-        wrappers=False, close_up=False, colour_by='kind', transparent=False)
-
-Draws the end of a step, counted from the end if negative. Options and result as in render().)");
+      });
 }
 
 }  // namespace
@@ -243,8 +251,7 @@ std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scen
 
 void bind_recorded(py::module_& m) {
   bind_trace(m);
-  define(m, &trace_of,
-         R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all',
+  define(m, R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all',
       contacts=None, tolerance=0, max_tests=0, separation=False, recursion='complete')
 
 Records the query of two bodies at each pose, one step per pose: every comparison and every refinement.
@@ -259,17 +266,9 @@ Returns a Trace.
 >>> t.steps['relation'].tolist()
 ['crossing']
 >>> int(sum(t.events['kind'] == Trace.kinds.index('contact'))) == len(t.results[0].pairs)
-True)");
-  define(
-      m,
-      [](py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle size,
-         py::handle view_from, py::handle up, py::handle look_at, py::handle zoom, py::handle orthographic,
-         py::handle wrappers, py::handle close_up, py::handle colour_by, py::handle transparent) {
-        return render_bodies(
-            a, b, pose_b, pose_a,
-            {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
-      },
-      R"(render(a, b=None, pose_b=None, pose_a=None, *, size=(960, 720), view_from=None, up=(0, 0, 1),
+True)",
+         &trace_of);
+  define(m, R"(render(a, b=None, pose_b=None, pose_a=None, *, size=(960, 720), view_from=None, up=(0, 0, 1),
        look_at=None, zoom=1, orthographic=False, wrappers=False, close_up=False, colour_by='kind',
        transparent=False)
 
@@ -284,7 +283,14 @@ background.
 Returns a Picture, (height, width, 3) uint8; transparent: (height, width, 4).
 
 >>> render(cube, cube, shifted(0.5, 0.25, 0.125), size=(320, 240)).shape
-(240, 320, 3))");
+(240, 320, 3))",
+         [](py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle size,
+            py::handle view_from, py::handle up, py::handle look_at, py::handle zoom, py::handle orthographic,
+            py::handle wrappers, py::handle close_up, py::handle colour_by, py::handle transparent) {
+           return render_bodies(a, b, pose_b, pose_a,
+                                {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up,
+                                 colour_by, transparent});
+         });
 }
 
 namespace {
@@ -318,21 +324,17 @@ py::list shipped() {
 
 void bind_outcome(py::module_& m) {
   py::class_<Outcome> c(m, "Outcome", "What Scenario.run() wrote.");
-  property(
-      c, "folder", [](const Outcome& o) { return path_of(o.folder); }, "str");
-  property(
-      c, "page", [](const Outcome& o) { return path_of(o.folder + "/index.html"); },
-      "str: path of the run's page.");
-  property(
-      c, "frames", [](const Outcome& o) { return o.run.frames; }, "int: the number of pictures in frames/.");
-  property(
-      c, "mismatches", [](const Outcome& o) { return printable(o.run.mismatches); },
-      "list of str: expectations that were not met.");
-  property(
-      c, "notes", [](const Outcome& o) { return printable(o.run.notes); }, "list of str: notes as text.");
-  property(
-      c, "summary", [](const Outcome& o) { return py::module_::import("json").attr("loads")(o.run.summary); },
-      "dict: the run's statistics, summary.json.");
+  property(c, "folder", "str", [](const Outcome& o) { return path_of(o.folder); });
+  property(c, "page", "str: path of the run's page.",
+           [](const Outcome& o) { return path_of(o.folder + "/index.html"); });
+  property(c, "frames", "int: the number of pictures in frames/.",
+           [](const Outcome& o) { return o.run.frames; });
+  property(c, "mismatches", "list of str: expectations that were not met.",
+           [](const Outcome& o) { return printable(o.run.mismatches); });
+  property(c, "notes", "list of str: notes as text.",
+           [](const Outcome& o) { return printable(o.run.notes); });
+  property(c, "summary", "dict: the run's statistics, summary.json.",
+           [](const Outcome& o) { return parsed_json(o.run.summary); });
   c.def("__repr__", [](const Outcome& o) { return printable("<lrbscope.Outcome in '" + o.folder + "'>"); });
 }
 
@@ -353,18 +355,20 @@ void bind_scenario(py::module_& m) {
         }),
         Signature("Scenario(path_or_name)\n\n"
                   "Opens a shipped scenario by its name (see scenarios()), or a file by its path."));
-  property(c, "name", &spec::Scenario::name, "str");
-  property(c, "purpose", &spec::Scenario::purpose, "str: the expected content of the pictures.");
-  define(c, &record_scenario,
+  property(c, "name", "str", &spec::Scenario::name);
+  property(c, "purpose", "str: the expected content of the pictures.", &spec::Scenario::purpose);
+  define(c,
          "record(*, progress=None)\n\n"
          "Runs the scenario without drawing. progress(what, done, total) is called at intervals. "
-         "Returns a Trace.");
-  define(c, &run_into,
+         "Returns a Trace.",
+         &record_scenario);
+  define(c,
          "run(out, *, progress=None)\n\n"
          "Runs the scenario and writes page, frames, trace, statistics and bodies to the folder "
-         "`out`. Returns an Outcome.");
+         "`out`. Returns an Outcome.",
+         &run_into);
   c.def("__repr__", [](const spec::Scenario& s) { return "<lrbscope.Scenario '" + s.name + "'>"; });
-  define(m, &shipped, "scenarios()\n\nReturns the names of the shipped scenarios.");
+  define(m, "scenarios()\n\nReturns the names of the shipped scenarios.", &shipped);
   m.def("_encode_png", &png_of, py::arg("pixels"));
 }
 

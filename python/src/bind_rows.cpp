@@ -14,8 +14,7 @@
 namespace lrb::python {
 namespace {
 
-struct NearPairs {
-  NearPairsResult result;
+struct NearPairs : NearPairsResult {
   std::vector<std::array<FaceId, 2>> faces;
 };
 
@@ -32,9 +31,10 @@ py::object near_pairs(py::handle a, py::handle b, py::handle pose_b, py::handle 
   NearPairs found;
   {
     const py::gil_scoped_release unlocked;
-    found.result = lrb::near_pairs(body_a.rep(), at_a, body_b.rep(), at_b, request, n);
+    static_cast<NearPairsResult&>(found) =
+        lrb::near_pairs(body_a.rep(), at_a, body_b.rep(), at_b, request, n);
   }
-  for (const NearPair& pair : found.result.pairs)
+  for (const NearPair& pair : found.pairs)
     found.faces.push_back({body_a.rep().face_of_simplex(pair.a), body_b.rep().face_of_simplex(pair.b)});
   return py::cast(std::move(found));
 }
@@ -43,36 +43,21 @@ void bind_near_pairs_result(py::module_& m) {
   py::class_<NearPairs> c(
       m, "NearPairs",
       R"(Pairs of triangles (2D: segments) within a distance: arrays with a row for each pair. Made by near_pairs().)");
-  const auto of_pair = [&c](const char* name, const auto& get, const char* text) {
-    property(
-        c, name, [get](const NearPairs& p) { return column(p.result.pairs, get); }, text);
-  };
-  c.def("__len__", [](const NearPairs& p) { return p.result.pairs.size(); });
-  property(
-      c, "found", [](const NearPairs& p) { return p.result.found; },
-      "int: number of all pairs within the distance; more than len() if `nearest` was given.");
-  of_pair("triangles", kPairOf, "(n, 2) uint32: a triangle of A and one of B.");
-  property(
-      c, "faces", [](const NearPairs& p) { return column(p.faces, std::identity()); },
-      "(n, 2) uint32: the faces of these triangles.");
-  of_pair("meet", &NearPair::meet, "(n,) uint8: 0 disjoint, 1 touch, 2 cross.");
-  of_pair("lower", &NearPair::lower,
-          "(n,) float64: lower ends of the distances; 0 for pairs that intersect.");
-  of_pair("upper", &NearPair::upper, "(n,) float64: upper ends.");
-  of_pair("points", &NearPair::point,
-          "(n, 2, 3) float64: the closest points of A and of B, world frame; equal if the pair intersects.");
-  property(
-      c, "counters",
-      [](const NearPairs& p) {
-        const NearPairsCounters& n = p.result.counters;
-        return dict_of({{"node_pairs", n.node_pairs},
-                        {"box_tests", n.box_tests},
-                        {"candidates", n.candidates},
-                        {"pairs_exact", n.pairs_exact}});
-      },
-      "dict: the work, in numbers of operations.");
-  c.def("__repr__", [](const NearPairs& p) {
-    return "<lrbscope.NearPairs of " + std::to_string(p.result.pairs.size()) + " pairs>";
+  const auto of_pair = rows_of(c, "pairs", &NearPairs::pairs);
+  property(c, "found",
+           "int: number of all pairs within the distance; more than len() if `nearest` was given.",
+           &NearPairs::found);
+  of_pair("triangles", "(n, 2) uint32: a triangle of A and one of B.", kPairOf);
+  property(c, "faces", "(n, 2) uint32: the faces of these triangles.", &NearPairs::faces);
+  of_pair("meet", "(n,) uint8: 0 disjoint, 1 touch, 2 cross.", &NearPair::meet);
+  of_pair("lower", "(n,) float64: lower ends of the distances; 0 for pairs that intersect.",
+          &NearPair::lower);
+  of_pair("upper", "(n,) float64: upper ends.", &NearPair::upper);
+  of_pair("points",
+          "(n, 2, 3) float64: the closest points of A and of B, world frame; equal if the pair intersects.",
+          &NearPair::point);
+  property(c, "counters", kCountersText, [](const NearPairs& p) {
+    return dict_of(p.counters, {"node_pairs", "box_tests", "candidates", "pairs_exact"});
   });
 }
 
@@ -80,8 +65,7 @@ void bind_near_pairs_result(py::module_& m) {
 
 void bind_near_pairs(py::module_& m) {
   bind_near_pairs_result(m);
-  define(m, &near_pairs,
-         R"(near_pairs(a, b, pose_b=None, pose_a=None, *, within, nearest=0, max_pairs=0, threads=0)
+  define(m, R"(near_pairs(a, b, pose_b=None, pose_a=None, *, within, nearest=0, max_pairs=0, threads=0)
 
 Finds all pairs of triangles (2D: segments) whose distance is at most `within`, exactly.
 
@@ -93,13 +77,13 @@ Returns NearPairs.
 
 >>> pairs = near_pairs(cube, cube, shifted(3, 0, 0), within=2)
 >>> len(pairs), float(pairs.upper.max()), pairs.points[0, :, 0].tolist()
-(62, 2.0, [1.0, 3.0]))");
+(62, 2.0, [1.0, 3.0]))",
+         &near_pairs);
 }
 
 namespace {
 
-struct Manifolds {
-  ManifoldResult result;
+struct Manifolds : ManifoldResult {
   std::vector<const ManifoldPoint*> points;
   std::vector<std::uint32_t> manifold_of;  ///< (|points|)
 };
@@ -118,16 +102,17 @@ py::object contact_manifolds(py::handle a, py::handle b, py::handle pose_b, py::
     if (!py::isinstance<Manifolds>(previous))
       throw InputError("previous: expected the Manifolds of the previous step or None, got " +
                        described(previous));
-    before = &previous.cast<const Manifolds&>().result;
+    before = &previous.cast<const Manifolds&>();
   }
   Manifolds found;
   {
     const py::gil_scoped_release unlocked;
-    found.result = lrb::contact_manifolds(body_a.rep(), at_a, body_b.rep(), at_b, request, before, n);
+    static_cast<ManifoldResult&>(found) =
+        lrb::contact_manifolds(body_a.rep(), at_a, body_b.rep(), at_b, request, before, n);
   }
   // The vectors keep their memory when the result is moved.
-  for (std::uint32_t m = 0; m < found.result.manifolds.size(); ++m)
-    for (const ManifoldPoint& point : found.result.manifolds[m].points) {
+  for (std::uint32_t m = 0; m < found.manifolds.size(); ++m)
+    for (const ManifoldPoint& point : found.manifolds[m].points) {
       found.points.push_back(&point);
       found.manifold_of.push_back(m);
     }
@@ -138,53 +123,42 @@ void bind_contact_manifolds_result(py::module_& m) {
   py::class_<Manifolds> c(
       m, "Manifolds",
       R"(Contact manifolds: arrays with a row for each manifold, point or pair. Made by contact_manifolds().)");
-  const auto of_manifold = [&c](const char* name, const auto& get, const char* text) {
-    property(
-        c, name, [get](const Manifolds& x) { return column(x.result.manifolds, get); }, text);
-  };
-  const auto of_point = [&c](const char* name, const auto& get, const char* text) {
-    property(
-        c, name, [get](const Manifolds& x) { return column(x.points, get); }, text);
-  };
-  c.def("__len__", [](const Manifolds& x) { return x.result.manifolds.size(); });
-  of_manifold("normals", &ContactManifold::normal,
-              "(m, 3) float64: unit vectors from A to B; zero if no face of the region has an area.");
-  of_manifold("regions", &ContactManifold::region, "(m,) uint32: the connected region of each manifold.");
-  of_manifold("intersects", &ContactManifold::intersects,
-              "(m,) bool: a pair intersects or a depth is above 0; otherwise all contacts are speculative.");
-  property(
-      c, "manifold", [](const Manifolds& x) { return column(x.manifold_of, std::identity()); },
-      "(k,) uint32: the manifold of each point, ascending; the deepest point of each comes first.");
-  of_point("points", &ManifoldPoint::point, "(k, 2, 3) float64: on A and on B, world frame.");
-  of_point("depths", &ManifoldPoint::depth,
-           "(k,) float64: along the normal; positive if the surfaces overlap, negative for a gap.");
-  of_point("ids", &ManifoldPoint::id,
-           "(k,) uint64: a point that continues one of the previous answer keeps its id.");
+  const auto of_point = columns_of(c, &Manifolds::points);
+  const auto of_manifold = rows_of(c, "manifolds", &Manifolds::manifolds);
+  of_manifold("normals",
+              "(m, 3) float64: unit vectors from A to B; zero if no face of the region has an area.",
+              &ContactManifold::normal);
+  of_manifold("regions", "(m,) uint32: the connected region of each manifold.", &ContactManifold::region);
+  of_manifold("intersects",
+              "(m,) bool: a pair intersects or a depth is above 0; otherwise all contacts are speculative.",
+              &ContactManifold::intersects);
+  property(c, "manifold",
+           "(k,) uint32: the manifold of each point, ascending; the deepest point of each comes first.",
+           &Manifolds::manifold_of);
+  of_point("points", "(k, 2, 3) float64: on A and on B, world frame.", &ManifoldPoint::point);
+  of_point("depths", "(k,) float64: along the normal; positive if the surfaces overlap, negative for a gap.",
+           &ManifoldPoint::depth);
+  of_point("ids", "(k,) uint64: a point that continues one of the previous answer keeps its id.",
+           &ManifoldPoint::id);
   of_point(
       "features",
+      "(k, 2, 3) uint32: features of A and of B. 0, v, v: a vertex; 1, v, w: an edge; 2, t, t: a triangle.",
       [](const ManifoldPoint* p) {
         const auto row = [](const SurfaceFeatureId& f) {
           return std::array{static_cast<std::uint32_t>(f.kind), f.first, f.second};
         };
         return std::array{row(p->on[0]), row(p->on[1])};
-      },
-      "(k, 2, 3) uint32: features of A and of B. 0, v, v: a vertex; 1, v, w: an edge; 2, t, t: a triangle.");
-  property(
-      c, "triangles", [](const Manifolds& x) { return column(x.result.pairs, kPairOf); },
-      "(p, 2) uint32: all pairs of triangles that intersect or are at most `margin` apart.");
-  property(
-      c, "pairs",
-      [](const Manifolds& x) {
-        py::list out;
-        for (const ContactManifold& each : x.result.manifolds)
-          out.append(column(each.pairs, std::identity()));
-        return out;
-      },
-      "list of (q,) uint32: the rows of `triangles` of each manifold; each row is in one of them.");
-  c.def("__repr__", [](const Manifolds& x) {
-    return "<lrbscope.Manifolds: " + std::to_string(x.result.manifolds.size()) + ", with " +
-           std::to_string(x.points.size()) + " points>";
-  });
+      });
+  property(c, "triangles",
+           "(p, 2) uint32: all pairs of triangles that intersect or are at most `margin` apart.",
+           [](const Manifolds& x) { return column(x.pairs, kPairOf); });
+  property(c, "pairs",
+           "list of (q,) uint32: the rows of `triangles` of each manifold; each row is in one of them.",
+           [](const Manifolds& x) {
+             py::list out;
+             for (const ContactManifold& each : x.manifolds) out.append(column(each.pairs, std::identity()));
+             return out;
+           });
 }
 
 }  // namespace
@@ -192,7 +166,7 @@ void bind_contact_manifolds_result(py::module_& m) {
 void bind_contact_manifolds(py::module_& m) {
   bind_contact_manifolds_result(m);
   define(
-      m, &contact_manifolds,
+      m,
       R"(contact_manifolds(a, b, pose_b=None, pose_a=None, *, margin=0, previous=None, max_pairs=0, threads=0)
 
 Finds a normal and at most 4 points (2D: 2) with depths for each region of contact, for a solver.
@@ -205,7 +179,8 @@ Returns Manifolds.
 
 >>> m = contact_manifolds(cube, cube, shifted(0, 0, 0.875))
 >>> len(m), m.normals[0].tolist(), m.depths.tolist()
-(1, [0.0, 0.0, 1.0], [0.125, 0.125, 0.125, 0.125]))");
+(1, [0.0, 0.0, 1.0], [0.125, 0.125, 0.125, 0.125]))",
+      &contact_manifolds);
 }
 
 namespace {
@@ -228,28 +203,20 @@ void bind_self_intersections(py::module_& m) {
   py::class_<SelfIntersections> c(m, "SelfIntersections",
                                   "Pairs of faces in which a body intersects itself: arrays with a row for "
                                   "each pair. Made by self_intersections().");
-  const auto of_pair = [&c](const char* name, const auto& get, const char* text) {
-    property(
-        c, name, [get](const SelfIntersections& s) { return column(s.pairs, get); }, text);
-  };
-  c.def("__len__", [](const SelfIntersections& s) { return s.pairs.size(); });
-  of_pair("faces", kPairOf, "(n, 2) uint32: the faces, ascending.");
-  of_pair("kind", &SelfIntersection::kind,
-          "(n,) uint8: 0 touch, 1 cross, 2 overlap in an area of one plane.");
-  of_pair("shared", &SelfIntersection::shared, "(n,) uint32: number of corners in common.");
-  of_pair("curve", &SelfIntersection::curve, "(n,) uint32: connected component of the segments.");
-  of_pair("first_segment", &SelfIntersection::first_segment,
-          "(n,) uint32: index of the pair's first segment in `segments`.");
-  of_pair("segment_counts", &SelfIntersection::segments, "(n,) uint32: number of the pair's segments.");
-  property(
-      c, "segments", [](const SelfIntersections& s) { return column(s.segments, std::identity()); },
-      "(m, 2, 3) float64: ends of the segments of all pairs, body frame; equal for points.");
-  property(c, "curves", &SelfIntersections::curves, "int: number of connected components of the segments.");
-  c.def("__repr__", [](const SelfIntersections& s) {
-    return "<lrbscope.SelfIntersections of " + std::to_string(s.pairs.size()) + " pairs>";
-  });
-  define(m, &self_intersections,
-         R"(self_intersections(body, *, max_pairs=0, threads=0)
+  const auto of_pair = rows_of(c, "pairs", &SelfIntersections::pairs);
+  of_pair("faces", "(n, 2) uint32: the faces, ascending.", kPairOf);
+  of_pair("kind", "(n,) uint8: 0 touch, 1 cross, 2 overlap in an area of one plane.",
+          &SelfIntersection::kind);
+  of_pair("shared", "(n,) uint32: number of corners in common.", &SelfIntersection::shared);
+  of_pair("curve", "(n,) uint32: connected component of the segments.", &SelfIntersection::curve);
+  of_pair("first_segment", "(n,) uint32: index of the pair's first segment in `segments`.",
+          &SelfIntersection::first_segment);
+  of_pair("segment_counts", "(n,) uint32: number of the pair's segments.", &SelfIntersection::segments);
+  property(c, "segments",
+           "(m, 2, 3) float64: ends of the segments of all pairs, body frame; equal for points.",
+           &SelfIntersections::segments);
+  property(c, "curves", "int: number of connected components of the segments.", &SelfIntersections::curves);
+  define(m, R"(self_intersections(body, *, max_pairs=0, threads=0)
 
 Finds all pairs of faces of a body that intersect beyond the corners and edges that they share, exactly.
 
@@ -258,7 +225,8 @@ max_pairs: a body with more is an InputError; 0: 16777216.
 Returns SelfIntersections.
 
 >>> len(self_intersections(cube))
-0)");
+0)",
+         &self_intersections);
 }
 
 namespace {
@@ -297,38 +265,27 @@ void bind_point_distances(py::module_& m) {
   py::class_<PointDistances> c(
       m, "PointDistances",
       R"(Signed distances of n points to a body, as proven intervals. Made by signed_distance().)");
-  const auto of_point = [&c](const char* name, const auto& get, const char* text) {
-    property(
-        c, name, [get](const PointDistances& d) { return column(d.all, get); }, text);
-  };
-  c.def("__len__", [](const PointDistances& d) { return d.all.size(); });
-  of_point("lower", &PointDistance::signed_lower,
-           "(n,) float64: lower ends of the signed distances; negative inside.");
-  of_point("upper", &PointDistance::signed_upper, "(n,) float64: upper ends.");
-  of_point(
-      "side",
-      [](const PointDistance& p) -> std::int8_t {
-        if (!p.side) return 2;
-        return p.side == Where::inside ? -1 : p.side == Where::outside ? 1 : 0;
-      },
-      "(n,) int8: -1 inside, 0 on the surface, 1 outside; 2 unknown, because the body is not closed.");
-  of_point(
-      "points", [](const PointDistance& p) { return p.closest.point; },
-      "(n, 3) float64: the closest points of the surface, world frame.");
-  of_point(
-      "faces", [](const PointDistance& p) { return p.closest.face; },
-      "(n,) uint32: the faces of these points; 4294967295 for a body without faces.");
-  c.def("__repr__", [](const PointDistances& d) {
-    return "<lrbscope.PointDistances of " + std::to_string(d.all.size()) + " points>";
-  });
+  const auto of_point = rows_of(c, "points", &PointDistances::all);
+  of_point("lower", "(n,) float64: lower ends of the signed distances; negative inside.",
+           &PointDistance::signed_lower);
+  of_point("upper", "(n,) float64: upper ends.", &PointDistance::signed_upper);
+  of_point("side",
+           "(n,) int8: -1 inside, 0 on the surface, 1 outside; 2 unknown, because the body is not closed.",
+           [](const PointDistance& p) -> std::int8_t {
+             if (!p.side) return 2;
+             return p.side == Where::inside ? -1 : p.side == Where::outside ? 1 : 0;
+           });
+  of_point("points", "(n, 3) float64: the closest points of the surface, world frame.",
+           [](const PointDistance& p) { return p.closest.point; });
+  of_point("faces", "(n,) uint32: the faces of these points; 4294967295 for a body without faces.",
+           [](const PointDistance& p) { return p.closest.face; });
 }
 
 }  // namespace
 
 void bind_signed_distance(py::module_& m) {
   bind_point_distances(m);
-  define(m, &signed_distance,
-         R"(signed_distance(body, points, pose=None, *, tolerance=0, relative_tolerance=0, threads=0)
+  define(m, R"(signed_distance(body, points, pose=None, *, tolerance=0, relative_tolerance=0, threads=0)
 
 Finds the signed distance of points to the surface of a body, as proven intervals, negative inside.
 
@@ -341,7 +298,8 @@ Returns PointDistances.
 
 >>> d = signed_distance(cube, [[0.5, 0.5, 0.75], [2, 0.5, 0.5]])
 >>> d.side.tolist(), d.upper.round(9).tolist()
-([-1, 1], [-0.25, 1.0]))");
+([-1, 1], [-0.25, 1.0]))",
+         &signed_distance);
 }
 
 }  // namespace lrb::python

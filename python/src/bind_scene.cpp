@@ -24,10 +24,7 @@ std::vector<Eigen::AlignedBox3d> boxes_of(const Boxes& given) {
 }
 
 py::array_t<std::uint32_t> pairs_of(SweepAndPrune& sweep, const Boxes& given) {
-  const std::vector<BodyPair>& pairs = sweep.update(boxes_of(given));
-  static_assert(sizeof(BodyPair) == 2 * sizeof(std::uint32_t));
-  return py::array_t<std::uint32_t>({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}},
-                                    reinterpret_cast<const std::uint32_t*>(pairs.data()));
+  return column(sweep.update(boxes_of(given)), [](const BodyPair& p) { return std::array{p.i, p.j}; });
 }
 
 }  // namespace
@@ -157,10 +154,7 @@ void move(SceneHandle& self, const py::object& keys, py::handle given) {
 
 py::array_t<std::int64_t> keys(SceneHandle& self) {
   const Locked lock(self);
-  const std::vector<BodyKey> all = self.scene.keys();
-  py::array_t<std::int64_t> out(static_cast<py::ssize_t>(all.size()));
-  std::transform(all.begin(), all.end(), out.mutable_data(), number_of);
-  return out;
+  return column(self.scene.keys(), number_of);
 }
 
 bool contains(SceneHandle& self, py::handle given) {
@@ -182,11 +176,10 @@ BodyPtr body_at(SceneHandle& self, py::handle given) {
 py::array_t<double> pose_at(SceneHandle& self, py::handle given) {
   const Locked lock(self);
   const Pose& p = self.scene.pose(key_of(self, given));
-  py::array_t<double> out({4, 4});
-  double* m = out.mutable_data();
-  for (int r = 0; r < 4; ++r)
-    for (int c = 0; c < 4; ++c) *m++ = r == 3 ? (c == 3 ? 1.0 : 0.0) : c == 3 ? p.t[r] : p.r(r, c);
-  return out;
+  std::array<std::array<double, 4>, 4> m{};
+  for (int r = 0; r < 3; ++r) m[static_cast<std::size_t>(r)] = {p.r(r, 0), p.r(r, 1), p.r(r, 2), p.t[r]};
+  m[3][3] = 1;
+  return column(m, std::identity());
 }
 
 /// The pairs of bodies with nearby boxes; a body outside the scene has key -1.
@@ -347,15 +340,16 @@ using SceneClass = py::class_<SceneHandle, ScenePtr>;
 void bind_bodies(SceneClass& c) {
   c.def(py::init([](py::handle threads) { return std::make_shared<SceneHandle>(count(threads, "threads")); }),
         Signature("Scene(*, threads=0)\n\nMakes an empty scene. threads: of queries; 0: all cores."));
-  define(c, &add,
+  define(c,
          "add(body, pose=None)\n\n"
          "Adds a Body at a pose, (4, 4); None: the identity. The same Body may be added "
-         "repeatedly. Returns its key.");
-  define(c, &remove, "remove(key)\n\nRemoves a body.");
-  define(c, &move,
-         "move(key, pose)\n\nMoves a body: key int, pose (4, 4); or many: key (k,) int, pose (k, 4, 4).");
-  define(c, &body_at, "body(key)\n\nReturns the Body of a key.");
-  define(c, &pose_at, "pose(key)\n\nReturns the pose of a body, (4, 4) float64.");
+         "repeatedly. Returns its key.",
+         &add);
+  define(c, "remove(key)\n\nRemoves a body.", &remove);
+  define(c, "move(key, pose)\n\nMoves a body: key int, pose (4, 4); or many: key (k,) int, pose (k, 4, 4).",
+         &move);
+  define(c, "body(key)\n\nReturns the Body of a key.", &body_at);
+  define(c, "pose(key)\n\nReturns the pose of a body, (4, 4) float64.", &pose_at);
   c.def_property_readonly("keys", &keys, "(n,) int64: of all bodies, ascending.");
   c.def("__len__", &size_of);
   c.def("__contains__", &contains, py::arg("key"));
@@ -364,31 +358,36 @@ void bind_bodies(SceneClass& c) {
 }
 
 void bind_questions(SceneClass& c) {
-  define(c, &near,
+  define(c,
          "near(within=0, other=None, pose=None)\n\n"
          "Returns the pairs of bodies whose boxes are at most `within` apart (the world's unit), "
          "closest first:\n"
          "their keys, (p, 2) int64, and the gaps of the boxes, (p,) float64. At 0 these are the "
-         "pairs that collide() tests.");
-  define(c, &nearest_boxes,
+         "pairs that collide() tests.",
+         &near);
+  define(c,
          "nearest_boxes(other=None, pose=None)\n\n"
          "Returns the keys of the pair with the closest boxes, and their gap: (int, int, float); "
-         "None if there is no pair.");
+         "None if there is no pair.",
+         &nearest_boxes);
   define(
-      c, &collide,
+      c,
       R"(collide(other=None, pose=None, *, mode='all', contacts=False, interiors_overlap=False, max_pairs=0)
 
 Finds all pairs of bodies that intersect or contain one another, in ascending order of their keys. For the
-options see collide(). Returns Meetings.)");
-  define(c, &any_meet,
+options see collide(). Returns Meetings.)",
+      &collide);
+  define(c,
          "any_meet(other=None, pose=None)\n\n"
-         "Returns True if collide() would find a pair; stops at the first.");
-  define(c, &nearest,
+         "Returns True if collide() would find a pair; stops at the first.",
+         &any_meet);
+  define(c,
          "nearest(other=None, pose=None, *, solids=False, relative_tolerance=0, tolerance=0)\n\n"
          "Finds the pair of bodies with the closest surfaces, or the closest solids: their "
          "distance is also 0 if one contains the\n"
          "other. Returns their keys and a Distance, (int, int, Distance); None if there is no "
-         "pair.");
+         "pair.",
+         &nearest);
 }
 
 }  // namespace

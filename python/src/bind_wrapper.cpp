@@ -53,8 +53,7 @@ py::array_t<std::uint32_t> triangles_of(const BodyWrapper& w) {
       corners.insert(corners.end(), v, v + rep.simplex_size());
     }
   }
-  return array_of_ids(std::span<const VertexId>(corners))
-      .reshape({py::ssize_t{-1}, py::ssize_t{rep.simplex_size()}});
+  return column(corners, std::identity()).reshape({py::ssize_t{-1}, py::ssize_t{rep.simplex_size()}});
 }
 
 /// Returns the wrapper's region behind a face of its boundary, on either side, or None.
@@ -84,42 +83,36 @@ Makes the outermost wrapper. mode 'unregularised': refining a face discards that
   c.def_static("at", &at, Signature(R"(at(body, tolerance, *, threads=0)
 
 Makes the coarsest wrapper whose maximum deviation from the body is within a tolerance (the mesh's unit).)"));
-  define(
-      c, [](BodyWrapper& w, py::handle r) { return w.wrapper.refine(region(w, r)); },
-      "refine(region)\n\nExcludes a region. Returns False if it was already excluded.");
-  define(
-      c, [](BodyWrapper& w, py::handle f) { return w.wrapper.refine_face(face(w, f)); }, R"(refine_face(face)
+  define(c, "refine(region)\n\nExcludes a region. Returns False if it was already excluded.",
+         [](BodyWrapper& w, py::handle r) { return w.wrapper.refine(region(w, r)); });
+  define(c, R"(refine_face(face)
 
-Refines the region behind a face. Returns False if the face is real or not on the boundary.)");
-  define(
-      c, [](BodyWrapper& w, py::handle r) { return w.wrapper.coarsen(region(w, r)); },
-      "coarsen(region)\n\nIncludes a region again. Returns False if it is already included.");
-  define(
-      c, [](BodyWrapper& w) { w.wrapper.refine_all(); },
-      "refine_all()\n\nExcludes all regions: only the real faces remain.");
-  define(
-      c, [](BodyWrapper& w) { w.wrapper.reset(); }, "reset()\n\nResets to the outermost wrapper.");
-  define(
-      c, [](const BodyWrapper& w, py::handle r) { return w.wrapper.included(region(w, r)); },
-      "includes(region)\n\nReturns True if a region is included in the wrapper.");
-  define(c, &region_behind, R"(region_behind(face)
+Refines the region behind a face. Returns False if the face is real or not on the boundary.)",
+         [](BodyWrapper& w, py::handle f) { return w.wrapper.refine_face(face(w, f)); });
+  define(c, "coarsen(region)\n\nIncludes a region again. Returns False if it is already included.",
+         [](BodyWrapper& w, py::handle r) { return w.wrapper.coarsen(region(w, r)); });
+  define(c, "refine_all()\n\nExcludes all regions: only the real faces remain.",
+         [](BodyWrapper& w) { w.wrapper.refine_all(); });
+  define(c, "reset()\n\nResets to the outermost wrapper.", [](BodyWrapper& w) { w.wrapper.reset(); });
+  define(c, "includes(region)\n\nReturns True if a region is included in the wrapper.",
+         [](const BodyWrapper& w, py::handle r) { return w.wrapper.included(region(w, r)); });
+  define(c, R"(region_behind(face)
 
-Returns the region behind a face of the boundary, or None if the face is real or not on the boundary.)");
-  property(c, "body", &BodyWrapper::body, "Body");
+Returns the region behind a face of the boundary, or None if the face is real or not on the boundary.)",
+         &region_behind);
+  property(c, "body", "Body", &BodyWrapper::body);
   property(
-      c, "faces", [](const BodyWrapper& w) { return column(w.wrapper.boundary(), std::identity()); },
-      "(f,) uint32: the faces of the boundary, ascending; real faces are less than body.real_face_count.");
-  property(
-      c, "is_real",
-      [](const BodyWrapper& w) {
-        return column(w.wrapper.boundary(), [&](FaceId f) { return w.body->rep().is_real(f); });
-      },
-      "(f,) bool: for each of these, True if it is a face of the mesh.");
-  property(c, "triangles", &triangles_of,
-           "(t, 3) uint32: the boundary's triangles, as indices into body.all_vertices.");
-  property(
-      c, "excluded", [](const BodyWrapper& w) { return column(w.wrapper.excluded(), std::identity()); },
-      "(r,) uint32: the excluded regions, in order of refinement.");
+      c, "faces",
+      "(f,) uint32: the faces of the boundary, ascending; real faces are less than body.real_face_count.",
+      [](const BodyWrapper& w) { return column(w.wrapper.boundary(), std::identity()); });
+  property(c, "is_real", "(f,) bool: for each of these, True if it is a face of the mesh.",
+           [](const BodyWrapper& w) {
+             return column(w.wrapper.boundary(), [&](FaceId f) { return w.body->rep().is_real(f); });
+           });
+  property(c, "triangles", "(t, 3) uint32: the boundary's triangles, as indices into body.all_vertices.",
+           &triangles_of);
+  property(c, "excluded", "(r,) uint32: the excluded regions, in order of refinement.",
+           [](const BodyWrapper& w) { return w.wrapper.excluded(); });
   c.def("__len__", [](const BodyWrapper& w) { return w.wrapper.boundary_size(); });
   c.def("__repr__", [](const BodyWrapper& w) {
     return printable("<lrbscope.Wrapper of '" + w.body->rep().name() +

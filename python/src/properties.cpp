@@ -38,10 +38,8 @@ void Signature::apply(py::detail::function_record& function) const {
                                each.is_optional ? py::none().release() : py::handle(), true, true);
 }
 
-py::dict dict_of(std::initializer_list<std::pair<const char*, std::uint64_t>> counters) {
-  py::dict d;
-  for (const auto& [name, value] : counters) d[name] = value;
-  return d;
+py::object parsed_json(const std::string& json) {
+  return py::module_::import("json").attr("loads")(json);
 }
 
 std::size_t checked_index(py::ssize_t i, std::size_t n) {

@@ -2,8 +2,10 @@
 /// How functions and classes are bound: signatures from their texts, properties from members of answers.
 
 #include <array>
+#include <bit>
 #include <concepts>
 #include <functional>
+#include <ranges>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -37,7 +39,7 @@ class Signature {
 
 /// Defines a function of a module, or a method of a class.
 template <class Scope, class Function>
-void define(Scope& scope, Function&& function, const char* text) {
+void define(Scope& scope, const char* text, Function&& function) {
   const Signature signature(text);
   scope.def(signature.name(), std::forward<Function>(function), signature);
 }
@@ -83,6 +85,23 @@ auto column(const Items& items, const Get& get) {
   return out;
 }
 
+/// True for lists of numbers, ids or vectors, and of arrays of these.
+template <class Value>
+inline constexpr bool IsNumber = std::is_arithmetic_v<Value> || std::is_convertible_v<Value, std::uint32_t> ||
+                                 std::same_as<Value, Eigen::Vector3d>;
+template <class Value, std::size_t n>
+inline constexpr bool IsNumber<std::array<Value, n>> = IsNumber<Value>;
+template <class Value>
+concept IsNumbers = std::ranges::range<Value> && !std::convertible_to<Value, std::string_view> &&
+                    IsNumber<std::ranges::range_value_t<Value>>;
+
+template <class Value>
+concept IsTwoOfNumbers = requires {
+  std::tuple_size<Value>::value;
+  typename Value::value_type;
+}
+&&std::tuple_size_v<Value> == 2 && IsNumbers<typename Value::value_type>;
+
 /// Returns the triangles, or the faces, of a pair as an array's row.
 inline constexpr auto kPairOf = [](const auto& pair) { return std::array{pair.a, pair.b}; };
 
@@ -99,24 +118,68 @@ py::object to_python(const Value& value) {
   else if constexpr (std::same_as<Value, ProvedInterval>)
     return py::make_tuple(value.lower, value.upper);
   else if constexpr (std::same_as<Value, Eigen::Vector3d>)
-    return array_of(value);
+    return column(std::span(value.data(), 3), std::identity());
   else if constexpr (std::is_class_v<Value> && std::convertible_to<Value, std::uint32_t>)
     return value == kNull ? py::object(py::none()) : py::int_(value.value());
   else if constexpr (requires { *value, value.has_value(); })
     return value ? to_python(*value) : py::none();
+  else if constexpr (IsNumbers<Value>)
+    return column(value, std::identity());
+  else if constexpr (IsTwoOfNumbers<Value>)
+    return py::make_tuple(to_python(value[0]), to_python(value[1]));
   else
     return py::cast(value);
 }
 
 /// Adds a read-only property: a member of the class, or a function of an object.
 template <class Class, class Get>
-void property(Class& c, const char* name, const Get& get, const char* text) {
+void property(Class& c, const char* name, const char* text, const Get& get) {
   c.def_property_readonly(
       name, [get](const typename Class::type& self) { return to_python(std::invoke(get, self)); }, text);
 }
 
-/// Returns counters as a dict.
-py::dict dict_of(std::initializer_list<std::pair<const char*, std::uint64_t>> counters);
+/// Returns a function that adds properties of a part of the object: of(self), a member or a function.
+template <class Class, class Part>
+auto properties_of(Class& c, const Part& of) {
+  return [&c, of](const char* name, const char* text, const auto& get) {
+    property(c, name, text,
+             [of, get](const auto& self) { return to_python(std::invoke(get, std::invoke(of, self))); });
+  };
+}
+
+/// Returns a function that adds arrays with get(item) for each of items(self).
+template <class Class, class Items>
+auto columns_of(Class& c, const Items& items) {
+  return [&c, items](const char* name, const char* text, const auto& get) {
+    property(c, name, text, [items, get](const auto& self) { return column(std::invoke(items, self), get); });
+  };
+}
+
+/// As columns_of(), for the items that are the object's length and are called `what` in its display.
+template <class Class, class Items>
+auto rows_of(Class& c, const std::string& what, const Items& items) {
+  const auto size = [items](const typename Class::type& self) { return std::size(std::invoke(items, self)); };
+  const std::string begin = "<lrbscope." + std::string(py::str(c.attr("__name__"))) + " of ";
+  c.def("__len__", size);
+  c.def("__repr__", [=](const typename Class::type& self) {
+    return begin + std::to_string(size(self)) + " " + what + ">";
+  });
+  return columns_of(c, items);
+}
+
+/// Returns counters, a record of numbers, as a dict.
+template <class Counters, std::size_t n>
+py::dict dict_of(const Counters& counters, const char* const (&names)[n]) {
+  static_assert(sizeof(Counters) == n * sizeof(std::uint64_t));
+  const auto numbers = std::bit_cast<std::array<std::uint64_t, n>>(counters);
+  py::dict d;
+  for (std::size_t i = 0; i < n; ++i) d[names[i]] = numbers[i];
+  return d;
+}
+inline constexpr const char* kCountersText = "dict of int: the work, in numbers of operations.";
+
+/// Returns a JSON text as dicts and lists.
+py::object parsed_json(const std::string& json);
 
 /// Returns an index as Python counts, from the end if negative. Throws IndexError if it is out of range.
 std::size_t checked_index(py::ssize_t i, std::size_t n);
@@ -136,18 +199,13 @@ struct Sequence {
   std::vector<Result> all;
 };
 
-/// Defines a sequence of answers. `name`: of the class; `what`: the queries, in its display.
+/// Defines a sequence of answers; rows_of() defines its length.
 template <class Result>
-py::class_<Sequence<Result>> bind_sequence(py::module_& m, const std::string& name, const std::string& what,
-                                           const char* text) {
+py::class_<Sequence<Result>> bind_sequence(py::module_& m, const char* name, const char* text) {
   using All = Sequence<Result>;
-  py::class_<All> c(m, name.c_str(), text);
-  c.def("__len__", [](const All& s) { return s.all.size(); });
+  py::class_<All> c(m, name, text);
   c.def("__getitem__", [](const All& s, py::ssize_t i) { return s.all[checked_index(i, s.all.size())]; });
   bind_iterator(c);
-  c.def("__repr__", [name, what](const All& s) {
-    return "<lrbscope." + name + " of " + std::to_string(s.all.size()) + " " + what + ">";
-  });
   return c;
 }
 

@@ -1,6 +1,5 @@
 """Docstrings, annotations and the pages: examples run, names agree."""
 
-import ast
 import doctest
 import inspect
 import json
@@ -16,11 +15,9 @@ import lrbscope
 import lrbscope.collision
 import lrbscope.fcl
 import lrbscope.many
-from lrbscope import _core
 from shapes import ball_arrays, cube_arrays, shifted
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-PACKAGE = os.path.dirname(lrbscope.__file__)
 
 
 def documented():
@@ -59,46 +56,6 @@ def test_docstrings_do_as_they_say(name, cube):
     said = []
     doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(test, out=said.append)
     assert not said, "".join(said)
-
-
-def stubs():
-    with open(os.path.join(PACKAGE, "_core.pyi")) as file:
-        return ast.parse(file.read()).body
-
-
-def test_the_stub_has_what_the_module_has():
-    def public(names):
-        return {n for n in names if not n.startswith("_")}
-
-    classes = {n.name: n for n in stubs() if isinstance(n, ast.ClassDef)}
-    functions = {n.name: n for n in stubs() if isinstance(n, ast.FunctionDef)}
-    assert public(vars(_core)) == public({**classes, **functions})
-    for name, node in classes.items():
-        members = {n.name for n in node.body if isinstance(n, ast.FunctionDef)}
-        members |= {n.target.id for n in node.body if isinstance(n, ast.AnnAssign)}
-        assert public(members) == public(vars(getattr(_core, name))), name
-
-
-def parameters_of(node):
-    return [a.arg for a in node.args.args + node.args.kwonlyargs if a.arg != "self"]
-
-
-def test_the_stub_has_the_parameters_that_functions_take():
-    """The signatures that docstrings begin with are read by inspect; the stub has their names."""
-    nodes = {n.name: n for n in stubs() if isinstance(n, ast.FunctionDef)}
-    for node in stubs():
-        if isinstance(node, ast.ClassDef):
-            nodes.update({f"{node.name}.{n.name}": n for n in node.body if isinstance(n, ast.FunctionDef)})
-    checked = 0
-    for name, node in nodes.items():
-        thing = _core
-        for part in name.split("."):
-            thing = getattr(thing, part)
-        if isinstance(thing, property) or getattr(thing, "__text_signature__", None) is None:
-            continue
-        assert [p for p in inspect.signature(thing).parameters if p != "self"] == parameters_of(node), name
-        checked += 1
-    assert checked > 40
 
 
 def blocks(page):
