@@ -7,6 +7,7 @@
 #include <charconv>
 #include <type_traits>
 
+#include "trace/event_fields.hpp"
 #include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>
@@ -25,10 +26,6 @@ std::string to_text(const EngineReport& r) {
 }
 
 namespace {
-
-std::string or_none(std::uint32_t value) {
-  return value == kNull ? "none" : std::to_string(value);
-}
 
 std::string to_text(std::uint64_t value) {
   return std::to_string(value);
@@ -89,9 +86,6 @@ class Comparison {
   void same(const std::string& what, const T& expected, const T& actual) {
     if (!found_ && expected != actual) found(what, to_text(expected), to_text(actual));
   }
-  void same_or_none(const std::string& what, std::uint32_t expected, std::uint32_t actual) {
-    if (!found_ && expected != actual) found(what, or_none(expected), or_none(actual));
-  }
 
  private:
   std::optional<Divergence> found_;
@@ -138,51 +132,40 @@ void compare_fields(Comparison& c, const Record& x, const Record& y, const std::
   });
 }
 
-void compare_nodes(Comparison& c, const Event& x, const Event& y) {
-  const NodeWork p = x.work(), q = y.work();
-  c.same("step", x.node_end().step, y.node_end().step);
-  c.same("box tests", std::uint64_t{p.box_tests}, std::uint64_t{q.box_tests});
-  c.same("boxes that meet", std::uint64_t{p.met}, std::uint64_t{q.met});
-  c.same("parted by planes", std::uint64_t{p.rejected}, std::uint64_t{q.rejected});  // language: keep
-  c.same("certain", std::uint64_t{p.certain}, std::uint64_t{q.certain});
-  c.same("axis", x.node_end().axis, y.node_end().axis);
-  c.same("boxes apart", x.node_end().apart, y.node_end().apart);
-}
+/// The fields of an event as texts.
+struct FieldTexts {
+  std::vector<std::pair<std::string, std::string>> all;
+
+  explicit FieldTexts(const Event& e) { event_fields(*this, e); }
+  static bool has(std::string_view, bool present) { return present; }
+  void number(std::string_view name, std::uint64_t value) { all.emplace_back(name, to_text(value)); }
+  template <class Enum>
+  void word(std::string_view name, Enum value) {
+    all.emplace_back(name, to_text(value));
+  }
+  void flag(std::string_view name, bool value) { all.emplace_back(name, to_text(value)); }
+  void real(std::string_view name, std::uint32_t bits) {
+    all.emplace_back(name, to_text(double{std::bit_cast<float>(bits)}));
+  }
+  void simplex(Side, std::string_view name, std::uint32_t value) { number(name, value); }
+  static void vertices(const Event& /*compared with the steps*/) {}
+
+  std::string text_of(const std::string& name) const {
+    for (const auto& [known, text] : all)
+      if (known == name) return text;
+    return "none";
+  }
+};
 
 void compare_events(Comparison& c, const Event& x, const Event& y) {
-  // The meaning of fields depends on the kind: compare kinds first.
+  // The fields depend on the kind: compare kinds first.
   c.same("kind", x.kind, y.kind);
   if (c.differs()) return;
-  const auto [a, b] = fields_of(x.kind);
-  c.same("side", x.side, y.side);
-  // Fields a and b: enumerators are reported by name, numbers as numbers.
-  if (x.kind == EventKind::result)
-    c.same("relation", static_cast<Relation>(x.a), static_cast<Relation>(y.a));
-  else if (x.kind == EventKind::begin || x.kind == EventKind::end)
-    c.same("phase", x.phase(), y.phase());
-  else
-    c.same_or_none(std::string(a), x.a, y.a);
-  c.same_or_none(std::string(b), x.b, y.b);
-  c.same("meet", x.meet, y.meet);
-  // The depth fields are reused by construction events; report them under their meaning.
-  c.same_or_none(x.kind < EventKind::pass     ? "depth of A"
-                 : x.kind == EventKind::patch ? "interior vertices"
-                 : x.kind == EventKind::cap   ? "careful"
-                                              : "given up",
-                 x.depth_a, y.depth_a);
-  c.same_or_none("depth of B", x.depth_b, y.depth_b);
-  c.same_or_none("cause", x.cause, y.cause);
-  if (x.kind == EventKind::face_test) c.same("decided by", x.tested_by(), y.tested_by());
-  if (x.kind == EventKind::point) c.same("where", x.where(), y.where());
-  if (x.kind == EventKind::pass) c.same("stage", x.stage(), y.stage());
-  if (x.kind == EventKind::cap) c.same("verdict", x.verdict(), y.verdict());
-  // The same for `boundary`: packed work, a float deviation, or a number of faces.
-  if (x.kind == EventKind::node_pair)
-    compare_nodes(c, x, y);
-  else if (x.kind == EventKind::pass || x.kind == EventKind::cap)
-    c.same("distance", double{x.off()}, double{y.off()});
-  else if (x.kind != EventKind::patch)  // a patch: where its vertices are stored
-    c.same_or_none("wrapper faces", x.boundary, y.boundary);
+  const FieldTexts p(x), q(y);
+  for (const FieldTexts* fields : {&p, &q})
+    for (const auto& field : fields->all)
+      if (p.text_of(field.first) != q.text_of(field.first))
+        return c.found(field.first, p.text_of(field.first), q.text_of(field.first));
 }
 
 std::string to_text(std::span<const VertexId> vertices) {
@@ -238,30 +221,9 @@ void compare_steps(Comparison& c, const Trace& x, const Trace& y) {
 }  // namespace
 
 std::string describe(const Event& e) {
-  std::string out(name_of(e.kind));
-  out += ':';
-  const auto [a, b] = fields_of(e.kind);
-  const auto add = [&](std::string_view name, const std::string& value) {
-    out.append(out.back() == ':' ? " " : ", ").append(name).append(" ").append(value);
-  };
-  const bool is_phase = e.kind == EventKind::begin || e.kind == EventKind::end;
-  if (!a.empty())
-    add(a, e.kind == EventKind::result ? to_text(static_cast<Relation>(e.a))
-           : is_phase                  ? to_text(e.phase())
-                                       : std::to_string(e.a));
-  if (e.kind == EventKind::refine || e.kind == EventKind::coarsen) out += " of " + to_text(e.side);
-  if (!b.empty()) add(b, std::to_string(e.b));
-  if (e.kind == EventKind::face_test || e.kind == EventKind::contact) add("meet", to_text(e.meet));
-  if (e.kind == EventKind::node_pair)
-    add("step", to_text(e.node_end().step)), add("box tests", std::to_string(e.work().box_tests)),
-        add("boxes that meet", std::to_string(e.work().met));
-  else if (e.kind == EventKind::pass)
-    add("stage", to_text(e.stage()));
-  else if (e.kind == EventKind::cap)
-    add("verdict", to_text(e.verdict()));
-  else if (e.boundary != kNull && e.kind != EventKind::patch)
-    add("wrapper faces", std::to_string(e.boundary));
-  if (e.cause != kNull) add("cause", std::to_string(e.cause));
+  std::string out = std::string(name_of(e.kind)) + ":";
+  for (const auto& [name, text] : FieldTexts(e).all)
+    out += (out.back() == ':' ? " " : ", ") + name + " " + text;
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "trace/event_fields.hpp"
 #include "trace/trace_json_parts.hpp"
 #include "trace/trace_node.hpp"
 #include <lrbscope/error.hpp>
@@ -180,13 +181,6 @@ Json parse_events(std::string_view text, const std::string& name,
 
 namespace {
 
-/// Reads a simplex of the answer, which has one of two names.
-std::uint32_t read_contact(const TraceNode& args, Side side) {
-  const char* pseudo = pseudo_simplex(side).data();
-  const auto [a, b] = fields_of(EventKind::contact);
-  return args.at(args.has(pseudo) ? pseudo : side == Side::a ? a.data() : b.data()).integer<std::uint32_t>();
-}
-
 /// Returns the kind of an event. Steps and phases have more specific names, and a category.
 EventKind kind_of(const TraceNode& node) {
   const std::string& category = node.at("cat").string();
@@ -197,87 +191,34 @@ EventKind kind_of(const TraceNode& node) {
   return node.at("name").named<EventKind>();
 }
 
-void read_node_pair(const TraceNode& args, Event& e) {
-  NodeEnd end;
-  NodeWork work;
-  const TraceNode& step = args.at("step");
-  end.step = step.string() == "needles" ? NodeStep::whole : step.named<NodeStep>();
-  work.box_tests = args.at("box tests").integer<std::uint8_t>();
-  work.met = args.at("boxes that meet").integer<std::uint8_t>();
-  if (end.step == NodeStep::leaves) {
-    work.rejected = args.at("parted by planes").integer<std::uint8_t>();  // language: keep
-    work.certain = args.at("certain").integer<std::uint8_t>();
-  }
-  if (work.met == 0 && !args.has("axis")) {
-    end.apart = args.has("apart along");
-    end.axis = args.at(end.apart ? "apart along" : "overlap least along").named<BoxAxis>();
-  }
-  const auto pairs_above = args.at("pairs above").integer<std::uint16_t>();
-  e = Event::of(payload::NodePair{e.a, e.b, work, end, pairs_above}, e.cause);
-  if (args.has("axis")) e.set_engine_axis(args.at("axis").integer<std::uint8_t>());
-}
+/// Reads the fields of an event.
+struct FieldReader {
+  const TraceNode& args;
 
-/// Reads the fields of events at EventLevel::nodes and above.
-void read_more(const TraceNode& args, Event& e) {
-  if (e.kind == EventKind::face_test && args.has("decided by"))
-    e.set_tested_by(args.at("decided by").named<TestedBy>());
-  if (e.kind == EventKind::node_pair) read_node_pair(args, e);
-  if (e.kind == EventKind::plane_test) e.side = args.at("plane of").named<Side>();
-  if (e.kind == EventKind::point) {
-    e.side = args.at("of").named<Side>();
-    e.detail = static_cast<std::uint8_t>(args.at("where").named<Where>());
+  bool has(std::string_view name, bool) const { return args.has(name.data()); }
+  template <class Number>
+  void number(std::string_view name, Number& value) const {
+    value = args.at(name.data()).integer<Number>();
   }
-  if (e.kind == EventKind::begin && walks_trees(e.phase())) {
-    e.depth_a = args.at("level of A").integer<std::uint16_t>();
-    e.depth_b = args.at("level of B").integer<std::uint16_t>();
+  template <class Enum>
+  void word(std::string_view name, Enum& value) const {
+    const TraceNode node = args.at(name.data());
+    if constexpr (std::is_same_v<Enum, NodeStep>)
+      value = node.string() == "needles" ? NodeStep::whole : node.named<Enum>();  // the word of version 1
+    else
+      value = node.named<Enum>();
   }
-}
-
-std::uint32_t read_distance(const TraceNode& args, const char* name, std::uint32_t none) {
-  return args.has(name) ? std::bit_cast<std::uint32_t>(static_cast<float>(args.at(name).least(0))) : none;
-}
-
-/// Reads the fields of construction events.
-void read_built(const TraceNode& args, Event& e) {
-  const auto is_set = [&](const char* name) { return args.has(name) && args.at(name).boolean(); };
-  if (e.kind == EventKind::pass) {
-    e.detail = static_cast<std::uint8_t>(args.at("stage").named<BuildStage>());
-    e.boundary = read_distance(args, "distance allowed", 0);
+  void flag(std::string_view name, std::uint16_t& value) const {
+    value = has(name, false) && args.at(name.data()).boolean();
   }
-  if (e.kind == EventKind::patch) e.depth_a = args.at("interior vertices").integer<std::uint16_t>();
-  if (e.kind == EventKind::cap) {
-    e.detail = static_cast<std::uint8_t>(args.at("verdict").named<CapVerdict>());
-    e.depth_a = is_set("careful");
-    e.boundary = read_distance(args, "distance", kNull);
+  void real(std::string_view name, std::uint32_t& bits) const {
+    bits = std::bit_cast<std::uint32_t>(static_cast<float>(args.at(name.data()).least(0)));
   }
-  if (e.kind == EventKind::pass_end) e.depth_a = is_set("given up");
-}
-
-void read_fields(const TraceNode& args, Event& e) {
-  const auto [a, b] = fields_of(e.kind);
-  if (e.kind == EventKind::refine || e.kind == EventKind::coarsen) e.side = args.at("side").named<Side>();
-  if (e.kind == EventKind::contact) {
-    e.a = read_contact(args, Side::a);
-    e.b = read_contact(args, Side::b);
-  } else if (!a.empty()) {
-    const TraceNode node = args.at(a.data());
-    const bool is_phase = e.kind == EventKind::begin || e.kind == EventKind::end;
-    e.a = e.kind == EventKind::result ? static_cast<std::uint32_t>(node.named<Relation>())
-          : is_phase                  ? static_cast<std::uint32_t>(node.named<Phase>())
-                                      : node.integer<std::uint32_t>();
+  void simplex(Side side, std::string_view name, std::uint32_t& value) const {
+    number(has(pseudo_simplex(side), false) ? pseudo_simplex(side) : name, value);
   }
-  if (!b.empty() && e.kind != EventKind::contact) e.b = args.at(b.data()).integer<std::uint32_t>();
-  if (e.kind == EventKind::face_test || e.kind == EventKind::contact)
-    e.meet = args.at("meet").named<exact::Meet>();
-  if (e.kind == EventKind::face_test) {
-    e.depth_a = args.at("depth of A").integer<std::uint16_t>();
-    e.depth_b = args.at("depth of B").integer<std::uint16_t>();
-  }
-  if (args.has("wrapper faces")) e.boundary = args.at("wrapper faces").integer<std::uint32_t>();
-  if (args.has("cause")) e.cause = args.at("cause").integer<std::uint32_t>();
-  read_more(args, e);
-  if (e.kind >= EventKind::pass) read_built(args, e);
-}
+  static void vertices(const Event& /*read by Reader*/) {}
+};
 
 class Reader {
  public:
@@ -326,7 +267,8 @@ class Reader {
     const auto number = args.at("event").integer<EventId>();
     if (number != t_.events.size())
       args.at("event").fail(std::to_string(t_.events.size()) + ", the next event");
-    read_fields(args, e);
+    FieldReader fields{args};
+    event_fields(fields, e);
     if (args.has("vertices")) read_vertices(args.at("vertices"), e);
     if (args.has("ns")) t_.wall_ns.push_back(args.at("ns").integer<std::uint64_t>());
     t_.events.push_back(e);

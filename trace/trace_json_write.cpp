@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "trace/event_fields.hpp"
 #include "trace/trace_json_parts.hpp"
 #include <lrbscope/trace/counters.hpp>
 #include <lrbscope/trace/trace.hpp>
@@ -60,38 +61,29 @@ struct Place {
   std::string_view category;
 };
 
-Place place_of(EventKind kind) {
-  switch (kind) {
-    case EventKind::step:
-    case EventKind::result:
-      return {Thread::steps, "step"};
-    case EventKind::face_test:
-      return {Thread::tests, "test"};
-    case EventKind::refine:
-    case EventKind::coarsen:
-      return {Thread::wrapper_a, "wrapper"};
-    case EventKind::contact:
-      return {Thread::answer, "answer"};
-    case EventKind::node_pair:
-    case EventKind::plane_test:
-      return {Thread::walk, "walk"};
-    case EventKind::point:
-      return {Thread::phases, "point"};
-    case EventKind::begin:
-    case EventKind::end:
-      return {Thread::phases, "phase"};
-    case EventKind::pass:
-    case EventKind::pass_end:
-      return {Thread::passes, "pass"};
-    case EventKind::patch:
-    case EventKind::cap:
-      return {Thread::caps, "cap"};
-    case EventKind::region:
-    case EventKind::merged:
-    case EventKind::closed:
-      return {Thread::hull, "hull"};
-  }
-  return {Thread::steps, ""};
+constexpr Place kPlaces[] = {
+    {Thread::steps, "step"},         // step
+    {Thread::tests, "test"},         // face_test
+    {Thread::wrapper_a, "wrapper"},  // refine
+    {Thread::wrapper_a, "wrapper"},  // coarsen
+    {Thread::answer, "answer"},      // contact
+    {Thread::steps, "step"},         // result
+    {Thread::walk, "walk"},          // node_pair
+    {Thread::walk, "walk"},          // plane_test
+    {Thread::phases, "point"},       // point
+    {Thread::phases, "phase"},       // begin
+    {Thread::phases, "phase"},       // end
+    {Thread::passes, "pass"},        // pass
+    {Thread::caps, "cap"},           // patch
+    {Thread::caps, "cap"},           // cap
+    {Thread::hull, "hull"},          // region
+    {Thread::hull, "hull"},          // merged
+    {Thread::passes, "pass"},        // pass_end
+    {Thread::hull, "hull"},          // closed
+};
+static_assert(std::size(kPlaces) == kEventKinds);
+const Place& place_of(EventKind kind) {
+  return kPlaces[static_cast<std::size_t>(kind)];
 }
 
 Thread thread_of(const Event& e) {
@@ -106,7 +98,6 @@ class TraceWriter {
     for (const PassSummary& p : passes_of(t_)) passes_[p.first] = p;
     find_ends();
     find_arrows();
-    for (std::size_t k = 0; k < kEventKinds; ++k) prepare(static_cast<EventKind>(k));
   }
 
   void run() {
@@ -123,20 +114,6 @@ class TraceWriter {
   }
 
  private:
-  /// The constant parts of the lines for events of one kind.
-  struct Parts {
-    std::string head;  ///< from the name to the thread
-    std::string a, b;  ///< `, "name": ` of the event's two numbers; empty: not written
-  };
-
-  void prepare(EventKind kind) {
-    Parts& p = parts_[static_cast<std::size_t>(kind)];
-    p.head = "\",\"cat\":\"" + std::string(place_of(kind).category) + "\",\"ph\":\"X\",\"pid\":1,\"tid\":";
-    const auto [a, b] = fields_of(kind);
-    if (!a.empty()) p.a = ",\"" + std::string(a) + "\":";
-    if (!b.empty()) p.b = ",\"" + std::string(b) + "\":";
-  }
-
   /// Finds the ends of the phases and passes by their first events.
   void find_ends() {
     for (EventId i = 0; i < t_.events.size(); ++i) {
@@ -294,15 +271,16 @@ class TraceWriter {
   void write_event(EventId i) {
     const Event& e = t_.events[i];
     // Each event is a complete slice ("X") with its number and fields as arguments.
-    const Parts& parts = parts_[static_cast<std::size_t>(e.kind)];
     out_.raw(",\n{\"name\":\"");
     write_name(e, i);
-    put(parts.head, thread_of(e), ",\"ts\":");
+    put("\",\"cat\":\"", place_of(e.kind).category, "\",\"ph\":\"X\",\"pid\":1,\"tid\":", thread_of(e),
+        ",\"ts\":");
     write_time(begin_of(i));
     out_.raw(",\"dur\":");
     write_time(duration_of(i));
     put(",\"args\":{\"event\":", i);
-    write_fields(e, parts);
+    Fields fields{*this};
+    event_fields(fields, e);
     if (wall()) put(",\"ns\":", t_.wall_ns[i]);
     out_.raw("}}");
     // Then the records attached to it: arrows, counters, convergence curves.
@@ -333,110 +311,36 @@ class TraceWriter {
         p.regions == 1 ? " region, " : " regions, ", p.faces_before, " to ", p.faces_after, " faces");
   }
 
-  void write_fields(const Event& e, const Parts& parts) {
-    if (e.kind == EventKind::refine || e.kind == EventKind::coarsen)
-      out_.raw(e.side == Side::a ? ",\"side\":\"A\"" : ",\"side\":\"B\"");
-    // The order of the fields is fixed, so that equal traces give equal files.
-    if (e.kind == EventKind::contact) return write_contact(e, parts);
-    if (!parts.a.empty()) {
-      out_.raw(parts.a);
-      if (e.kind == EventKind::result)
-        out_.string(name_of(static_cast<Relation>(e.a)));
-      else if (e.kind == EventKind::begin || e.kind == EventKind::end)
-        out_.string(name_of(e.phase()));
-      else
-        put(e.a);
+  /// Writes the fields of an event. Their order is fixed, so that equal traces give equal files.
+  struct Fields {
+    TraceWriter& w;
+
+    static bool has(std::string_view, bool present) { return present; }
+    void number(std::string_view name, std::uint64_t value) { w.write_number(name, value); }
+    template <class Enum>
+    void word(std::string_view name, Enum value) {
+      w.write_word(name, name_of(value));
     }
-    if (!parts.b.empty()) put(parts.b, e.b);
-    if (e.kind == EventKind::face_test) {
-      write_meet(e.meet);
-      write_number("depth of A", e.face_test().depth_a);
-      write_number("depth of B", e.face_test().depth_b);
-      if (e.tested_by() != TestedBy::unreported) write_word("decided by", name_of(e.tested_by()));
+    void flag(std::string_view name, bool value) {
+      if (value) w.put(",\"", name, "\":true");
     }
-    // From here on, fields that depend on the kind of the event and on the detail of the trace.
-    if (e.kind == EventKind::node_pair) return write_node_pair(e);
-    if (e.kind == EventKind::plane_test) write_word("plane of", name_of(e.side));
-    if (e.kind == EventKind::pass || e.kind == EventKind::cap) return write_built(e);
-    if (e.kind == EventKind::patch) return write_patch(e);
-    if (e.kind == EventKind::pass_end && e.pass_end().given_up) out_.raw(",\"given up\":true");
-    if (e.kind == EventKind::point) {
-      write_word("of", name_of(e.side));
-      write_word("where", name_of(e.where()));
+    void real(std::string_view name, std::uint32_t bits) {
+      w.put(",\"", name, "\":");
+      w.out_.number(std::bit_cast<float>(bits));
     }
-    if (e.kind == EventKind::begin && walks_trees(e.phase())) {
-      write_number("level of A", e.phase_begin().walked_a);
-      write_number("level of B", e.phase_begin().walked_b);
+    void simplex(Side side, std::string_view name, std::uint32_t simplex) {
+      const bool is_real = simplex < w.t_.header.bodies[static_cast<std::size_t>(side)].real_simplices;
+      w.write_number(is_real ? name : pseudo_simplex(side), simplex);
     }
-    // The size of the wrapper after the event; not every event has one.
-    if (e.boundary != kNull) write_number("wrapper faces", e.boundary);
-    write_cause(e.cause);
-  }
+    void vertices(const Event& e) {
+      std::string_view before = ",\"vertices\":[";
+      for (const VertexId v : w.t_.vertices_of(e)) w.put(std::exchange(before, ","), v.value());
+      if (before == ",") w.out_.raw("]");
+    }
+  };
 
   void write_word(std::string_view name, std::string_view word) { put(",\"", name, "\":", Quoted{word}); }
   void write_number(std::string_view name, std::uint64_t number) { put(",\"", name, "\":", number); }
-
-  void write_patch(const Event& e) {
-    write_number("interior vertices", e.patch().interior);
-    if (const std::span<const VertexId> vertices = t_.vertices_of(e); !vertices.empty()) {
-      std::string_view before = ",\"vertices\":[";
-      for (const VertexId v : vertices) put(std::exchange(before, ","), v.value());
-      out_.raw("]");
-    }
-    write_cause(e.cause);
-  }
-
-  void write_node_pair(const Event& e) {
-    const auto [a, b, work, end, pairs_above, engine_axis] = e.node_pair();
-    write_word("step", name_of(end.step));
-    write_number("box tests", work.box_tests);
-    write_number("boxes that meet", work.met);
-    if (end.step == NodeStep::leaves) {
-      write_number("parted by planes", work.rejected);  // language: keep
-      write_number("certain", work.certain);
-    }
-    if (engine_axis > 0)
-      write_number("axis", engine_axis - 1u);
-    else if (work.met == 0)
-      write_word(end.apart ? "apart along" : "overlap least along", name_of(end.axis));
-    write_number("pairs above", pairs_above);
-    write_cause(e.cause);
-  }
-
-  /// Writes the limits of a pass, or the verdict on a cap.
-  void write_built(const Event& e) {
-    if (e.kind == EventKind::pass)
-      write_word("stage", name_of(e.stage()));
-    else
-      write_word("verdict", name_of(e.verdict()));
-    if (e.kind == EventKind::cap && e.cap().careful) out_.raw(",\"careful\":true");
-    if (e.kind == EventKind::pass ? e.off() > 0 : e.boundary != kNull) {
-      out_.raw(e.kind == EventKind::pass ? ",\"distance allowed\":" : ",\"distance\":");
-      out_.number(e.off());  // a float
-    }
-    write_cause(e.cause);
-  }
-
-  void write_contact(const Event& e, const Parts& parts) {
-    write_simplex(Side::a, parts.a, e.simplex(Side::a));
-    write_simplex(Side::b, parts.b, e.simplex(Side::b));
-    write_meet(e.meet);
-    write_cause(e.cause);
-  }
-
-  /// Writes a simplex of the answer; `name` is the name of a real one.
-  void write_simplex(Side side, const std::string& name, SimplexId simplex) {
-    if (simplex < t_.header.bodies[static_cast<std::size_t>(side)].real_simplices)
-      put(name, simplex.value());
-    else
-      write_number(pseudo_simplex(side), simplex.value());
-  }
-
-  void write_meet(exact::Meet meet) { write_word("meet", name_of(meet)); }
-
-  void write_cause(EventId cause) {
-    if (cause != kNull) write_number("cause", cause);
-  }
 
   /// Writes one end of the arrow to an event from its cause.
   void write_flow(std::string_view phase, EventId effect, EventId at) {
@@ -633,7 +537,6 @@ class TraceWriter {
   std::unordered_map<EventId, EventId> ends_;        ///< the end of each phase or pass, by its beginning
   std::vector<std::pair<EventId, EventId>> arrows_;  ///< from, to; ascending
   std::size_t next_arrow_ = 0;
-  std::array<Parts, kEventKinds> parts_;
   std::array<std::uint32_t, 2> faces_{};
   std::unordered_map<EventId, PassSummary> passes_;  ///< by their first event
   std::uint32_t tests_ = 0, refinements_ = 0, contacts_ = 0, regions_ = 0;
