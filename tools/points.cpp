@@ -2,15 +2,8 @@
 #include <memory>
 #include <span>
 
-#include "render/pictures/answer_picture.hpp"
-#include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/io/poses.hpp"
-#include "tools/commands.hpp"
-#include "tools/options.hpp"
 #include "tools/pose_lines.hpp"
-#include "tools/terminal.hpp"
 #include <lrbscope/point_distance.hpp>
-#include <lrbscope/trace/json_write.hpp>
 
 namespace lrb::cli {
 namespace {

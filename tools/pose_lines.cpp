@@ -25,13 +25,6 @@ void add_posed_files(App& app, PosedFiles& files) {
   app.add_option("--poses", files.poses, io::kPoseFileHelp + std::string(" [B stays in place]"));
 }
 
-std::array<bodies::LoadedBody, 2> load_noted(const std::string& a, const std::string& b,
-                                             bodies::Corners corners, const Globals& globals) {
-  std::array<bodies::LoadedBody, 2> out = bodies::load_faces_of_two(a, b, corners);
-  for (const bodies::LoadedBody& body : out) note(globals, body.notes);
-  return out;
-}
-
 std::string picture_name(const std::string& path, std::size_t pose, std::size_t poses) {
   if (poses == 1) return path;
   const std::filesystem::path p(path);

@@ -49,12 +49,9 @@ double median_us(std::uint32_t repeat, const Query& run_query) {
   return us[median];
 }
 
-/// The poses of a command, and the location of each in its file.
-struct PoseLines {
-  /// Reads a file of poses. Without one, B stays in place.
-  explicit PoseLines(const std::string& path);
-
-  /// Calls run_query(), and prefixes the message of an InputError with the location of the pose.
+/// Calls a function for a line of a file.
+struct Located {
+  /// Calls run_query(), and prefixes the message of an InputError with the location.
   template <class Query>
   auto at(std::size_t i, const Query& run_query) const {
     try {
@@ -64,11 +61,22 @@ struct PoseLines {
     }
   }
 
+  std::vector<std::string> places;  ///< in the file
+};
+
+/// The poses of a command.
+struct PoseLines : Located {
+  static constexpr const char* kName = "pose";
+  std::vector<Pose> poses;
+
+  /// Reads a file of poses. Without one, B stays in place.
+  explicit PoseLines(const std::string& path);
   /// Throws InputError unless the bodies can be queried at every pose. Called before anything is printed.
   void check(const LrbRep& a, const LrbRep& b) const;
-
-  std::vector<Pose> poses;
-  std::vector<std::string> places;
+  std::size_t size() const { return poses.size(); }
+  run::PosedBodies bodies(std::size_t i, const LrbRep& a, const LrbRep& b) const {
+    return {a, {}, b, poses[i]};
+  }
 };
 
 /// The files of a command about A and poses of B.
@@ -78,9 +86,6 @@ struct PosedFiles {
 };
 /// Adds A, B and --poses.
 void add_posed_files(App& app, PosedFiles& files);
-/// Loads both bodies without regions, and prints their notes.
-std::array<bodies::LoadedBody, 2> load_noted(const std::string& a, const std::string& b,
-                                             bodies::Corners corners, const Globals& globals);
 
 /// Returns a picture's file: `path`, or with the number of the pose before its extension if there are several
 /// poses.
@@ -113,35 +118,49 @@ void add_draw_options(App& app, DrawOptions& options, const std::string& picture
 
 // Commands that answer a question for each pose of B, a line of JSON each.
 
-/// The options of such a command. A command Q derives from it, and has
+/// The options of such a command, and defaults of its functions. A command Q derives from it, and has
 ///   kName, kHelp, add_options(app): its own options;
 ///   check() or check(a): throws InputError for an invalid request;
 ///   ask(bodies, workspace, watched): the answer. watched: keeps the history of its bounds for the chart;
 ///   write(w, answer, bodies, us): writes the members of its line; us(w) writes the time at its place;
-///   picture(answer, bodies, look);
+///   picture(answer, bodies, look), of an answer with has_picture(answer);
 /// and optionally
+///   Lines: other cases than poses, kThreads: of the workspace, 0 for all cores, load(globals): both bodies,
+///   prepare(a, b, globals): called before the first question; complete(answer, bodies, workspace): called
+///   after the answer to be written;
 ///   chart(): of the history, or nullopt; show(pose, answer): true if its line is not to be printed;
 ///   keep(answer): called at the end of a pose; end(): called at the end.
 struct PosedQuestion : PosedFiles {
+  using Lines = PoseLines;
+  static constexpr unsigned kThreads = 1;
   std::uint32_t repeat = 0;
   DrawOptions draw;
+
+  void add_files(App& app) { add_posed_files(app, *this); }
+  std::array<bodies::LoadedBody, 2> load(const Globals&) const {
+    return bodies::load_faces_of_two(a, b, corners);
+  }
+  static bool has_picture(const auto&) { return true; }
 };
 
 template <class Q>
-int answer_each_pose(Q& q, const Globals& globals) {
-  const PoseLines list(q.poses);
+int answer_each(Q& q, const Globals& globals) {
+  typename Q::Lines list(q.poses);
   if constexpr (requires { q.check(); }) q.check();
   const render::Look look = look_of(q.draw);
-  const auto both = bodies::load_faces_of_two(q.a, q.b, q.corners);
-  if constexpr (requires { q.check(both[0].rep); }) q.check(both[0].rep);
+  const auto both = q.load(globals);
+  const LrbRep &a = both[0].rep, &b = both[1].rep;
+  if constexpr (requires { q.check(a); }) q.check(a);
   for (const bodies::LoadedBody& body : both) note(globals, body.notes);
-  list.check(both[0].rep, both[1].rep);
-  Workspace workspace;
-  Progress progress(Q::kName, list.poses.size(), globals.quiet);
-  for (std::size_t i = 0; i < list.poses.size(); ++i) {
-    const run::PosedBodies bodies{both[0].rep, Pose{}, both[1].rep, list.poses[i]};
+  list.check(a, b);
+  if constexpr (requires { q.prepare(a, b, globals); }) q.prepare(a, b, globals);
+  Workspace workspace(Q::kThreads);
+  Progress progress(Q::kName, list.size(), globals.quiet);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto bodies = list.bodies(i, a, b);
     auto answer =
         list.at(i, [&]() -> decltype(auto) { return q.ask(bodies, workspace, q.draw.is_watched()); });
+    if constexpr (requires { q.complete(answer, bodies, workspace); }) q.complete(answer, bodies, workspace);
     const auto us = [&](trace::JsonWriter& w) {
       if (q.repeat > 0) w.member("us", median_us(q.repeat, [&] { q.ask(bodies, workspace, false); }));
     };
@@ -149,12 +168,13 @@ int answer_each_pose(Q& q, const Globals& globals) {
     if constexpr (requires { q.show(i, answer); }) is_shown = q.show(i, answer);
     if (!is_shown)
       print(trace::json_text(trace::JsonWriter::kCompact, [&](trace::JsonWriter& w) {
-        w.begin_object().member("pose", std::uint64_t{i});
+        w.begin_object().member(Q::Lines::kName, std::uint64_t{i});
         q.write(w, answer, bodies, us);
         w.end_object();
       }));
-    const auto file = [&](const std::string& name) { return picture_name(name, i, list.poses.size()); };
-    if (!q.draw.picture.empty()) run::write_picture(q.picture(answer, bodies, look), file(q.draw.picture));
+    const auto file = [&](const std::string& name) { return picture_name(name, i, list.size()); };
+    if (!q.draw.picture.empty() && q.has_picture(answer))
+      run::write_picture(q.picture(answer, bodies, look), file(q.draw.picture));
     if constexpr (requires { q.chart(); })
       if (!q.draw.chart.empty())
         if (const auto chart = q.chart()) report::draw(*chart, file(q.draw.chart));
@@ -169,11 +189,11 @@ template <class Q>
 Command add_question(App& root, const Globals& globals) {
   App* app = root.add_subcommand(Q::kName, Q::kHelp);
   const auto q = std::make_shared<Q>();
-  add_posed_files(*app, *q);
+  q->add_files(*app);
   q->add_options(*app);
-  add_repeat_option(*app, q->repeat, "pose");
+  add_repeat_option(*app, q->repeat, Q::Lines::kName);
   add_join_option(*app, q->corners);
-  return {app, [q, &globals] { return answer_each_pose(*q, globals); }};
+  return {app, [q, &globals] { return answer_each(*q, globals); }};
 }
 
 }  // namespace lrb::cli

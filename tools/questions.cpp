@@ -42,7 +42,7 @@ struct DistanceQuestion : PosedQuestion {
   void check() const { check_request(request); }
 
   DistanceResult ask(const PosedBodies& p, Workspace& workspace, bool watched) {
-    reported = {};
+    if (watched) reported = {};  // kept for the chart while the query is timed
     return distance(p.a, p.pose_a, p.b, p.pose_b, request, workspace, watched ? &reported : nullptr).value();
   }
 
@@ -230,7 +230,7 @@ struct ClashQuestion : PosedQuestion {
   }
 
   ClashResult ask(const PosedBodies& p, Workspace& workspace, bool watched) {
-    reported = {};
+    if (watched) reported = {};  // kept for the chart while the query is timed
     return clash(p.a, p.pose_a, p.b, p.pose_b, request, workspace, watched ? &reported : nullptr).value();
   }
 
