@@ -126,8 +126,9 @@ py::object triangles_of(const py::object& self) {
 
 py::array_t<std::uint32_t> face_of_triangle(const Body& body) {
   const LrbRep& rep = body.rep();
-  return column(std::views::iota(0u, rep.real_simplex_count()),
-                [&](std::uint32_t s) { return rep.face_of_simplex(SimplexId(s)); });
+  std::vector<FaceId> faces;
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) faces.push_back(rep.face_of_simplex(s));
+  return column(faces, std::identity());
 }
 
 py::object figures(const Body& body) {
