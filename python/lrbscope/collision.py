@@ -355,8 +355,7 @@ class CollisionManager:
             return math.inf, (None, None), None
         a, b, nearest = found
         names, distance = names_of(a, b), nearest.solids[1]
-        points = dict(zip(names, nearest.points))
-        return distance, names, DistanceData(names, nearest.faces, distance=distance, _points=points)
+        return distance, names, DistanceData(names, nearest.faces, distance=distance, _points=dict(zip(names, nearest.points)))
 
 
 def scene_to_collision(scene: Any) -> tuple[CollisionManager, dict[Any, Body]]:
