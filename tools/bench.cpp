@@ -98,7 +98,7 @@ int run_percentiles(const BenchOptions& o, const Globals& globals) {
 
 int run_bench(const BenchOptions& o, const Globals& globals) {
   if (!o.percentiles.empty()) return run_percentiles(o, globals);
-  std::vector<workers::WorkerMethod> methods = workers::find_all_methods();
+  std::vector<workers::WorkerMethod> methods = workers::find_methods();
   std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
   methods = chosen_methods(methods, o.methods);
   std::vector<bench::BodyPair> pairs;
@@ -130,9 +130,7 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
         bar.set(done, what);
       });
   bar.finish();
-  std::vector<methods::MethodInfo> infos;
-  for (const workers::WorkerMethod& m : methods) infos.push_back(m.info);
-  const bench::PeerTable table = bench::peer_table(survey_options.sets, infos, records);
+  const bench::PeerTable table = bench::peer_table(survey_options.sets, workers::infos_of(methods), records);
   const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n\n";
   print(head + bench::in_brief(table));
   const report::Table cells = bench::table_of_cells(table);

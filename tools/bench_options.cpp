@@ -52,7 +52,7 @@ Contest make_contest(const std::string& a, const std::string& b, std::vector<std
     return n != "ours" && !n.starts_with(kCommand);
   });
   const std::vector<workers::WorkerMethod> known =
-      others ? workers::find_all_methods() : std::vector<workers::WorkerMethod>{};
+      others ? workers::find_methods() : std::vector<workers::WorkerMethod>{};
   auto bodies = std::make_unique<std::array<bodies::LoadedBody, 2>>(bodies::load_faces_of_two(a, b));
   for (std::size_t i = 0; i < 2; ++i)
     if ((*bodies)[i].rep.dim() != 3)

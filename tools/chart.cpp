@@ -75,9 +75,7 @@ void measure(const ChartOptions& o, const std::vector<workers::WorkerMethod>& me
 void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods,
           const report::Folder& folder, const Globals& globals) {
   const std::vector<bench::DataSet> sets = read_sets(o.folder, o.set.quantity);
-  std::vector<methods::MethodInfo> infos;
-  std::transform(methods.begin(), methods.end(), std::back_inserter(infos),
-                 [](const workers::WorkerMethod& m) { return m.info; });
+  const std::vector<methods::MethodInfo> infos = workers::infos_of(methods);
   const std::vector<bench::Record> records = bench::read_records(o.folder + "/records.jsonl");
   const std::vector<bench::Missing> missing = bench::missing_answers(o.folder, sets, records);
   const std::string unfinished = bench::missing_text(missing);
@@ -121,7 +119,7 @@ int run_chart(ChartOptions o, bool measures, bool draws, const Globals& globals)
         figure::parse_length(o.width, "--width", 20 * figure::kPointsPerMm, kWidest) / figure::kPointsPerMm;
   if (o.folder.empty()) o.folder = pairs ? "out/chart" : "out/chart-" + std::string(name_of(quantity));
   const std::vector<workers::WorkerMethod> methods =
-      chosen_methods(pairs ? workers::find_all_methods() : workers::find_number_methods(quantity), o.methods);
+      chosen_methods(workers::find_methods(quantity), o.methods);
   const report::Folder folder(o.folder);
   if (measures) measure(o, methods, globals);
   if (draws) draw(o, methods, folder, globals);

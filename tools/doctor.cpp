@@ -87,7 +87,7 @@ std::vector<render::Finding> check_engines() {
   add_program("lrbscope-methods", "bench, chart and stability");
   add_program("lrbscope-quantities", "chart --quantity and stability --quantity");
   try {
-    for (const workers::WorkerMethod& m : workers::find_all_methods()) {
+    for (const workers::WorkerMethod& m : workers::find_methods()) {
       const bool is_own = m.info.name.starts_with("ours");
       if (!is_own)
         out.push_back({m.info.present ? Level::ok : Level::warning, "method " + m.info.name,

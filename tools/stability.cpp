@@ -100,14 +100,6 @@ OneCase one_case(const StabilityOptions& o, const std::vector<FamilyRow>& famili
   return one;
 }
 
-stability::Record with_origin(stability::Record r, const stability::Record& origin) {
-  r.family = origin.family;
-  r.difficulty = origin.difficulty;
-  r.case_index = origin.case_index;
-  r.seed = origin.seed;
-  return r;
-}
-
 bool is_right(const stability::Record& r) {
   return r.outcome == stability::Outcome::right || r.outcome == stability::Outcome::rejected;
 }
@@ -118,15 +110,15 @@ int replay_one(const StabilityOptions& o, const std::vector<workers::WorkerMetho
   bool all_right = true;
   std::vector<Replay> replays;
   for (const workers::WorkerMethod& m : methods) {
-    if (!m.column.present) {
-      print(m.column.name + ": absent. " + m.column.remark + "\n");
+    if (!m.info.present) {
+      print(m.info.name + ": absent. " + m.info.remark + "\n");
       continue;
     }
     if (o.saved.empty()) {
-      replays.push_back(replay(m, one.origin.family, *o.difficulty, *o.only, o.seed, o.timeout, o.quantity));
+      replays.push_back(replay(m, one.origin, o.timeout, o.quantity));
     } else {
       replays.push_back(CaseWorker(m, o.timeout).ask(meshes_of(one.bodies)));
-      replays.back().record = with_origin(replays.back().record, one.origin);
+      replays.back().record = with_case(replays.back().record, one.origin);
     }
     const Replay& r = replays.back();
     print(describe(r, o.quantity, o.pairs));
@@ -165,9 +157,9 @@ int minimise_one(const StabilityOptions& o, const std::vector<workers::WorkerMet
                            start, [&](const CaseMeshes& c) { return worker.ask(c); }, options),
                        method, globals.command_line};
   bar.finish();
-  found.found.answer.record = with_origin(found.found.answer.record, one.origin);
+  found.found.answer.record = with_case(found.found.answer.record, one.origin);
   if (failure_of(case_of(found.found.meshes), options.confirm(found.found.meshes)) != found.found.kind)
-    throw EnvironmentError("method '" + method.column.name +
+    throw EnvironmentError("method '" + method.info.name +
                            "': gives different answers to the same case, and none to write down");
   print(describe(found.found.answer, o.quantity, o.pairs));
   print("  before: " + size_text(found.found.before, start.a.dim) +
@@ -198,9 +190,7 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
       });
   bar.finish();
   io::write_text(o.folder + "/records.jsonl", to_lines(records));
-  std::vector<workers::MethodColumn> columns;
-  for (const workers::WorkerMethod& m : methods) columns.push_back(m.column);
-  Grid grid = count_grid(std::move(columns), families, records);
+  Grid grid = count_grid(workers::infos_of(methods), families, records);
   grid.quantity = o.quantity;
   grid.command = globals.command_line;
   grid.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -208,14 +198,11 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
 }
 
 std::string command_of(const stability::Record& r, Quantity quantity) {
-  if (quantity != Quantity::pairs)
-    return "lrbscope stability --quantity " + std::string(name_of(quantity)) + " --family " + r.family +
-           " --method " + r.method + " --difficulty " + std::to_string(r.difficulty) + " --only " +
-           std::to_string(r.case_index) + " --seed " + std::to_string(r.seed) +
-           (methods::is_list(quantity) ? " --pairs" : "");
-  return "lrbscope stability --family " + r.family + " --method " + r.method + " --difficulty " +
+  const std::string of =
+      quantity == Quantity::pairs ? "" : "--quantity " + std::string(name_of(quantity)) + " ";
+  return "lrbscope stability " + of + "--family " + r.family + " --method " + r.method + " --difficulty " +
          std::to_string(r.difficulty) + " --only " + std::to_string(r.case_index) + " --seed " +
-         std::to_string(r.seed) + " --pairs";
+         std::to_string(r.seed) + (methods::is_list(quantity) ? " --pairs" : "");
 }
 
 /// Writes the page and its pictures, for which the worst cases are rerun.
@@ -227,9 +214,9 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
       grid, o.folder,
       [&](const stability::Record& r) {
         const auto method = std::find_if(methods.begin(), methods.end(), [&](const workers::WorkerMethod& m) {
-          return m.column.name == r.method;
+          return m.info.name == r.method;
         });
-        return replay(*method, r.family, r.difficulty, r.case_index, r.seed, o.timeout, o.quantity);
+        return replay(*method, r, o.timeout, o.quantity);
       },
       [&](std::size_t done, std::size_t total) {
         bar.set_total(total);
@@ -254,8 +241,7 @@ bool ours_failed(const Grid& grid, const std::vector<workers::WorkerMethod>& met
 
 /// Returns the methods that answer with the requested quantity.
 std::vector<workers::WorkerMethod> methods_for(Quantity quantity) {
-  if (quantity == Quantity::pairs) return workers::find_methods();
-  std::vector<workers::WorkerMethod> methods = workers::find_number_methods(quantity);
+  std::vector<workers::WorkerMethod> methods = workers::find_methods(quantity);
   std::erase_if(methods,
                 [](const workers::WorkerMethod& m) { return !m.info.has(methods::Trait::hard_cases); });
   return methods;

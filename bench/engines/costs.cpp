@@ -270,7 +270,7 @@ std::string scenario_text(const std::string& purpose, std::span<const Pose> pose
                       {"pairs", exact.pairs.size()},
                       {"fingerprint", trace::to_hex(fingerprint(exact.pairs))},
                       {"max_tests", exact.counters.box_tests + exact.counters.face_tests}});
-    list.push_back(workers::pose_json(pose));
+    list.push_back(io::rows_of(pose));
   }
   const ordered_json value = {{"name", "worst"},
                               {"purpose", purpose},

@@ -117,7 +117,7 @@ class WorkerEngine : public Engine {
 
   std::string question(const Pose& pose, Wanted wanted) const {
     nlohmann::json out = bodies_;
-    out["b"] = workers::pose_json(pose);
+    out["b"] = io::rows_of(pose);
     out["tests"] = wanted.tests;
     out["list"] = wanted.list;
     return out.dump();
@@ -188,11 +188,33 @@ class CommandEngine : public Engine {
     }
     requested.write(text);
     run(requested.path(), capture.path(), wanted.tests || wanted.list || wanted.waste);
-    return read(capture.bytes(), poses, wanted);
+    return read(read_file(capture.path()), poses, wanted);
   }
 
-  std::vector<EngineAnswer> read(const std::vector<std::byte>& bytes, std::span<const Pose> poses,
-                                 Wanted wanted) const;
+  std::vector<EngineAnswer> read(const std::string& bytes, std::span<const Pose> poses, Wanted wanted) const {
+    if (bytes.empty())
+      complain("expected a capture in $LRBCAP_OUT, found nothing; was it compiled with -DLRBCAP_ENABLE?");
+    const capture::Capture c = [&] {
+      try {
+        return capture::parse_capture(std::as_bytes(std::span(bytes)), "its capture");
+      } catch (const InputError& e) {
+        complain(e.what());
+      }
+    }();
+    if (c.queries.size() != poses.size())
+      complain("expected " + std::to_string(poses.size()) + " queries, one for each pose, found " +
+               std::to_string(c.queries.size()));
+    for (std::size_t i = 0; i < poses.size(); ++i) check(c.queries[i], poses[i]);
+    std::vector<EngineAnswer> out;
+    for (const capture::Query& q : c.queries) out.push_back(answer_of(q, c.names, wanted.list));
+    if (!wanted.waste) return out;
+    const profile::Check checked = profile::check(c, {.precision = {}, .split = false});
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const profile::Prices& prices = checked.queries[i].prices;
+      out[i].wasted = prices.wasted() + prices.triangle_tests_for_nothing;
+    }
+    return out;
+  }
 
   /// Runs the program to its end.
   void run(const std::string& poses, const std::string& capture, bool events) const {
@@ -231,41 +253,11 @@ class CommandEngine : public Engine {
   std::chrono::duration<double> limit_;
 };
 
-std::vector<EngineAnswer> CommandEngine::read(const std::vector<std::byte>& bytes,
-                                              std::span<const Pose> poses, Wanted wanted) const {
-  if (bytes.empty())
-    complain("expected a capture in $LRBCAP_OUT, found nothing; was it compiled with -DLRBCAP_ENABLE?");
-  const capture::Capture c = [&] {
-    try {
-      return capture::parse_capture(bytes, "its capture");
-    } catch (const InputError& e) {
-      complain(e.what());
-    }
-  }();
-  if (c.queries.size() != poses.size())
-    complain("expected " + std::to_string(poses.size()) + " queries, one for each pose, found " +
-             std::to_string(c.queries.size()));
-  for (std::size_t i = 0; i < poses.size(); ++i) check(c.queries[i], poses[i]);
-  return answers_of(c, wanted);
-}
-
 }  // namespace
 
 std::unique_ptr<Engine> command_engine(const std::string& command, const std::string& a, const std::string& b,
                                        std::chrono::duration<double> limit) {
   return std::make_unique<CommandEngine>(command, a, b, limit);
-}
-
-std::vector<EngineAnswer> answers_of(const capture::Capture& capture, Wanted wanted) {
-  std::vector<EngineAnswer> out;
-  for (const capture::Query& q : capture.queries) out.push_back(answer_of(q, capture.names, wanted.list));
-  if (!wanted.waste) return out;
-  const profile::Check checked = profile::check(capture, {.precision = {}, .split = false});
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const profile::Prices& prices = checked.queries[i].prices;
-    out[i].wasted = prices.wasted() + prices.triangle_tests_for_nothing;
-  }
-  return out;
 }
 
 EngineAnswer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list) {

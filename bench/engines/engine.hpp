@@ -81,8 +81,6 @@ std::unique_ptr<Engine> command_engine(const std::string& command, const std::st
                                        std::chrono::duration<double> limit);
 inline constexpr std::size_t kPosesAtOnce = 256;
 
-/// Returns the answers of the queries of a capture.
-std::vector<EngineAnswer> answers_of(const capture::Capture& capture, Wanted wanted);
 /// Returns the answer of a captured query, without waste. `names`: of phases.
 EngineAnswer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list);
 

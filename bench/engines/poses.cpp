@@ -28,6 +28,16 @@ double normal(Random& random) {
   return sum;
 }
 
+/// Returns a placement nearby: each coordinate of the quaternion changes by about `sigma`, that of the offset
+/// by half as much, normally distributed (the sum of 12 uniform numbers, cut off at 6 sigma).
+Placement placement_near(const Placement& at, double sigma, Random& random) {
+  Placement out = at;
+  for (int i = 0; i < 4; ++i) out.turn.coeffs()[i] += sigma * normal(random);
+  out.turn.normalize();
+  for (int i = 0; i < 3; ++i) out.offset[i] += sigma / 2 * normal(random);
+  return out;
+}
+
 constexpr double kFirstSigma = 0.1, kGrow = 1.5, kShrink = 0.9, kLeastSigma = 1e-5, kMaxSigma = 0.5;
 constexpr std::size_t kBlock = 256;  // random trials asked together
 
@@ -58,14 +68,6 @@ Placement random_placement(Random& random) {
   out.turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   const Eigen::Vector3d direction = in_ball<3>(random).normalized();
   out.offset = random.in(0, 1) * direction;
-  return out;
-}
-
-Placement placement_near(const Placement& at, double sigma, Random& random) {
-  Placement out = at;
-  for (int i = 0; i < 4; ++i) out.turn.coeffs()[i] += sigma * normal(random);
-  out.turn.normalize();
-  for (int i = 0; i < 3; ++i) out.offset[i] += sigma / 2 * normal(random);
   return out;
 }
 

@@ -46,9 +46,6 @@ class PoseSpace {
 /// Returns a uniformly distributed rotation, and an offset with uniformly distributed direction and length in
 /// [0, 1).
 Placement random_placement(Random& random);
-/// Returns a placement nearby: each coordinate of the quaternion changes by about `sigma`, that of the offset
-/// by half as much, normally distributed (the sum of 12 uniform numbers, cut off at 6 sigma).
-Placement placement_near(const Placement& at, double sigma, Random& random);
 /// Returns true if two placements differ by less than `angle` (radians) and by less than `distance`.
 bool alike(const Placement& p, const Placement& q, double angle = 0.01, double distance = 0.01);
 

@@ -1,33 +1,27 @@
 // Bullet's GImpact meshes in a collision world: contactPairTest() calls back for each contact point, with its
 // two triangles. Compiled for the precision of the linked library.
 #include "bench/methods/method.hpp"
-
-namespace lrb::methods {
-namespace {
-const MethodStyle kStyle = {"Bullet", "#cc79a7", "rectRot"};
-#ifdef BT_USE_DOUBLE_PRECISION
-#define LRB_BULLET_METHODS bullet_double_methods
-constexpr int kRank = 100;
-#else
-#define LRB_BULLET_METHODS bullet_methods
-constexpr int kRank = 50;
-#endif
-}  // namespace
-}  // namespace lrb::methods
+#include "bench/methods/triangles.hpp"
 
 #ifdef LRB_HAS_BULLET
-
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
-
-#include "bench/methods/triangles.hpp"
-#include <lrbscope/error.hpp>
+#endif
 
 namespace lrb::methods {
 namespace {
 
-constexpr bool kSingle = sizeof(btScalar) == sizeof(float);
+class Bullet;
+#ifdef BT_USE_DOUBLE_PRECISION
+constexpr bool kSingle = false;
+#define LRB_BULLET_METHODS bullet_double_methods
+#else
+constexpr bool kSingle = true;
+#define LRB_BULLET_METHODS bullet_methods
+#endif
+
+#ifdef LRB_HAS_BULLET
 
 struct BulletBody : MethodBody {
   std::vector<btScalar> vertices;
@@ -113,41 +107,30 @@ class Bullet : public Method {
   btCollisionWorld world_;
 };
 
+#endif
+
 }  // namespace
 
 std::vector<MethodEntry> LRB_BULLET_METHODS() {
-  MethodInfo info;
-  info.rank = kRank;
-  info.style = kStyle;
-  info.name = kSingle ? "bullet" : "bullet-double";
-  info.title = "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." +
-               std::to_string(BT_BULLET_VERSION % 100) + ", GImpact, " + (kSingle ? "float" : "double");
-  info.traits.set(Trait::loose);
-  info.remark =
-      std::string(
-          "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; one pair per contact point. "
-          "It treats contact as penetration and therefore also lists triangles behind each other: these are "
-          "counted, but wrong only if the bodies are disjoint. ") +
-      (kSingle ? "Single precision, Bullet's default; cases beyond its range are skipped. "
-               : "Debian's build in double precision. ") +
-      "Does not look for bodies inside bodies; 3D only.";
-  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Bullet>(); }}};
+  std::string version;
+#ifdef LRB_HAS_BULLET
+  version = " " + std::to_string(BT_BULLET_VERSION / 100) + "." + std::to_string(BT_BULLET_VERSION % 100);
+#endif
+  const std::string precision =
+      kSingle ? "Single precision, Bullet's default; cases beyond its range are skipped. "
+              : "Debian's build in double precision. ";
+  return {entry_of<Bullet>(
+      {.name = kSingle ? "bullet" : "bullet-double",
+       .title = "Bullet" + version + ", GImpact, " + (kSingle ? "float" : "double"),
+       .remark =
+           "All pairs: contactPairTest() of two btGImpactMeshShapes with margin 0; one pair per contact point. It "
+           "treats contact as penetration and therefore also lists triangles behind each other: these are "
+           "counted, but wrong only if the bodies are disjoint. " +
+           precision + "Does not look for bodies inside bodies; 3D only.",
+       .traits = {Trait::hard_cases, Trait::loose},
+       .style = {"Bullet", "#cc79a7", "rectRot"},
+       .rank = kSingle ? 50 : 100},
+      "libbullet-dev")};
 }
 
 }  // namespace lrb::methods
-
-#else
-
-namespace lrb::methods {
-
-std::vector<MethodEntry> LRB_BULLET_METHODS() {
-#ifdef BT_USE_DOUBLE_PRECISION
-  return {absent("bullet-double", "Bullet, GImpact, double", "libbullet-dev", kRank, kStyle)};
-#else
-  return {absent("bullet", "Bullet, GImpact, float", "libbullet-dev", kRank, kStyle)};
-#endif
-}
-
-}  // namespace lrb::methods
-
-#endif

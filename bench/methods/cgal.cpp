@@ -1,20 +1,13 @@
 // CGAL, with its kernel of exact predicates and inexact constructions, as in its manual: the collision
 // detection of rigid triangle meshes, and the AABB tree queried with each triangle of the other body.
-#include "bench/methods/method.hpp"
-
-namespace lrb::methods {
-namespace {
-const MethodStyle kStyle = {"CGAL, yes or no", "#009e73", "triangle"};
-const MethodStyle kPairsStyle = {"CGAL, pairs", "#009e73", "triangle"};
-constexpr int kRank = 40;
-}  // namespace
-}  // namespace lrb::methods
-
-#ifdef LRB_HAS_CGAL
-
 #include <algorithm>
 #include <map>
 
+#include "bench/methods/method.hpp"
+#include "bench/methods/triangles.hpp"
+#include <lrbscope/error.hpp>
+
+#ifdef LRB_HAS_CGAL
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -22,12 +15,18 @@ constexpr int kRank = 40;
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Rigid_triangle_mesh_collision_detection.h>
 #include <CGAL/Surface_mesh.h>
-
-#include "bench/methods/triangles.hpp"
-#include <lrbscope/error.hpp>
+#define LRB_CGAL "CGAL " CGAL_VERSION_STR
+#else
+#define LRB_CGAL "CGAL"
+#endif
 
 namespace lrb::methods {
 namespace {
+
+class Rigid;
+class Pairs;
+
+#ifdef LRB_HAS_CGAL
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
@@ -167,51 +166,33 @@ class Pairs : public Method {
   }
 };
 
-MethodEntry rigid() {
-  MethodInfo info;
-  info.rank = kRank;
-  info.style = kStyle;
-  info.name = "cgal";
-  info.title = "CGAL " CGAL_VERSION_STR ", Rigid_triangle_mesh_collision_detection";
-  info.remark =
-      "Yes or no, and whether one body is inside the other: get_all_intersections_and_inclusions() of two "
-      "Surface_meshes, exact predicates. Lists no pairs; manifold meshes and 3D only. Judged by contact, "
-      "inside or separate.";
-  info.pairs = false;
-  info.says = Says::inside;
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Rigid>(); }};
-}
-
-MethodEntry pairs() {
-  MethodInfo info;
-  info.rank = kRank + 1;
-  info.style = kPairsStyle;
-  info.name = "cgal-pairs";
-  info.title = "CGAL " CGAL_VERSION_STR ", AABB_tree, triangle by triangle";
-  info.remark =
-      "All pairs: all_intersected_primitives() of B's tree for each triangle of A, exact predicates. CGAL "
-      "requires triangles of non-zero area. Does not look for bodies inside bodies; 3D only.";
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Pairs>(); }};
-}
+#endif
 
 }  // namespace
 
 std::vector<MethodEntry> cgal_methods() {
-  return {rigid(), pairs()};
-}
-
-}  // namespace lrb::methods
-
-#else
-
-namespace lrb::methods {
-
-std::vector<MethodEntry> cgal_methods() {
   return {
-      absent("cgal", "CGAL, Rigid_triangle_mesh_collision_detection", "libcgal-dev", kRank, kStyle),
-      absent("cgal-pairs", "CGAL, AABB_tree, triangle by triangle", "libcgal-dev", kRank + 1, kPairsStyle)};
+      entry_of<Rigid>(
+          {.name = "cgal",
+           .title = LRB_CGAL ", Rigid_triangle_mesh_collision_detection",
+           .remark =
+               "Yes or no, and whether one body is inside the other: get_all_intersections_and_inclusions() of two "
+               "Surface_meshes, exact predicates. Lists no pairs; manifold meshes and 3D only. Judged by contact, "
+               "inside or separate.",
+           .pairs = false,
+           .says = Says::inside,
+           .style = {"CGAL, yes or no", "#009e73", "triangle"},
+           .rank = 40},
+          "libcgal-dev"),
+      entry_of<Pairs>(
+          {.name = "cgal-pairs",
+           .title = LRB_CGAL ", AABB_tree, triangle by triangle",
+           .remark =
+               "All pairs: all_intersected_primitives() of B's tree for each triangle of A, exact predicates. CGAL "
+               "requires triangles of non-zero area. Does not look for bodies inside bodies; 3D only.",
+           .style = {"CGAL, pairs", "#009e73", "triangle"},
+           .rank = 41},
+          "libcgal-dev")};
 }
 
 }  // namespace lrb::methods
-
-#endif

@@ -2,23 +2,23 @@
 // overlapping leaves and tests the triangles, as in Embree's own example. Its boxes are in world coordinates,
 // so the tree of a moved body must be refitted or rebuilt before the query.
 #include "bench/methods/method.hpp"
-
-namespace lrb::methods {
-namespace {
-const MethodStyle kStyle = {"Embree", "#b58900", "rectRounded"};
-constexpr int kRank = 60;
-}  // namespace
-}  // namespace lrb::methods
-
-#ifdef LRB_HAS_EMBREE
-
-#include <embree3/rtcore.h>
-
 #include "bench/methods/triangles.hpp"
 #include <lrbscope/error.hpp>
 
+#ifdef LRB_HAS_EMBREE
+#include <embree3/rtcore.h>
+#define LRB_EMBREE "Embree " RTC_VERSION_STRING
+#else
+#define LRB_EMBREE "Embree"
+#endif
+
 namespace lrb::methods {
 namespace {
+
+template <bool kRebuilds>
+class Embree;
+
+#ifdef LRB_HAS_EMBREE
 
 class Device {
  public:
@@ -110,14 +110,14 @@ struct Candidates {
   }
 };
 
+template <bool kRebuilds>
 class Embree : public Method {
  public:
-  explicit Embree(RTCBuildQuality quality) : quality_(quality) {}
-
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
     Triangles t = triangles_of(rep);
     check_fits_float(t);
-    return std::make_unique<EmbreeBody>(device_, std::move(t), quality_);
+    return std::make_unique<EmbreeBody>(device_, std::move(t),
+                                        kRebuilds ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_REFIT);
   }
 
   MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
@@ -142,50 +142,30 @@ class Embree : public Method {
 
  private:
   std::shared_ptr<Device> device_ = std::make_shared<Device>();
-  RTCBuildQuality quality_;
 };
 
-MethodEntry entry(const char* name, const char* how, const char* remark, int rank,
-                  std::unique_ptr<Method> (*make)()) {
-  MethodInfo info;
-  info.rank = rank;
-  info.style = kStyle;
-  info.name = name;
-  info.title = std::string("Embree " RTC_VERSION_STRING ", rtcCollide, ") + how;
-  info.remark =
-      std::string(
-          "All pairs: rtcCollide() of two scenes of triangles' boxes, the triangles tested in the callback in "
-          "double with an epsilon; it cannot stop at the first pair. Body B moves at every query, ") +
-      remark;
-  info.traits.set(Trait::hard_cases, false);
-  return {info, make};
+#endif
+
+template <bool kRebuilds>
+MethodEntry entry(const char* name) {
+  const std::string how = kRebuilds ? "rebuilt by the fastest builder" : "refitted";
+  return entry_of<Embree<kRebuilds>>(
+      {.name = name,
+       .title = std::string(LRB_EMBREE ", rtcCollide, ") + (kRebuilds ? "rebuilt" : "refitted"),
+       .remark =
+           "All pairs: rtcCollide() of two scenes of triangles' boxes, the triangles tested in the callback in double "
+           "with an epsilon; it cannot stop at the first pair. Body B moves at every query, and its tree is " +
+           how + ", which is part of the time.",
+       .traits = {},
+       .style = {"Embree", "#b58900", "rectRounded"},
+       .rank = kRebuilds ? 61 : 60},
+      "libembree-dev");
 }
 
 }  // namespace
 
 std::vector<MethodEntry> embree_methods() {
-  return {
-      entry("embree", "refitted", "and its tree is refitted, which is part of the time.", kRank,
-            []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_REFIT); }),
-      entry("embree-rebuilt", "rebuilt",
-            "and its tree is rebuilt by the fastest builder, which is part of the time.", kRank + 1,
-            []() -> std::unique_ptr<Method> { return std::make_unique<Embree>(RTC_BUILD_QUALITY_LOW); })};
+  return {entry<false>("embree"), entry<true>("embree-rebuilt")};
 }
 
 }  // namespace lrb::methods
-
-#else
-
-namespace lrb::methods {
-
-std::vector<MethodEntry> embree_methods() {
-  std::vector<MethodEntry> entries = {
-      absent("embree", "Embree, rtcCollide, refitted", "libembree-dev", kRank, kStyle),
-      absent("embree-rebuilt", "Embree, rtcCollide, rebuilt", "libembree-dev", kRank + 1, kStyle)};
-  for (MethodEntry& e : entries) e.info.traits.set(Trait::hard_cases, false);
-  return entries;
-}
-
-}  // namespace lrb::methods
-
-#endif

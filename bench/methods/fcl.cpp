@@ -3,30 +3,26 @@
 // packages' flags, and (LRB_FCL_HEADERS) with all of FCL's templates instantiated here, with lrbscope's
 // flags.
 #include "bench/methods/method.hpp"
-
-namespace lrb::methods {
-namespace {
-const MethodStyle kStyle = {"FCL", "#d55e00", "rect"};
-#ifdef LRB_FCL_HEADERS
-constexpr int kRank = 110;
-#else
-constexpr int kRank = 30;
-#endif
-}  // namespace
-}  // namespace lrb::methods
+#include "bench/methods/triangles.hpp"
+#include <lrbscope/error.hpp>
 
 #ifdef LRB_HAS_FCL
-
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
-
-#include "bench/methods/triangles.hpp"
-#include <lrbscope/error.hpp>
+#define LRB_FCL "FCL " FCL_VERSION ", OBBRSS, "
+#else
+#define LRB_FCL "FCL, OBBRSS, "
+#endif
 
 namespace lrb::methods {
 namespace {
+
+template <class S>
+class Fcl;
+
+#ifdef LRB_HAS_FCL
 
 template <class S>
 struct FclBody : MethodBody {
@@ -100,14 +96,10 @@ class Fcl : public Method {
   static constexpr std::size_t kAll = std::size_t{1} << 40;  // contacts
 };
 
-MethodInfo fcl_info(const char* name, const char* scalar, const char* remark, int rank) {
-  MethodInfo info;
-  info.rank = rank;
-  info.style = kStyle;
-  info.name = name;
-  info.title = std::string("FCL " FCL_VERSION ", OBBRSS, ") + scalar;
-  info.remark = remark;
-  return info;
+#endif
+
+MethodInfo fcl_info(const char* name, const char* title, const char* remark, int rank) {
+  return {.name = name, .title = title, .remark = remark, .style = {"FCL", "#d55e00", "rect"}, .rank = rank};
 }
 
 }  // namespace
@@ -115,55 +107,31 @@ MethodInfo fcl_info(const char* name, const char* scalar, const char* remark, in
 #ifdef LRB_FCL_HEADERS
 
 std::vector<MethodEntry> fcl_headers_methods() {
-  MethodEntry entry = {
-      fcl_info("fcl-headers", "double, compiled with our flags",
-               "As fcl, but instantiated from its headers with lrbscope's compiler flags.", kRank),
-      []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }};
-  entry.info.traits.set(Trait::hard_cases, false);
-  entry.info.role = Role::aim;
-  return {entry};
+  MethodInfo info =
+      fcl_info("fcl-headers", LRB_FCL "double, compiled with our flags",
+               "As fcl, but instantiated from its headers with lrbscope's compiler flags.", 110);
+  info.traits = {};
+  info.role = Role::aim;
+  return {entry_of<Fcl<double>>(info, "libfcl-dev")};
 }
 
 #else
 
 std::vector<MethodEntry> fcl_methods() {
   return {
-      {fcl_info("fcl", "double",
-                "All pairs: collide() of two BVHModel<OBBRSS>, contacts unlimited, without their positions. "
-                "Does not look for bodies inside bodies; 3D only.",
-                kRank),
-       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<double>>(); }},
-      {fcl_info("fcl-float", "float",
-                "As fcl, with coordinates rounded to float; cases beyond its range are skipped.", kRank + 1),
-       []() -> std::unique_ptr<Method> { return std::make_unique<Fcl<float>>(); }}};
+      entry_of<Fcl<double>>(
+          fcl_info(
+              "fcl", LRB_FCL "double",
+              "All pairs: collide() of two BVHModel<OBBRSS>, contacts unlimited, without their positions. Does not "
+              "look for bodies inside bodies; 3D only.",
+              30),
+          "libfcl-dev"),
+      entry_of<Fcl<float>>(
+          fcl_info("fcl-float", LRB_FCL "float",
+                   "As fcl, with coordinates rounded to float; cases beyond its range are skipped.", 31),
+          "libfcl-dev")};
 }
 
 #endif
 
 }  // namespace lrb::methods
-
-#else
-
-namespace lrb::methods {
-
-#ifdef LRB_FCL_HEADERS
-
-std::vector<MethodEntry> fcl_headers_methods() {
-  MethodEntry entry = absent("fcl-headers", "FCL, compiled with our flags", "libfcl-dev", kRank, kStyle);
-  entry.info.traits.set(Trait::hard_cases, false);
-  entry.info.role = Role::aim;
-  return {entry};
-}
-
-#else
-
-std::vector<MethodEntry> fcl_methods() {
-  return {absent("fcl", "FCL, OBBRSS, double", "libfcl-dev", kRank, kStyle),
-          absent("fcl-float", "FCL, OBBRSS, float", "libfcl-dev", kRank + 1, kStyle)};
-}
-
-#endif
-
-}  // namespace lrb::methods
-
-#endif

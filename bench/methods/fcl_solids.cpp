@@ -1,35 +1,34 @@
 // FCL with other geometries than meshes: an octree against a mesh, with the cell size as parameter, and the
 // convex hulls of both by GJK (libccd).
-#include "bench/methods/method.hpp"
-
-namespace lrb::methods {
-namespace {
-const MethodStyle kOctreeStyle = {"octree (FCL), by cells", "#8a5a2b", "rect"};
-const MethodStyle kGjkStyle = {"convex hulls, GJK (FCL)", "#a3132f", "triangle"};
-constexpr int kRank = 90;
-}  // namespace
-}  // namespace lrb::methods
-
-#ifdef LRB_HAS_FCL
-#include <fcl/config.h>
-#endif
-
-#if defined(LRB_HAS_FCL) && FCL_HAVE_OCTOMAP
-
 #include <algorithm>
 #include <cmath>
 
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/geometry/octree/octree.h>
-#include <fcl/geometry/shape/convex.h>
-#include <fcl/narrowphase/collision.h>
-
+#include "bench/methods/method.hpp"
 #include "bench/methods/triangles.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/error.hpp>
 
+#ifdef LRB_HAS_FCL
+#include <fcl/config.h>
+#define LRB_FCL "FCL " FCL_VERSION
+#else
+#define LRB_FCL "FCL"
+#endif
+
+#if defined(LRB_HAS_FCL) && FCL_HAVE_OCTOMAP
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/octree/octree.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/narrowphase/collision.h>
+#endif
+
 namespace lrb::methods {
 namespace {
+
+class Octree;
+class Gjk;
+
+#if defined(LRB_HAS_FCL) && FCL_HAVE_OCTOMAP
 
 fcl::Transform3d transform(const Pose& pose) {
   fcl::Transform3d t = fcl::Transform3d::Identity();
@@ -150,60 +149,36 @@ class Gjk : public Method {
   }
 };
 
-MethodEntry octree() {
-  MethodInfo info;
-  info.rank = kRank;
-  info.style = kOctreeStyle;
-  info.name = "fcl-octree";
-  info.title = "FCL " FCL_VERSION ", octree against mesh";
-  info.remark =
-      "Contact, and points of it: A as an octree (OctoMap) of the cells that its surface intersects, B as a "
-      "mesh. Setting: number of cells along A's diagonal.";
-  info.pairs = false;
-  info.traits.set(Trait::hard_cases, false);
-  info.traits.set(Trait::approximate);
-  info.parameter = "cells";
-  info.settings = {16, 32, 64, 128};
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Octree>(); }};
-}
-
-MethodEntry gjk() {
-  MethodInfo info;
-  info.rank = kRank + 1;
-  info.style = kGjkStyle;
-  info.name = "fcl-gjk";
-  info.title = "FCL " FCL_VERSION ", GJK of convex hulls";
-  info.remark =
-      "Contact, and a point of it: the convex hulls of both bodies by GJK and EPA (libccd). Correct if the "
-      "bodies are convex and neither is inside the other.";
-  info.pairs = false;
-  info.traits.set(Trait::hard_cases, false);
-  info.traits.set(Trait::convex);
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<Gjk>(); }};
-}
+#endif
 
 }  // namespace
 
 std::vector<MethodEntry> fcl_solids_methods() {
-  return {octree(), gjk()};
+  return {
+      entry_of<Octree>(
+          {.name = "fcl-octree",
+           .title = LRB_FCL ", octree against mesh",
+           .remark =
+               "Contact, and points of it: A as an octree (OctoMap) of the cells that its surface intersects, B as a "
+               "mesh. Setting: number of cells along A's diagonal.",
+           .pairs = false,
+           .traits = {Trait::approximate},
+           .parameter = "cells",
+           .settings = {16, 32, 64, 128},
+           .style = {"octree (FCL), by cells", "#8a5a2b", "rect"},
+           .rank = 90},
+          "libfcl-dev"),
+      entry_of<Gjk>(
+          {.name = "fcl-gjk",
+           .title = LRB_FCL ", GJK of convex hulls",
+           .remark =
+               "Contact, and a point of it: the convex hulls of both bodies by GJK and EPA (libccd). Correct if the "
+               "bodies are convex and neither is inside the other.",
+           .pairs = false,
+           .traits = {Trait::convex},
+           .style = {"convex hulls, GJK (FCL)", "#a3132f", "triangle"},
+           .rank = 91},
+          "libfcl-dev")};
 }
 
 }  // namespace lrb::methods
-
-#else
-
-namespace lrb::methods {
-
-std::vector<MethodEntry> fcl_solids_methods() {
-  MethodEntry octree = absent("fcl-octree", "FCL, octree against mesh", "libfcl-dev", kRank, kOctreeStyle);
-  octree.info.traits.set(Trait::approximate);
-  MethodEntry gjk = absent("fcl-gjk", "FCL, GJK of convex hulls", "libfcl-dev", kRank + 1, kGjkStyle);
-  gjk.info.traits.set(Trait::convex);
-  octree.info.traits.set(Trait::hard_cases, false);
-  gjk.info.traits.set(Trait::hard_cases, false);
-  return {octree, gjk};
-}
-
-}  // namespace lrb::methods
-
-#endif

@@ -102,15 +102,15 @@ struct MethodStyle {
 };
 
 struct MethodInfo {
-  std::string name;    ///< for the command line: "fcl"
-  std::string title;   ///< display name with the version: "FCL 0.7.0, OBBRSS, double"
-  std::string remark;  ///< meaning of the answer, and the options of the query
+  std::string name = {};    ///< for the command line: "fcl"
+  std::string title = {};   ///< display name with the version: "FCL 0.7.0, OBBRSS, double"
+  std::string remark = {};  ///< meaning of the answer, and the options of the query
   bool present = true;
   bool pairs = true;          ///< lists the pairs; false: only reports whether the surfaces intersect
   Says says = Says::nothing;  ///< what else it reports
   Traits traits = {Trait::hard_cases};
-  std::string parameter;         ///< the parameter that `settings` sets: "level"; empty: none
-  std::vector<double> settings;  ///< values for a sweep, from coarse to fine
+  std::string parameter = {};         ///< the parameter that `settings` sets: "level"; empty: none
+  std::vector<double> settings = {};  ///< values for a sweep, from coarse to fine
   MethodStyle style = {};
   Role role = Role::peer;
   int rank = 1000;  ///< the methods' order in tables and charts: by rank, then by file
@@ -183,17 +183,17 @@ inline int rank_of(const MethodEntry& e) {
   return e.info.rank;
 }
 
-/// Returns the entry of a method whose Debian package was not found by the build.
-inline MethodEntry absent(const char* name, const char* title, const char* package, int rank = 1000,
-                          MethodStyle style = {}) {
-  MethodInfo info;
-  info.rank = rank;
-  info.style = std::move(style);
-  info.name = name;
-  info.title = title;
-  info.remark = std::string("Not found when this was built; install Debian's ") + package;
-  info.present = false;
-  return {info};
+/// Returns the entry of a method of class T; the arguments of its constructor are template arguments. T is
+/// only declared if the build did not find the engine, which `package` of Debian contains.
+template <class T, auto... kArguments>
+MethodEntry entry_of(MethodInfo info, const char* package = "") {
+  if constexpr (requires { sizeof(T); }) {
+    return {std::move(info), []() -> std::unique_ptr<Method> { return std::make_unique<T>(kArguments...); }};
+  } else {
+    info.remark = std::string("Not found when this was built; install Debian's ") + package;
+    info.present = false;
+    return {std::move(info)};
+  }
 }
 
 /// Returns the methods linked into this program, in their order. A file of this folder defines

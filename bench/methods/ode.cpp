@@ -1,22 +1,17 @@
 // ODE's triangle meshes: dCollide() of two of them returns contact points, each with its two triangles.
 #include "bench/methods/method.hpp"
-
-namespace lrb::methods {
-namespace {
-const MethodStyle kStyle = {"ODE", "#7f3c8d", "cross"};
-constexpr int kRank = 70;
-}  // namespace
-}  // namespace lrb::methods
+#include "bench/methods/triangles.hpp"
 
 #ifdef LRB_HAS_ODE
-
 #include <ode/ode.h>
-
-#include "bench/methods/triangles.hpp"
-#include <lrbscope/error.hpp>
+#endif
 
 namespace lrb::methods {
 namespace {
+
+class Ode;
+
+#ifdef LRB_HAS_ODE
 
 constexpr int kMaxContacts = 0xffff;  // the maximum that its flags can request
 
@@ -90,35 +85,24 @@ class Ode : public Method {
   std::vector<dContactGeom> contacts_;
 };
 
+#endif
+
 }  // namespace
 
 std::vector<MethodEntry> ode_methods() {
-  MethodInfo info;
-  info.rank = kRank;
-  info.style = kStyle;
-  info.name = "ode";
-  info.title =
-      sizeof(dReal) == sizeof(double) ? "ODE, triangle meshes, double" : "ODE, triangle meshes, float";
-  info.remark =
-      "Pairs of the contact points of dCollide(), at most 65535; a contact point may represent several pairs, "
-      "so the list is not meant to be complete. Trees and vertices in float.";
-  info.traits.set(Trait::loose);
-  info.traits.set(Trait::hard_cases, false);
-  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Ode>(); }}};
-}
-
-}  // namespace lrb::methods
-
-#else
-
-namespace lrb::methods {
-
-std::vector<MethodEntry> ode_methods() {
-  MethodEntry entry = absent("ode", "ODE, triangle meshes", "libode-dev", kRank, kStyle);
-  entry.info.traits.set(Trait::hard_cases, false);
-  return {entry};
-}
-
-}  // namespace lrb::methods
-
+  MethodInfo info = {
+      .name = "ode",
+      .title = "ODE, triangle meshes",
+      .remark =
+          "Pairs of the contact points of dCollide(), at most 65535; a contact point may represent several "
+          "pairs, so the list is not meant to be complete. Trees and vertices in float.",
+      .traits = {Trait::loose},
+      .style = {"ODE", "#7f3c8d", "cross"},
+      .rank = 70};
+#ifdef LRB_HAS_ODE
+  info.title += sizeof(dReal) == sizeof(double) ? ", double" : ", float";
 #endif
+  return {entry_of<Ode>(info, "libode-dev")};
+}
+
+}  // namespace lrb::methods

@@ -175,113 +175,91 @@ class OursCoarse : public Method {
   Workspace workspace_;
 };
 
-MethodInfo our_info(const char* name, const char* title, const char* remark, int rank) {
-  MethodInfo info;
-  info.name = name;
-  info.title = title;
-  info.remark = remark;
-  info.says = Says::relation;
-  info.traits.set(Trait::takes_2d);
-  info.traits.set(Trait::moves_exactly);
-  info.traits.set(Trait::own_rep);
-  info.rank = rank;
-  info.role = Role::ours_other;
-  info.style = {"lrbscope, variants", "#4aa3dc", "circle"};
-  return info;
-}
-
-void coarse(MethodInfo& info) {
-  info.pairs = false;
-  info.traits.set(Trait::hard_cases, false);
-  info.traits.set(Trait::approximate);
-  info.says = Says::nothing;
-}
-
-MethodEntry ours() {
-  MethodInfo info = our_info("ours", "lrbscope, complete",
-                             "All pairs and the relation; given the bodies and their poses.", 10);
-  info.style = {"lrbscope, exact", "#0072b2", "circle"};
-  info.role = Role::ours;
-  return {info, []() -> std::unique_ptr<Method> {
-            return std::make_unique<Ours>(Recursion::complete, Predicates::exact);
-          }};
-}
-
-MethodEntry ours_floating() {
-  MethodInfo info =
-      our_info("ours-floating", "lrbscope without the exact fallback",
-               "As ours, but the sign of a predicate that double precision cannot decide is guessed from "
-               "its rounded value.",
-               11);
-  info.role = Role::ours_double;
-  return {info, []() -> std::unique_ptr<Method> {
-            return std::make_unique<Ours>(Recursion::complete, Predicates::floating);
-          }};
-}
-
-MethodEntry ours_paper() {
-  MethodInfo info =
-      our_info("ours-paper", "lrbscope, the paper's recursion",
-               "Section 4 of the paper, unchanged, with exact predicates, on an LRB-rep built from the body; "
-               "if none can be built (open, not manifold), on the body's own regions. Misses contacts under "
-               "lids that are not touched.",
-               12);
-  info.role = Role::no_peer;
-  return {info, []() -> std::unique_ptr<Method> {
-            return std::make_unique<Ours>(Recursion::paper, Predicates::exact);
-          }};
-}
-
-MethodEntry ours_coherent() {
-  MethodInfo info = our_info(
-      "ours-coherent", "lrbscope, coherent",
-      "As ours, at the last of nine poses that are 0.1 % of A's diagonal apart; the others are not timed.",
-      13);
-  info.traits.set(Trait::hard_cases, false);
-  info.traits.set(Trait::knows_poses_in_advance);
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoherent>(); }};
-}
-
-MethodEntry ours_one_pair() {
-  MethodInfo info =
-      our_info("ours-one-pair", "lrbscope, one pair",
-               "Whether they intersect, exactly, and the contact of one crossing pair of faces.", 14);
-  coarse(info);
-  info.style = {"lrbscope, one pair", "#0072b2", "rectRounded"};
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::one_pair); }};
-}
-
-MethodEntry ours_tolerance() {
-  MethodInfo info =
-      our_info("ours-tolerance", "lrbscope, to a tolerance",
-               "Whether they intersect, exactly, and the contact of their wrappers, in which regions no "
-               "thicker than the tolerance are not refined. Setting: tolerance relative to A's diagonal.",
-               15);
-  coarse(info);
-  info.parameter = "tolerance";
-  info.settings = {0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001};
-  info.style = {"lrbscope, to a tolerance", "#0072b2", "rectRot"};
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::tolerance); }};
-}
-
-MethodEntry ours_budget() {
-  MethodInfo info =
-      our_info("ours-budget", "lrbscope, within a number of face tests",
-               "A result within a limit: contact, and the intersection of the wrappers reached so far. "
-               "Setting: number of face tests. Never reports intersecting bodies as separate.",
-               16);
-  coarse(info);
-  info.parameter = "tests";
-  info.settings = {16, 32, 64, 128, 256, 1024};
-  info.style = {"lrbscope, within a budget", "#56b4e9", "rect"};
-  return {info, []() -> std::unique_ptr<Method> { return std::make_unique<OursCoarse>(Content::tests); }};
-}
+constexpr Traits kOurHardCases = {Trait::takes_2d, Trait::moves_exactly, Trait::own_rep, Trait::hard_cases};
+constexpr Traits kCoarse = {Trait::takes_2d, Trait::moves_exactly, Trait::own_rep, Trait::approximate};
+const MethodStyle kVariant = {"lrbscope, variants", "#4aa3dc", "circle"};
 
 }  // namespace
 
 std::vector<MethodEntry> ours_methods() {
-  return {ours(),          ours_floating(),  ours_paper(), ours_coherent(),
-          ours_one_pair(), ours_tolerance(), ours_budget()};
+  return {
+      entry_of<Ours, Recursion::complete, Predicates::exact>(
+          {.name = "ours",
+           .title = "lrbscope, complete",
+           .remark = "All pairs and the relation; given the bodies and their poses.",
+           .says = Says::relation,
+           .traits = kOurHardCases,
+           .style = {"lrbscope, exact", "#0072b2", "circle"},
+           .role = Role::ours,
+           .rank = 10}),
+      entry_of<Ours, Recursion::complete, Predicates::floating>(
+          {.name = "ours-floating",
+           .title = "lrbscope without the exact fallback",
+           .remark =
+               "As ours, but the sign of a predicate that double precision cannot decide is guessed from its "
+               "rounded value.",
+           .says = Says::relation,
+           .traits = kOurHardCases,
+           .style = kVariant,
+           .role = Role::ours_double,
+           .rank = 11}),
+      entry_of<Ours, Recursion::paper, Predicates::exact>(
+          {.name = "ours-paper",
+           .title = "lrbscope, the paper's recursion",
+           .remark =
+               "Section 4 of the paper, unchanged, with exact predicates, on an LRB-rep built from the body; if none "
+               "can be built (open, not manifold), on the body's own regions. Misses contacts under lids that are "
+               "not touched.",
+           .says = Says::relation,
+           .traits = kOurHardCases,
+           .style = kVariant,
+           .role = Role::no_peer,
+           .rank = 12}),
+      entry_of<OursCoherent>(
+          {.name = "ours-coherent",
+           .title = "lrbscope, coherent",
+           .remark = "As ours, at the last of nine poses that are 0.1 % of A's diagonal apart; the others "
+                     "are not timed.",
+           .says = Says::relation,
+           .traits = {Trait::takes_2d, Trait::moves_exactly, Trait::own_rep, Trait::knows_poses_in_advance},
+           .style = kVariant,
+           .role = Role::ours_other,
+           .rank = 13}),
+      entry_of<OursCoarse, Content::one_pair>(
+          {.name = "ours-one-pair",
+           .title = "lrbscope, one pair",
+           .remark = "Whether they intersect, exactly, and the contact of one crossing pair of faces.",
+           .pairs = false,
+           .traits = kCoarse,
+           .style = {"lrbscope, one pair", "#0072b2", "rectRounded"},
+           .role = Role::ours_other,
+           .rank = 14}),
+      entry_of<OursCoarse, Content::tolerance>(
+          {.name = "ours-tolerance",
+           .title = "lrbscope, to a tolerance",
+           .remark =
+               "Whether they intersect, exactly, and the contact of their wrappers, in which regions no thicker than "
+               "the tolerance are not refined. Setting: tolerance relative to A's diagonal.",
+           .pairs = false,
+           .traits = kCoarse,
+           .parameter = "tolerance",
+           .settings = {0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001},
+           .style = {"lrbscope, to a tolerance", "#0072b2", "rectRot"},
+           .role = Role::ours_other,
+           .rank = 15}),
+      entry_of<OursCoarse, Content::tests>(
+          {.name = "ours-budget",
+           .title = "lrbscope, within a number of face tests",
+           .remark =
+               "A result within a limit: contact, and the intersection of the wrappers reached so far. Setting: "
+               "number of face tests. Never reports intersecting bodies as separate.",
+           .pairs = false,
+           .traits = kCoarse,
+           .parameter = "tests",
+           .settings = {16, 32, 64, 128, 256, 1024},
+           .style = {"lrbscope, within a budget", "#56b4e9", "rect"},
+           .role = Role::ours_other,
+           .rank = 16})};
 }
 
 // All pairs in doubles, without a hierarchy and without exact tests.
@@ -340,18 +318,16 @@ class PlainDouble : public Method {
 }  // namespace
 
 std::vector<MethodEntry> plain_double_methods() {
-  MethodInfo info;
-  info.rank = 20;
-  info.style = {"brute force", "#6b6b6b", "crossRot"};
-  info.name = "plain";
-  info.role = Role::no_peer;  // takes minutes
-  info.title = "brute force, double, epsilon 1e-6";
-  info.remark =
-      "Every pair of triangles by Moeller's interval test (1997) with its usual epsilon; 2D: by sides. No "
-      "boxes, no relation.";
-  info.traits.set(Trait::takes_2d);
-  info.traits.set(Trait::moves_exactly);
-  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<PlainDouble>(); }}};
+  return {entry_of<PlainDouble>(
+      {.name = "plain",
+       .title = "brute force, double, epsilon 1e-6",
+       .remark =
+           "Every pair of triangles by Moeller's interval test (1997) with its usual epsilon; 2D: by sides. No "
+           "boxes, no relation.",
+       .traits = {Trait::hard_cases, Trait::takes_2d, Trait::moves_exactly},
+       .style = {"brute force", "#6b6b6b", "crossRot"},
+       .role = Role::no_peer,  // takes minutes
+       .rank = 20})};
 }
 
 // Descends two sphere trees together to a given level: an approximate, interruptible answer (P. M. Hubbard,
@@ -475,20 +451,18 @@ class Spheres : public Method {
 }  // namespace
 
 std::vector<MethodEntry> spheres_methods() {
-  MethodInfo info;
-  info.rank = 80;
-  info.style = {"sphere tree, by level", "#1c1e22", "star"};
-  info.name = "spheres";
-  info.title = "sphere tree, stopped at a level";
-  info.remark =
-      "Contact, and points of it: two binary trees of spheres around triangles, descended to a level; spheres "
-      "that still overlap there count as contact. Never misses a contact; many false positives.";
-  info.pairs = false;
-  info.traits.set(Trait::hard_cases, false);
-  info.traits.set(Trait::approximate);
-  info.parameter = "level";
-  info.settings = {2, 4, 6, 8, 10, 12};
-  return {{info, []() -> std::unique_ptr<Method> { return std::make_unique<Spheres>(); }}};
+  return {entry_of<Spheres>(
+      {.name = "spheres",
+       .title = "sphere tree, stopped at a level",
+       .remark =
+           "Contact, and points of it: two binary trees of spheres around triangles, descended to a level; spheres "
+           "that still overlap there count as contact. Never misses a contact; many false positives.",
+       .pairs = false,
+       .traits = {Trait::approximate},
+       .parameter = "level",
+       .settings = {2, 4, 6, 8, 10, 12},
+       .style = {"sphere tree, by level", "#1c1e22", "star"},
+       .rank = 80})};
 }
 
 }  // namespace lrb::methods

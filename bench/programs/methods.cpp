@@ -13,7 +13,6 @@
 #include "bench/programs/serve.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/build_times.hpp"
-#include "bench/stability/case_meshes.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/stability_experiment.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
@@ -72,9 +71,12 @@ std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::Method
                                  [](const methods::MethodEntry& e) { return e.info.name == "ours"; });
   if (ours == methods.end()) return {};
   make_honest = ours->make;
-  return {fake<Vice::crash>("fake-crash", *ours),   fake<Vice::hang>("fake-hang", *ours),
-          fake<Vice::reject>("fake-refuse", *ours), fake<Vice::raise>("fake-throw", *ours),
-          fake<Vice::miss>("fake-miss", *ours),     methods::absent("fake-absent", "fake-absent", "nothing")};
+  return {fake<Vice::crash>("fake-crash", *ours),
+          fake<Vice::hang>("fake-hang", *ours),
+          fake<Vice::reject>("fake-refuse", *ours),
+          fake<Vice::raise>("fake-throw", *ours),
+          fake<Vice::miss>("fake-miss", *ours),
+          methods::entry_of<class Nothing>({.name = "fake-absent", .title = "fake-absent"}, "nothing")};
 }
 
 /// The answers of one method, which keeps bodies between questions.
@@ -84,19 +86,21 @@ class Answers {
       : method_(std::move(method)), entries_(entries) {}
 
   ordered_json operator()(const json& question) {
-    if (method_.empty()) return right_answer(question);
     if (question.contains("build")) return build(question.at("build"));
-    if (question.contains("saved")) return stability::answer_saved(entry(), question.at("saved"));
     if (question.contains("bodies")) return about_bodies(question);
-    return question.contains("set") ? about_set(question) : about_case(question);
+    if (question.contains("set")) return about_set(question);
+    return about_case(question, method_, known_, stability::expected_answer,
+                      [&](const cases::Family& family, const cases::Case& c,
+                          const stability::RightAnswer& right, stability::Record& record) {
+                        // A saved case has a new runner, so that its answer does not depend on earlier cases.
+                        if (!cases_ || question.contains("saved")) cases_.emplace(entry());
+                        cases_->ask(family, c, right, record);
+                        return cases_->pairs();
+                      });
   }
 
  private:
   const methods::MethodEntry& entry() const { return methods::find_method(entries_, method_); }
-
-  static ordered_json right_answer(const json& question) {
-    return stability::to_json(stability::expected_answer(case_of(family_of(question), question)));
-  }
 
   ordered_json build(const std::string& file) const {
     const auto known = std::find_if(entries_.begin(), entries_.end(),
@@ -104,24 +108,10 @@ class Answers {
     return to_json(bench::time_build(known == entries_.end() ? nullptr : &*known, method_, file));
   }
 
-  ordered_json about_case(const json& question) {
-    if (!cases_) cases_.emplace(entry());
-    const cases::Family& family = family_of(question);
-    const cases::Case c = case_of(family, question);
-    const std::optional<stability::RightAnswer> read = known_.find(question);
-    stability::Record record = record_of(question, method_);
-    cases_->ask(family, c, read ? *read : stability::expected_answer(c), record);
-    ordered_json out = stability::to_json(record);
-    add_pairs(out, question, cases_->pairs() ? &*cases_->pairs() : nullptr);
-    return out;
-  }
-
   ordered_json about_set(const json& question) {
     if (!set_) {
       set_ = bench::read_data_set(question.at("set"));
-      const std::optional<double> setting =
-          question.contains("setting") ? std::optional<double>(question.at("setting")) : std::nullopt;
-      queries_.emplace(entry(), setting, *set_, question.value("errors", false));
+      queries_.emplace(entry(), setting_of(question), *set_, question.value("errors", false));
     }
     return to_json(queries_->ask(question.at("question")));
   }

@@ -21,13 +21,6 @@ namespace {
 using bench::DataSet, bench::Question;
 using stability::NumberQuery, stability::NumberAnswer, stability::NumberMethod;
 
-const Question& question_of(const DataSet& set, std::uint64_t k) {
-  if (k >= set.questions.size())
-    throw InputError("question " + std::to_string(k) + ": the data set has only " +
-                     std::to_string(set.questions.size()));
-  return set.questions[k];
-}
-
 NumberQuery query_of(const DataSet& set, const Question& q) {
   const auto placed = [&](std::size_t body, const Pose& pose) {
     return methods::at_pose(load_lrb(set.folder + "/" + set.bodies.at(body).file), pose);
@@ -50,13 +43,8 @@ bool says_contact(methods::Quantity quantity, const NumberAnswer& answer) {
 /// query does not exist.
 bench::Record bench_record(const NumberMethod& method, std::optional<double> setting, const DataSet& set,
                            std::uint64_t question, bool judges) {
-  const Question& q = question_of(set, question);
-  bench::Record r;
-  r.set = set.name;
-  r.method = method.info.name;
-  r.setting = setting;
-  r.question = question;
-  r.pose_class = q.pose_class;
+  bench::Record r = bench::blank_record(set, question, method.info.name, setting);
+  const Question& q = set.questions[question];
   workers::note_failures(r, [&] {
     const NumberQuery query = query_of(set, q);
     bench::QueryTimes times;
@@ -79,10 +67,10 @@ bench::Record bench_record(const NumberMethod& method, std::optional<double> set
 /// Returns a method's answer at its finest setting, as {"least": .., "most": ..}, or {"refusal": "why"}.
 nlohmann::ordered_json known_number(const NumberMethod& method, const DataSet& set, std::uint64_t question) {
   const std::vector<double>& settings = method.info.settings;
-  const Question& q = question_of(set, question);
   try {
-    const NumberAnswer answer = method.ask(
-        query_of(set, q), settings.empty() ? std::nullopt : std::optional<double>(settings.back()));
+    const NumberAnswer answer =
+        method.ask(query_of(set, set.questions.at(question)),
+                   settings.empty() ? std::nullopt : std::optional<double>(settings.back()));
     return {{"least", answer.lower}, {"most", answer.upper}};
   } catch (const InputError& e) {
     return {{"refusal", e.what()}};
@@ -103,27 +91,23 @@ NumberMethod method_of(Quantity quantity, const std::string& name) {
   throw InputError("unknown method '" + name + "' for this quantity");
 }
 
-ordered_json about_case(const Call& call, const json& question, KnownAnswers& known) {
-  const cases::Case c = case_of(family_of(question), question);
+ordered_json about_number(const Call& call, const json& question, KnownAnswers& known) {
   const Quantity quantity = quantity_of(call);
-  if (call.method.empty()) return stability::to_json(stability::true_number(quantity, c));
-  const NumberMethod method = method_of(quantity, call.method);
-  const std::optional<stability::RightAnswer> read = known.find(question);
-  stability::Record record = record_of(question, call.method);
-  const auto answer = ask_number(method, c, read ? *read : stability::true_number(quantity, c), record);
-  ordered_json out = stability::to_json(record);
-  add_pairs(out, question, answer && methods::is_list(quantity) ? &answer->pairs : nullptr);
-  return out;
+  return about_case(
+      question, call.method, known, [&](const cases::Case& c) { return stability::true_number(quantity, c); },
+      [&](const cases::Family&, const cases::Case& c, const stability::RightAnswer& right,
+          stability::Record& record) {
+        auto answer = ask_number(method_of(quantity, call.method), c, right, record);
+        return answer && methods::is_list(quantity) ? std::optional(std::move(answer->pairs)) : std::nullopt;
+      });
 }
 
 ordered_json about_set(const Call& call, const json& question, const DataSet& set) {
   const bool finds = call.method.empty();
   const NumberMethod method = method_of(set.quantity, finds ? "ours" : call.method);
   if (finds) return known_number(method, set, question.at("question"));
-  const std::optional<double> setting =
-      question.contains("setting") ? std::optional<double>(question.at("setting")) : std::nullopt;
-  return to_json(
-      bench_record(method, setting, set, question.at("question"), question.value("errors", false)));
+  return to_json(bench_record(method, setting_of(question), set, question.at("question"),
+                              question.value("errors", false)));
 }
 
 }  // namespace
@@ -144,7 +128,7 @@ int main(int argc, char** argv) {
       },
       [&](const Call& call) {
         return [&known, &set, call](const json& question) {
-          if (!question.contains("set")) return about_case(call, question, known);
+          if (!question.contains("set")) return about_number(call, question, known);
           if (!set) set = bench::read_data_set(question.at("set"));
           return about_set(call, question, *set);
         };

@@ -10,7 +10,7 @@
 ///                         a stability::Record; FILE has a right answer in each line, which is computed
 ///                         without it; with pairs also the list of pairs. Without a method, a
 ///                         stability::RightAnswer
-///   {"saved": FILE}       a stability::Record with the list of pairs (bench/stability/case_meshes.hpp)
+///   {"saved": FILE, ...}  the same for the case of a file (bench/stability/case_meshes.hpp)
 ///   {"set": FILE, "question": K, ["setting"], ["errors"]}
 ///                         a bench::Record for a query of a data set; with errors also those of the answer
 ///   {"build": FILE.lrb}   a bench::BuildTime; the method may also be one of bench::own_structures()
@@ -28,6 +28,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "bench/stability/case_meshes.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "bench/stability/stability_experiment.hpp"
 #include "bench/workers/worker_json.hpp"
@@ -44,27 +45,8 @@ struct Call {
   std::string method, quantity = "pairs";
 };
 
-/// Returns the named family. Throws InputError if it is unknown.
-inline const cases::Family& family_of(const json& question) {
-  const std::string name = question.at("family");
-  const cases::Family* family = cases::find_family(name);
-  if (family == nullptr) throw InputError("unknown family '" + name + "'");
-  return *family;
-}
-
-inline cases::Case case_of(const cases::Family& family, const json& question) {
-  return cases::make_case(family, question.at("seed"), question.at("difficulty"), question.at("case"));
-}
-
-/// Returns the record of a case, before it is answered.
-inline stability::Record record_of(const json& question, const std::string& method) {
-  stability::Record record;
-  record.family = question.at("family");
-  record.method = method;
-  record.difficulty = question.at("difficulty");
-  record.case_index = question.at("case");
-  record.seed = question.at("seed");
-  return record;
+inline std::optional<double> setting_of(const json& question) {
+  return question.contains("setting") ? std::optional<double>(question.at("setting")) : std::nullopt;
 }
 
 /// Right answers from files, which are read once if their lines are requested in order.
@@ -92,10 +74,32 @@ class KnownAnswers {
   std::uint64_t next_ = 0;
 };
 
-/// Adds the pairs to a record's answer, if they were requested.
-inline void add_pairs(ordered_json& answer, const json& question, const std::vector<SimplexPair>* pairs) {
-  if (question.value("pairs", false) && pairs != nullptr)
-    answer["answered_pairs"] = workers::PairsJson::write(*pairs);
+/// Answers a question about a case. right(case): the right answer. judge(family, case, right answer, record)
+/// asks the method, judges its answer, and returns its pairs, if there are any.
+template <class Right, class Judge>
+ordered_json about_case(const json& question, const std::string& method, KnownAnswers& known,
+                        const Right& right, const Judge& judge) {
+  static const cases::Family kNoFamily = {"", "", nullptr};
+  const cases::Family* family = &kNoFamily;
+  stability::Record record;
+  record.method = method;
+  if (!question.contains("saved")) {
+    record.family = question.at("family");
+    record.difficulty = question.at("difficulty");
+    record.case_index = question.at("case");
+    record.seed = question.at("seed");
+    family = cases::find_family(record.family);
+    if (family == nullptr) throw InputError("unknown family '" + record.family + "'");
+  }
+  const cases::Case c = question.contains("saved")
+                            ? stability::read_case(question.at("saved"))
+                            : cases::make_case(*family, record.seed, record.difficulty, record.case_index);
+  if (method.empty()) return stability::to_json(right(c));
+  const std::optional<stability::RightAnswer> read = known.find(question);
+  const std::optional<std::vector<SimplexPair>> pairs = judge(*family, c, read ? *read : right(c), record);
+  ordered_json out = stability::to_json(record);
+  if (question.value("pairs", false) && pairs) out["answered_pairs"] = workers::PairsJson::write(*pairs);
+  return out;
 }
 
 /// Runs a worker: `list` returns the methods of a call, `answer` the answer to a question. Returns the exit

@@ -2,12 +2,14 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/quantities/number_method.hpp"
+#include "bench/stability/case_meshes.hpp"
 #include "bench/stability/rational_oracles.hpp"
 #include <lrbscope/collide.hpp>
 
@@ -68,18 +70,8 @@ NumberQuery query_of(const cases::Case& c) {
 }
 
 LrbRep union_of(const NumberQuery& query) {
-  Mesh all;
-  for (const LrbRep* rep : {&query.a, &query.b}) {
-    const auto first = static_cast<std::uint32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), rep->vertices().begin(), rep->vertices().end());
-    for (SimplexId s = 0; s < rep->real_simplex_count(); ++s) {
-      VertexId v[3] = {};
-      rep->simplex(s, v);
-      for (VertexId& corner : v) corner = VertexId(first + corner);
-      all.add_face(v);
-    }
-  }
-  return LrbRep::without_regions(all, query.a.closed() && query.b.closed(), true);
+  return LrbRep::without_regions(joined(query.a, Pose{}, query.b, Pose{}),
+                                 query.a.closed() && query.b.closed(), true);
 }
 
 namespace {
@@ -89,38 +81,48 @@ using oracle::Rational;
 using oracle::RationalPoint;
 using oracle::RationalPoints;
 
-RationalPoint rational(const Vector3d& x) {
-  return oracle::rational({x.x(), x.y(), x.z()});
-}
-
-/// The triangles of a body.
-struct Triangles {
+/// The real triangles of a body.
+struct Faces {
   std::vector<std::array<VertexId, 3>> corners;
+  std::vector<oracle::Corners> x;
+  std::vector<RationalPoints> exact;
   std::vector<AlignedBox3d> boxes;
-  std::vector<RationalPoint> points;  ///< by vertex
+  RationalPoints points;  ///< by vertex
 
-  explicit Triangles(const LrbRep& rep) {
-    for (const Vector3d& v : rep.vertices()) points.push_back(rational(v));
+  explicit Faces(const LrbRep& rep) {
+    for (const Vector3d& v : rep.vertices()) points.push_back(oracle::rational(v));
     for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-      VertexId v[3] = {};
-      rep.simplex(s, v);
-      corners.push_back({v[0], v[1], v[2]});
+      rep.simplex(s, corners.emplace_back().data());
+      x.emplace_back();
+      exact.emplace_back();
       boxes.emplace_back();
-      for (const VertexId k : v) boxes.back().extend(rep.vertices()[k]);
+      for (const VertexId v : corners.back()) {
+        x.back().push_back(rep.vertices()[v]);
+        exact.back().push_back(points[v]);
+        boxes.back().extend(rep.vertices()[v]);
+      }
     }
   }
-  RationalPoints of(std::size_t t) const {
-    RationalPoints out;
-    for (const VertexId v : corners[t]) out.push_back(points[v]);
-    return out;
-  }
+  std::size_t size() const { return corners.size(); }
 };
 
-struct RankedPair {
-  double bound;  ///< lower bound on the quantity of the pair
-  std::size_t a, b;
-  bool operator<(const RankedPair& o) const { return bound < o.bound; }
-};
+/// Returns the least value of the pairs of faces, or nullopt if none has a value. Pairs are processed in
+/// ascending order of `bound`, a lower bound; infinite: no value. value(i, j, least so far): an optional.
+template <class Bound, class Value>
+std::optional<Rational> least_of_pairs(const Faces& a, const Faces& b, const Bound& bound,
+                                       const Value& value) {
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < b.size(); ++j) pairs.emplace_back(bound(a.boxes[i], b.boxes[j]), i, j);
+  std::sort(pairs.begin(), pairs.end());
+  std::optional<Rational> least;
+  for (const auto& [low, i, j] : pairs) {
+    if (std::isinf(low) || (least && Rational(low) > *least)) break;
+    const std::optional<Rational> x = value(i, j, least);
+    if (x && (!least || *x < *least)) least = x;
+  }
+  return least;
+}
 
 void set_number(RightAnswer& e, const Rational& x) {
   const auto d = x.convert_to<double>();
@@ -134,36 +136,18 @@ void set_root(RightAnswer& e, const Rational& square) {
   e.most = d * (1 + 4e-16);
 }
 
-oracle::Corners corners_of(const LrbRep& rep, std::size_t t) {
-  VertexId v[3] = {};
-  rep.simplex(static_cast<SimplexId>(t), v);
-  oracle::Corners out;
-  for (const VertexId k : v) {
-    const Vector3d& x = rep.vertices()[k];
-    out.push_back({x.x(), x.y(), x.z()});
-  }
-  return out;
-}
-
-/// Returns the squared distance. Pairs are processed in ascending order of the distance of their boxes.
 Rational distance_sq(const NumberQuery& q) {
-  const Triangles a(q.a), b(q.b);
-  std::vector<RankedPair> pairs;
-  for (std::size_t i = 0; i < a.boxes.size(); ++i)
-    for (std::size_t j = 0; j < b.boxes.size(); ++j)
-      pairs.push_back({a.boxes[i].squaredExteriorDistance(b.boxes[j]) * (1 - 1e-12), i, j});
-  std::sort(pairs.begin(), pairs.end());
-  std::optional<Rational> least;
-  for (const RankedPair& p : pairs) {
-    if (least && Rational(p.bound) > *least) break;
-    const Rational d = oracle::distance_sq(corners_of(q.a, p.a), corners_of(q.b, p.b));
-    if (!least || d < *least) least = d;
-  }
-  return *least;
+  const Faces a(q.a), b(q.b);
+  return *least_of_pairs(
+      a, b,
+      [](const AlignedBox3d& s, const AlignedBox3d& t) { return s.squaredExteriorDistance(t) * (1 - 1e-12); },
+      [&](std::size_t i, std::size_t j, const auto&) {
+        return std::optional(oracle::distance_sq(a.x[i], b.x[j]));
+      });
 }
 
 /// Returns a lower bound on the time t at which box b, translated by `from` + t * `way`, intersects box a;
-/// above 1: never.
+/// infinite: never.
 double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& from, const Vector3d& way) {
   double begin = 0, end = 1;
   for (int k = 0; k < 3; ++k) {
@@ -171,157 +155,79 @@ double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& fr
     const double low = b.min()[k] + from[k] - a.max()[k] - slack,
                  high = b.max()[k] + from[k] - a.min()[k] + slack;
     if (way[k] == 0) {
-      if (low > 0 || high < 0) return kNever;
+      if (low > 0 || high < 0) return HUGE_VAL;
       continue;
     }
     const double t = -low / way[k], u = -high / way[k];
     begin = std::max(begin, std::min(t, u));
     end = std::min(end, std::max(t, u));
   }
-  return begin > end ? kNever : begin;
+  return begin > end ? HUGE_VAL : begin;
 }
 
 std::optional<Rational> first_time(const NumberQuery& q) {
-  const Triangles a(q.a), b(q.b);
-  const RationalPoint from = rational(q.from), to = rational(q.to), way = oracle::minus(to, from);
-  std::vector<RankedPair> pairs;
-  for (std::size_t i = 0; i < a.boxes.size(); ++i)
-    for (std::size_t j = 0; j < b.boxes.size(); ++j)
-      pairs.push_back({box_time(a.boxes[i], b.boxes[j], q.from, q.to - q.from), i, j});
-  std::sort(pairs.begin(), pairs.end());
-  std::optional<Rational> first;
-  for (const RankedPair& p : pairs) {
-    if (p.bound > 1 || (first && Rational(p.bound) > *first)) break;
-    RationalPoints there;
-    for (const RationalPoint& x : b.of(p.b)) there.push_back(oracle::moved(x, from, 1));
-    const auto time = oracle::first_time(a.of(p.a), there, way, first ? *first : Rational(1));
-    if (time && (!first || *time < *first)) first = time;
-  }
-  return first;
+  const Faces a(q.a), b(q.b);
+  const RationalPoint from = oracle::rational(q.from), way = oracle::minus(oracle::rational(q.to), from);
+  return least_of_pairs(
+      a, b,
+      [&](const AlignedBox3d& s, const AlignedBox3d& t) { return box_time(s, t, q.from, q.to - q.from); },
+      [&](std::size_t i, std::size_t j, const std::optional<Rational>& first) {
+        RationalPoints there;
+        for (const RationalPoint& x : b.exact[j]) there.push_back(oracle::moved(x, from, 1));
+        return oracle::first_time(a.exact[i], there, way, first.value_or(1));
+      });
 }
 
-/// The normals of a body's triangles, and its edges, each once.
-struct ConvexParts {
-  std::vector<RationalPoint> normals, edges;
-  bool convex = true;
+RationalPoint normal_of(const RationalPoints& t) {
+  return oracle::cross(oracle::minus(t[1], t[0]), oracle::minus(t[2], t[0]));
+}
 
-  explicit ConvexParts(const Triangles& t) {
+/// Returns the squared depth of two convex bodies, or nullopt if one is not convex: the least separation
+/// along the normals of faces, and the cross products of edges.
+std::optional<Rational> depth_sq(const NumberQuery& q) {
+  const Faces of[] = {Faces(q.a), Faces(q.b)};
+  RationalPoints normals[2], edges[2];
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Faces& faces = of[side];
     std::set<std::pair<VertexId, VertexId>> seen;
-    for (const auto& c : t.corners) {
-      const RationalPoint n = oracle::cross(oracle::minus(t.points[c[1]], t.points[c[0]]),
-                                            oracle::minus(t.points[c[2]], t.points[c[0]]));
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const RationalPoint n = normal_of(faces.exact[f]);
       if (oracle::dot(n, n) == 0) continue;
-      for (const RationalPoint& x : t.points)
-        convex = convex && oracle::dot(n, oracle::minus(x, t.points[c[0]])) <= 0;
-      normals.push_back(n);
+      for (const RationalPoint& x : faces.points)
+        if (oracle::dot(n, oracle::minus(x, faces.exact[f][0])) > 0) return std::nullopt;
+      normals[side].push_back(n);
+      const auto& c = faces.corners[f];
       for (int k = 0; k < 3; ++k)
         if (seen.insert(std::minmax(c[k], c[(k + 1) % 3])).second)
-          edges.push_back(oracle::minus(t.points[c[(k + 1) % 3]], t.points[c[k]]));
+          edges[side].push_back(oracle::minus(faces.points[c[(k + 1) % 3]], faces.points[c[k]]));
     }
-    convex = convex && normals.size() > 3;
+    if (normals[side].size() <= 3) return std::nullopt;
   }
-};
-
-/// Returns the squared separation along n: the overlap of the projections of A and B.
-Rational separation_vector_squared(const Triangles& a, const Triangles& b, const RationalPoint& n) {
-  std::optional<Rational> far, near;
-  for (const RationalPoint& x : a.points)
-    if (const Rational d = oracle::dot(n, x); !far || d > *far) far = d;
-  for (const RationalPoint& x : b.points)
-    if (const Rational d = oracle::dot(n, x); !near || d < *near) near = d;
-  const Rational overlap = *far - *near;
-  return overlap <= 0 ? Rational(0) : Rational(overlap * overlap / oracle::dot(n, n));
-}
-
-/// Returns the squared depth of two convex bodies, or nullopt if one is not convex.
-std::optional<Rational> depth_sq(const NumberQuery& q) {
-  const Triangles a(q.a), b(q.b);
-  const ConvexParts of_a(a), of_b(b);
-  if (!of_a.convex || !of_b.convex) return std::nullopt;
   std::optional<Rational> least;
   const auto try_out = [&](const RationalPoint& n) {
-    if (least && *least == 0) return;
-    const Rational d = separation_vector_squared(a, b, n);
+    if ((least && *least == 0) || oracle::dot(n, n) == 0) return;
+    std::optional<Rational> far, near;
+    for (const RationalPoint& x : of[0].points)
+      if (const Rational d = oracle::dot(n, x); !far || d > *far) far = d;
+    for (const RationalPoint& x : of[1].points)
+      if (const Rational d = oracle::dot(n, x); !near || d < *near) near = d;
+    const Rational overlap = *far - *near;
+    const Rational d = overlap <= 0 ? Rational(0) : Rational(overlap * overlap / oracle::dot(n, n));
     if (!least || d < *least) least = d;
   };
-  const RationalPoint zero = rational(Vector3d(0, 0, 0));
-  for (const RationalPoint& n : of_a.normals) try_out(n);
-  for (const RationalPoint& n : of_b.normals) try_out(oracle::minus(zero, n));
-  for (const RationalPoint& e : of_a.edges)
-    for (const RationalPoint& f : of_b.edges) {
-      const RationalPoint n = oracle::cross(e, f);
-      if (oracle::dot(n, n) == 0) continue;
-      try_out(n);
-      try_out(oracle::minus(zero, n));
+  const RationalPoint zero = {0, 0, 0};
+  for (const RationalPoint& n : normals[0]) try_out(n);
+  for (const RationalPoint& n : normals[1]) try_out(oracle::minus(zero, n));
+  for (const RationalPoint& e : edges[0])
+    for (const RationalPoint& f : edges[1]) {
+      try_out(oracle::cross(e, f));
+      try_out(oracle::cross(f, e));
     }
   return least;
 }
 
-}  // namespace
-
-RightAnswer true_number(Quantity quantity, const cases::Case& c) {
-  RightAnswer e;
-  e.rejection = why_unsupported(quantity, c);
-  if (!e.rejection.empty()) return e;
-  const NumberQuery q = query_of(c);
-  if (quantity == Quantity::near_pairs) {
-    e.pairs = true_near_pairs(q.a, q.b, q.within);
-  } else if (quantity == Quantity::self_intersections) {
-    e.pairs = true_self_intersections(union_of(q));
-  } else if (quantity == Quantity::distance) {
-    const bool meet = !brute_force(q.a, Pose{}, q.b, Pose{}).pairs.empty();
-    set_root(e, meet ? Rational(0) : distance_sq(q));
-  } else if (quantity == Quantity::first_contact) {
-    if (const auto t = first_time(q))
-      set_number(e, *t);
-    else
-      e.least = e.most = kNever;
-  } else if (const auto depth = depth_sq(q)) {
-    set_root(e, *depth);
-  } else {
-    e.rejection = "a non-convex body, whose depth has no independent reference";
-  }
-  return e;
-}
-
-// Right answers that are lists of pairs: those within a distance, and self-intersections. By rational
-// arithmetic where doubles do not decide with a margin.
-
-namespace {
-
-using Eigen::AlignedBox3d;
-using oracle::Rational;
-using oracle::RationalPoints;
-
-/// The real triangles of a body in world coordinates.
-struct Faces {
-  std::vector<std::array<VertexId, 3>> corners;
-  std::vector<std::array<Vector3d, 3>> x;
-  std::vector<RationalPoints> exact;
-  std::vector<AlignedBox3d> boxes;
-
-  explicit Faces(const LrbRep& rep) {
-    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-      std::array<VertexId, 3> v{};
-      rep.simplex(s, v.data());
-      corners.push_back(v);
-      x.emplace_back();
-      exact.emplace_back();
-      boxes.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) {
-        x.back()[k] = rep.vertices()[v[k]];
-        boxes.back().extend(x.back()[k]);
-        exact.back().push_back(oracle::rational({x.back()[k].x(), x.back()[k].y(), x.back()[k].z()}));
-      }
-    }
-  }
-  std::size_t size() const { return corners.size(); }
-  oracle::Corners doubles(std::size_t t) const {
-    oracle::Corners out;
-    for (const Vector3d& v : x[t]) out.push_back({v.x(), v.y(), v.z()});
-    return out;
-  }
-};
+// Lists of pairs: those within a distance, and self-intersections. By rational arithmetic where doubles do
+// not decide with a margin.
 
 /// Differences of doubles, and sums of a few squares of them, have smaller relative errors.
 constexpr double kMargin = 1e-12;
@@ -336,31 +242,12 @@ bool is_within(const Faces& a, std::size_t i, const Faces& b, std::size_t j, dou
       for (const Vector3d& q : b.x[j])
         if ((p - q).squaredNorm() < square * (1 - kMargin)) return true;
   }
-  return oracle::distance_sq(a.doubles(i), b.doubles(j)) <= oracle::square(within);
-}
-
-oracle::RationalPoint normal_of(const RationalPoints& t) {
-  return oracle::cross(oracle::minus(t[1], t[0]), oracle::minus(t[2], t[0]));
+  return oracle::distance_sq(a.x[i], b.x[j]) <= oracle::square(within);
 }
 
 bool has_area(const RationalPoints& t) {
-  const oracle::RationalPoint n = normal_of(t);
+  const RationalPoint n = normal_of(t);
   return oracle::dot(n, n) != 0;
-}
-
-/// Returns true if two features share a point: corners, edges or triangles.
-bool share_point(const RationalPoints& f, const RationalPoints& g) {
-  for (unsigned which_f = 1; which_f < 1U << f.size(); ++which_f)
-    for (unsigned which_g = 1; which_g < 1U << g.size(); ++which_g) {
-      RationalPoints p, q;
-      for (std::size_t k = 0; k < f.size(); ++k)
-        if ((which_f >> k & 1) != 0) p.push_back(f[k]);
-      for (std::size_t k = 0; k < g.size(); ++k)
-        if ((which_g >> k & 1) != 0) q.push_back(g[k]);
-      const auto closest = oracle::closest_of_features(p, q);
-      if (closest && closest->distance_sq == 0) return true;
-    }
-  return false;
 }
 
 /// Returns true if two triangles with area share a point beyond the corners and edges that they share by
@@ -373,21 +260,21 @@ bool intersect_beyond_shared(const Faces& f, std::size_t i, std::size_t j) {
       if (f.corners[i][k] == f.corners[j][l]) shared_i.push_back(k), shared_j.push_back(l);
   switch (shared_i.size()) {
     case 0:
-      return !oracle::clearly_apart(s, t) && oracle::triangles_meet(s, t);
+      return !oracle::clearly_apart(s, t) && oracle::simplices_meet(s, t);
     case 1: {
       // Both triangles are starlike about the corner: a ray from it leaves them in their opposite edges, and
       // the intersection in the nearer of the two.
       const std::size_t k = shared_i[0], l = shared_j[0];
-      return share_point({s[(k + 1) % 3], s[(k + 2) % 3]}, t) ||
-             share_point(s, {t[(l + 1) % 3], t[(l + 2) % 3]});
+      return oracle::simplices_meet({s[(k + 1) % 3], s[(k + 2) % 3]}, t) ||
+             oracle::simplices_meet(s, {t[(l + 1) % 3], t[(l + 2) % 3]});
     }
     case 2: {
       // Only in a common plane, on the same side of the edge.
-      const oracle::RationalPoint edge = oracle::minus(s[shared_i[1]], s[shared_i[0]]);
+      const RationalPoint edge = oracle::minus(s[shared_i[1]], s[shared_i[0]]);
       const auto side = [&](const RationalPoints& all, const std::vector<std::size_t>& of) {
         return oracle::cross(edge, oracle::minus(all[3 - of[0] - of[1]], all[of[0]]));
       };
-      const oracle::RationalPoint u = side(s, shared_i), v = side(t, shared_j), out = oracle::cross(u, v);
+      const RationalPoint u = side(s, shared_i), v = side(t, shared_j), out = oracle::cross(u, v);
       return oracle::dot(out, out) == 0 && oracle::dot(u, v) > 0;
     }
     default:
@@ -417,6 +304,31 @@ std::vector<SimplexPair> true_self_intersections(const LrbRep& body) {
       if (area[i] && area[j] && f.boxes[i].intersects(f.boxes[j]) && intersect_beyond_shared(f, i, j))
         out.push_back({static_cast<SimplexId>(i), static_cast<SimplexId>(j)});
   return out;
+}
+
+RightAnswer true_number(Quantity quantity, const cases::Case& c) {
+  RightAnswer e;
+  e.rejection = why_unsupported(quantity, c);
+  if (!e.rejection.empty()) return e;
+  const NumberQuery q = query_of(c);
+  if (quantity == Quantity::near_pairs) {
+    e.pairs = true_near_pairs(q.a, q.b, q.within);
+  } else if (quantity == Quantity::self_intersections) {
+    e.pairs = true_self_intersections(union_of(q));
+  } else if (quantity == Quantity::distance) {
+    const bool meet = !brute_force(q.a, Pose{}, q.b, Pose{}).pairs.empty();
+    set_root(e, meet ? Rational(0) : distance_sq(q));
+  } else if (quantity == Quantity::first_contact) {
+    if (const auto t = first_time(q))
+      set_number(e, *t);
+    else
+      e.least = e.most = kNever;
+  } else if (const auto depth = depth_sq(q)) {
+    set_root(e, *depth);
+  } else {
+    e.rejection = "a non-convex body, whose depth has no independent reference";
+  }
+  return e;
 }
 
 }  // namespace lrb::stability

@@ -45,16 +45,8 @@ const BenchRunner::Built& BenchRunner::built(std::size_t body, std::size_t side)
 }
 
 Record BenchRunner::ask(std::uint64_t question) {
-  if (question >= set_.questions.size())
-    throw InputError("question " + std::to_string(question) + ": the data set has only " +
-                     std::to_string(set_.questions.size()));
+  Record r = blank_record(set_, question, info_.name, setting_);
   const Question& q = set_.questions[question];
-  Record r;
-  r.set = set_.name;
-  r.method = info_.name;
-  r.setting = setting_;
-  r.question = question;
-  r.pose_class = q.pose_class;
   workers::note_failures(r, [&] {
     Errors errors;
     r.all = ask(q, Mode::all_pairs, judges_ ? &errors : nullptr);

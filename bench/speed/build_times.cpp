@@ -193,10 +193,9 @@ BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport&
   std::vector<workers::WorkerMethod> all;
   const std::string program = workers::program_beside("lrbscope-methods");
   if (program.empty()) throw EnvironmentError("bench --build: lrbscope-methods is missing beside lrbscope");
-  for (const methods::MethodInfo& info : own_structures())
-    all.push_back({{info.name, info.title, info.remark, true}, program, info});
+  for (const methods::MethodInfo& info : own_structures()) all.push_back({program, info});
   all.insert(all.end(), survey.methods.begin(), survey.methods.end());
-  for (const workers::WorkerMethod& m : all) out.methods.push_back(m.info);
+  out.methods = workers::infos_of(all);
   const std::size_t total = survey.rounds * out.bodies.size() * all.size();
   for (unsigned round = 0; round < survey.rounds; ++round)
     for (const BuiltBody& body : out.bodies)

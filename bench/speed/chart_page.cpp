@@ -15,6 +15,14 @@
 namespace lrb::bench {
 namespace {
 
+/// The texts of charts, by the queried quantity.
+struct ChartText {
+  std::string title, purpose;
+  std::string error;   ///< for the axis
+  std::string proved;  ///< in the key: the meaning of a cross; empty: no proof bounds the error on the axis
+  std::vector<report::Text> texts;
+};
+
 constexpr const char* kHowToRead =
     "Down is faster, left is more accurate; an error of 0 is at the left end. The tooltip of a point has all of its numbers; a "
     "click leads to the panel's scene, with trace and pictures.";
@@ -27,27 +35,6 @@ constexpr const char* kFrontier =
     "than the other in any. Points that are as accurate and whose bars overlap are too close to call; the line passes "
     "through the best of them, and the table lists them. Methods that are wrong in every case are no points; those that answer "
     "only yes or no, or that know earlier poses, are points, but not on the frontier. Each panel names what it leaves out.";
-
-ChartText of_pairs() {
-  return {
-      "Speed against accuracy",
-      "Every method at every setting of its parameter, on the same bodies and poses: median time of a query, and deviation of "
-      "the reported contact from the exact one.",
-      "error of the contact region / diagonal",
-      "",
-      {{"Axes", kHowToRead},
-       {"Times", kTimes},
-       {"Frontier", kFrontier},
-       {"Error",
-        "The Hausdorff distance between the exact and the reported contact region, over the larger body's diagonal, "
-        "averaged over poses; for methods with boolean answers, the share of wrong ones. A false contact, a missed one and a "
-        "missing answer count as one diagonal each."},
-       {"Proof",
-        "Only lrbscope proves its answers. Exact ones have no deviation; approximate ones come with a bound on "
-        "the sum of the distances from both bodies where listed faces intersect: column \"proven bound\", beside the measured "
-        "deviation, column \"off\". It does not bound the error on the axis: at a tangential contact, a small deviation "
-        "moves the contact far."}}};
-}
 
 /// Purpose, definition of the error, and proof for one quantity.
 struct NumberText {
@@ -81,26 +68,6 @@ NumberText text_of_number(Quantity quantity) {
       "lrbscope reports an interval that contains the distance, at every tolerance and within every budget."};
 }
 
-ChartText of_near() {
-  return {
-      "Speed versus accuracy: near pairs",
-      "All pairs of triangles within a distance of 0.1, 1 or 5 % of the larger body's diagonal. B is half that distance away: "
-      "time of a query, and error of the list.",
-      "error of the list or distances",
-      "width of the widest interval: proven",
-      {{"Axes", kHowToRead},
-       {"Times", kTimes},
-       {"Frontier", kFrontier},
-       {"Error",
-        "The pairs that are missing or extra, as a share of all listed and all near ones, or the largest error of a listed "
-        "distance over the larger body's diagonal, whichever is larger; averaged over poses. The table has each: list, recall "
-        "(missing), precision (extra), distance. An interval counts by its upper end. Errors of distances below 1e-14 count as 0. "
-        "A missing answer counts as 1. The right list is by exact predicates for all pairs with boxes within the distance, right distances by integers."},
-       {"Proof",
-        "lrbscope reports an interval that contains the distance of each pair; its list is exact. The width of the widest "
-        "interval is a cross at the same height. Other methods prove nothing."}}};
-}
-
 ChartText of_number(Quantity quantity) {
   const NumberText n = text_of_number(quantity);
   return {
@@ -108,10 +75,7 @@ ChartText of_number(Quantity quantity) {
       n.purpose,
       n.error,
       "width of the interval: proven",
-      {{"Axes", kHowToRead},
-       {"Times", kTimes},
-       {"Frontier", kFrontier},
-       {"Error",
+      {{"Error",
         std::string(n.judged) +
             " The true number is lrbscope's certified interval at its finest setting, which `lrbscope stability "
             "--quantity` checks against rational arithmetic on small bodies."},
@@ -121,6 +85,47 @@ ChartText of_number(Quantity quantity) {
             "Other methods prove nothing."}}};
 }
 
+/// The texts that differ between quantities.
+ChartText own_text(Quantity quantity) {
+  if (quantity == Quantity::near_pairs)
+    return {
+        "Speed versus accuracy: near pairs",
+        "All pairs of triangles within a distance of 0.1, 1 or 5 % of the larger body's diagonal. B is half that distance away: "
+        "time of a query, and error of the list.",
+        "error of the list or distances",
+        "width of the widest interval: proven",
+        {{"Error",
+          "The pairs that are missing or extra, as a share of all listed and all near ones, or the largest error of a listed "
+          "distance over the larger body's diagonal, whichever is larger; averaged over poses. The table has each: list, recall "
+          "(missing), precision (extra), distance. An interval counts by its upper end. Errors of distances below 1e-14 count as 0. "
+          "A missing answer counts as 1. The right list is by exact predicates for all pairs with boxes within the distance, right distances by integers."},
+         {"Proof",
+          "lrbscope reports an interval that contains the distance of each pair; its list is exact. The width of the widest "
+          "interval is a cross at the same height. Other methods prove nothing."}}};
+  if (quantity != Quantity::pairs) return of_number(quantity);
+  return {
+      "Speed against accuracy",
+      "Every method at every setting of its parameter, on the same bodies and poses: median time of a query, and deviation of "
+      "the reported contact from the exact one.",
+      "error of the contact region / diagonal",
+      "",
+      {{"Error",
+        "The Hausdorff distance between the exact and the reported contact region, over the larger body's diagonal, "
+        "averaged over poses; for methods with boolean answers, the share of wrong ones. A false contact, a missed one and a "
+        "missing answer count as one diagonal each."},
+       {"Proof",
+        "Only lrbscope proves its answers. Exact ones have no deviation; approximate ones come with a bound on "
+        "the sum of the distances from both bodies where listed faces intersect: column \"proven bound\", beside the measured "
+        "deviation, column \"off\". It does not bound the error on the axis: at a tangential contact, a small deviation "
+        "moves the contact far."}}};
+}
+
+ChartText chart_text(Quantity quantity) {
+  ChartText out = own_text(quantity);
+  out.texts.insert(out.texts.begin(), {{"Axes", kHowToRead}, {"Times", kTimes}, {"Frontier", kFrontier}});
+  return out;
+}
+
 }  // namespace
 
 std::vector<const Point*> panel(const std::vector<Point>& points, const std::string& set, PoseClass c) {
@@ -128,11 +133,6 @@ std::vector<const Point*> panel(const std::vector<Point>& points, const std::str
   for (const Point& p : points)
     if (p.set == set && p.pose_class == c) out.push_back(&p);
   return out;
-}
-
-ChartText chart_text(Quantity quantity) {
-  if (quantity == Quantity::near_pairs) return of_near();
-  return quantity == Quantity::pairs ? of_pairs() : of_number(quantity);
 }
 
 namespace {

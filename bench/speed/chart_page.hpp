@@ -51,15 +51,4 @@ report::Table table_of_settings(const std::vector<DataSet>& sets, const std::vec
 /// Returns the points of a panel.
 std::vector<const Point*> panel(const std::vector<Point>& points, const std::string& set, PoseClass c);
 
-// The texts of charts of speed against accuracy, by the queried quantity.
-
-struct ChartText {
-  std::string title, purpose;
-  std::string error;   ///< for the axis
-  std::string proved;  ///< in the key: the meaning of a cross; empty: no proof bounds the error on the axis
-  std::vector<report::Text> texts;
-};
-
-ChartText chart_text(Quantity quantity);
-
 }  // namespace lrb::bench

@@ -95,8 +95,8 @@ ordered_json question_json(const Question& q, Quantity quantity) {
   ordered_json out = {{"class", name_of(q.pose_class)},
                       {"a", q.a},
                       {"b", q.b},
-                      {"pose_a", workers::pose_json(q.pose_a)},
-                      {"pose_b", workers::pose_json(q.pose_b)}};
+                      {"pose_a", io::rows_of(q.pose_a)},
+                      {"pose_b", io::rows_of(q.pose_b)}};
   if (methods::is_list(quantity)) out["expected"] = workers::PairsJson::write(q.expected);
   if (quantity == Quantity::first_contact) {
     out["from"] = vector_json(q.from);
@@ -125,49 +125,64 @@ Question question_from(const json& value, Quantity quantity) {
 
 }  // namespace
 
+namespace {
+
+struct PoseInfo {
+  const char* title;
+  double depth;  ///< the motion of B beyond first contact, in diagonals; negative: separate
+  double within = 0;
+};
+
+/// By class.
+constexpr PoseInfo kPoseInfos[] = {{"0.5 % apart", -0.005},
+                                   {"shallow, 1 %", 0.01},
+                                   {"deep, 10 %", 0.1},
+                                   {"identical pose", 0.01},
+                                   {"one body small", 0.01},
+                                   {"0.1 % apart", -0.001},
+                                   {"1 % apart", -0.01},
+                                   {"10 % apart", -0.1},
+                                   {"100 % apart", -1},
+                                   {"straight in", 0.1},
+                                   {"grazing, 1 %", 0.01},
+                                   {"past, 1 % away", -0.01},
+                                   {"within 0.1 %", -0.0005, 0.001},
+                                   {"within 1 %", -0.005, 0.01},
+                                   {"within 5 %", -0.025, 0.05}};
+
+const PoseInfo& info_of(PoseClass c) {
+  return kPoseInfos[static_cast<std::size_t>(c)];
+}
+
+}  // namespace
+
 std::span<const PoseClass> classes_of(Quantity quantity) {
-  static constexpr PoseClass kPairs[] = {PoseClass::apart, PoseClass::shallow, PoseClass::deep,
-                                         PoseClass::identical, PoseClass::small};
-  static constexpr PoseClass kGaps[] = {PoseClass::gap_1000th, PoseClass::gap_100th, PoseClass::gap_10th,
-                                        PoseClass::gap_whole};
-  static constexpr PoseClass kMotions[] = {PoseClass::into, PoseClass::graze, PoseClass::past};
-  static constexpr PoseClass kDepths[] = {PoseClass::shallow, PoseClass::deep};
-  static constexpr PoseClass kNear[] = {PoseClass::near_1000th, PoseClass::near_100th, PoseClass::near_20th};
-  switch (quantity) {
-    case Quantity::distance:
-      return kGaps;
-    case Quantity::first_contact:
-      return kMotions;
-    case Quantity::depth:
-      return kDepths;
-    case Quantity::near_pairs:
-      return kNear;
-    case Quantity::pairs:
-    case Quantity::self_intersections:  // not measured
-      break;
-  }
-  return kPairs;
+  static const std::vector<PoseClass> kAll = [] {
+    std::vector<PoseClass> out;
+    for (const auto& entry : kEnumNames<PoseClass>) out.push_back(entry.value);
+    return out;
+  }();
+  const auto from_to = [](PoseClass first, PoseClass last) {
+    const auto begin = static_cast<std::size_t>(first);
+    return std::span(kAll).subspan(begin, static_cast<std::size_t>(last) - begin + 1);
+  };
+  if (quantity == Quantity::distance) return from_to(PoseClass::gap_1000th, PoseClass::gap_whole);
+  if (quantity == Quantity::first_contact) return from_to(PoseClass::into, PoseClass::past);
+  if (quantity == Quantity::depth) return from_to(PoseClass::shallow, PoseClass::deep);
+  if (quantity == Quantity::near_pairs) return from_to(PoseClass::near_1000th, PoseClass::near_20th);
+  return from_to(PoseClass::apart, PoseClass::small);
 }
 
 const char* title(PoseClass c) {
-  static constexpr const char* kTitles[] = {
-      "0.5 % apart",  "shallow, 1 %",   "deep, 10 %",   "identical pose", "one body small",
-      "0.1 % apart",  "1 % apart",      "10 % apart",   "100 % apart",    "straight in",
-      "grazing, 1 %", "past, 1 % away", "within 0.1 %", "within 1 %",     "within 5 %"};
-  return kTitles[static_cast<std::size_t>(c)];
+  return info_of(c).title;
+}
+
+double depth_of(PoseClass c) {
+  return info_of(c).depth;
 }
 
 double within_of(PoseClass c) {
-  switch (c) {
-    case PoseClass::near_1000th:
-      return 0.001;
-    case PoseClass::near_100th:
-      return 0.01;
-    case PoseClass::near_20th:
-      return 0.05;
-    default:
-      return 0;
-  }
+  return info_of(c).within;
 }
 
 bool is_complete(const DataSet& set) {
@@ -235,7 +250,19 @@ void find_numbers(DataSet& set) {
 
 // Records.
 
-using nlohmann::json;
+Record blank_record(const DataSet& set, std::uint64_t question, const std::string& method,
+                    std::optional<double> setting) {
+  if (question >= set.questions.size())
+    throw InputError("question " + std::to_string(question) + ": the data set has only " +
+                     std::to_string(set.questions.size()));
+  Record r;
+  r.set = set.name;
+  r.method = method;
+  r.setting = setting;
+  r.question = question;
+  r.pose_class = set.questions[question].pose_class;
+  return r;
+}
 
 nlohmann::ordered_json to_json(const Record& r) {
   return io::record_to_json(r);

@@ -62,6 +62,8 @@ constexpr auto enum_names(PoseClass) {
 /// Returns the pose classes used for a quantity, in their order.
 std::span<const PoseClass> classes_of(Quantity quantity);
 const char* title(PoseClass c);  ///< "0.5 % apart"
+/// Returns the motion of B beyond first contact, in diagonals of the larger body; negative: separate.
+double depth_of(PoseClass c);
 /// Returns the distance within which pairs are near, in diagonals of the larger body; 0 for other classes.
 double within_of(PoseClass c);
 
@@ -213,6 +215,10 @@ struct Record {
   /// of some meshes at one pose take 100 MB.
   std::optional<Errors> errors;
 };
+
+/// Returns the record of a query, without an answer. Throws InputError if there is no such query.
+Record blank_record(const DataSet& set, std::uint64_t question, const std::string& method,
+                    std::optional<double> setting);
 
 nlohmann::ordered_json to_json(const Record& r);
 /// Reads a record. Throws InputError, which describes the error in the value, if it is invalid.

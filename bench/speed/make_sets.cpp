@@ -6,13 +6,14 @@
 #include <filesystem>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/chart_page.hpp"
-#include "bench/workers/worker_json.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/poses.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/build.hpp>
@@ -31,6 +32,7 @@ bool Approaches::meets(const Pose& pose_b) {
 }
 
 Approach Approaches::next(double depth) {
+  constexpr int kHalvings = 40;
   while (true) {
     Approach out;
     out.pose.r = shapes::random_rotation(random_);
@@ -40,9 +42,15 @@ Approach Approaches::next(double depth) {
       out.pose.t = centre + s * out.direction;
       return meets(out.pose);
     };
-    const auto at = first_meeting(2 * diagonal_, 0, 0.004 * diagonal_, meets_at);
-    if (!at) continue;
-    out.pose.t = centre + (*at - depth * diagonal_) * out.direction;
+    // The largest distance at which steps, from afar, find an intersection; then bisected.
+    double at = 2 * diagonal_, step = 0.004 * diagonal_;
+    while (at > 0 && !meets_at(at)) at -= step;
+    if (at <= 0) continue;
+    for (int i = 0; i < kHalvings; ++i) {
+      step /= 2;
+      if (meets_at(at + step)) at += step;
+    }
+    out.pose.t = centre + (at - depth * diagonal_) * out.direction;
     return out;
   }
 }
@@ -50,29 +58,6 @@ Approach Approaches::next(double depth) {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Returns the motion of B beyond first contact, in diagonals of the larger body; negative: separate.
-double depth_of(PoseClass c) {
-  if (const double within = within_of(c); within > 0) return -within / 2;
-  switch (c) {
-    case PoseClass::apart:
-      return -0.005;
-    case PoseClass::deep:
-    case PoseClass::into:
-      return 0.1;
-    case PoseClass::gap_1000th:
-      return -0.001;
-    case PoseClass::gap_100th:
-    case PoseClass::past:
-      return -0.01;
-    case PoseClass::gap_10th:
-      return -0.1;
-    case PoseClass::gap_whole:
-      return -1;
-    default:
-      return 0.01;
-  }
-}
 
 constexpr double kSmall = 0.1;  // size of B / size of A
 
@@ -287,12 +272,12 @@ std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string
       {{"camera", "scene"}, {"title", "Overview with wrappers"}},
       {{"camera", "contact"}, {"draw", "body"}, {"title", "Contact without wrappers"}}};
   ordered_json poses = ordered_json::array();
-  for (const Pose& pose : poses_of(set, q)) poses.push_back(workers::pose_json(pose));
+  for (const Pose& pose : poses_of(set, q)) poses.push_back(io::rows_of(pose));
   ordered_json value = {
       {"name", name},
       {"purpose", set.what + ": " + title(q.pose_class) + ", question " + std::to_string(k) + "."},
       {"bodies",
-       {{"a", {{"file", "../" + set.bodies[q.a].file}, {"pose", workers::pose_json(q.pose_a)}}},
+       {{"a", {{"file", "../" + set.bodies[q.a].file}, {"pose", io::rows_of(q.pose_a)}}},
         {"b", {{"file", "../" + set.bodies[q.b].file}}}}},
       {"motion", {{"kind", "poses"}, {"poses", poses}}},
       {"trace", {{"gzip", true}}},

@@ -45,22 +45,6 @@ class Approaches {
   CollideRequest request_;
 };
 
-/// Returns about the largest s at which two bodies intersect, coming from s = `far`: tests at intervals of
-/// `step` down to `near`, then bisects. Returns nullopt if no test finds an intersection. meets(s): whether
-/// the bodies intersect at s.
-template <class Meets>
-std::optional<double> first_meeting(double far, double near, double step, const Meets& meets) {
-  constexpr int kHalvings = 40;
-  double at = far;
-  while (at > near && !meets(at)) at -= step;
-  if (at <= near) return std::nullopt;
-  for (int i = 0; i < kHalvings; ++i) {
-    step /= 2;
-    if (meets(at + step)) at += step;
-  }
-  return at;
-}
-
 struct BodyPair {
   std::string name, what;
   std::function<Mesh()> a, b;

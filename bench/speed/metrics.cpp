@@ -181,9 +181,7 @@ Errors worst_of(const methods::MethodInfo& info) {
 }
 
 std::size_t without(const std::vector<SimplexPair>& of, const std::vector<SimplexPair>& others) {
-  std::vector<SimplexPair> out;
-  std::set_difference(of.begin(), of.end(), others.begin(), others.end(), std::back_inserter(out));
-  return out.size();
+  return methods::without(of, others).size();
 }
 
 double share(std::size_t part, std::size_t whole) {
@@ -193,6 +191,24 @@ double share(std::size_t part, std::size_t whole) {
 /// Returns the unit of errors of a number.
 double unit_of(const DataSet& set) {
   return set.quantity == Quantity::first_contact ? 1 : set.diagonal;
+}
+
+/// Returns the metric that the chart shows for a quantity.
+Metric chart_metric(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::distance:
+      return Metric::distance;
+    case Quantity::first_contact:
+      return Metric::time_of_impact;
+    case Quantity::depth:
+      return Metric::penetration;
+    case Quantity::near_pairs:
+      return Metric::list;
+    case Quantity::pairs:
+    case Quantity::self_intersections:  // not measured
+      break;
+  }
+  return Metric::hausdorff;
 }
 
 /// Judges a number. For an interval its upper end is used: there is a pair of points at that distance, the
@@ -367,23 +383,6 @@ void mark_frontiers(std::vector<Point>& points, const std::vector<methods::Metho
 }
 
 }  // namespace
-
-Metric chart_metric(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::distance:
-      return Metric::distance;
-    case Quantity::first_contact:
-      return Metric::time_of_impact;
-    case Quantity::depth:
-      return Metric::penetration;
-    case Quantity::near_pairs:
-      return Metric::list;
-    case Quantity::pairs:
-    case Quantity::self_intersections:  // not measured
-      break;
-  }
-  return Metric::hausdorff;
-}
 
 double Point::error() const {
   if (const auto& list = errors[static_cast<std::size_t>(Metric::list)])

@@ -15,9 +15,6 @@
 
 namespace lrb::bench {
 
-/// Returns the metric that the chart shows for a quantity.
-Metric chart_metric(Quantity quantity);
-
 struct Point {
   std::string set, method;
   std::optional<double> setting;

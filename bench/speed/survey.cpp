@@ -20,16 +20,12 @@ RecordKey key_of(const Record& r) {
   return {r.set, name_of(r), r.question, r.round};
 }
 
-/// Returns true if an answer need not be measured: it was, or the answer in round 0 failed.
-/// `outcome_of(key)`: of a known answer, or nullopt.
-template <class OutcomeOf>
-bool is_done(const OutcomeOf& outcome_of, RecordKey key) {
-  if (outcome_of(key)) return true;
-  std::uint64_t& round = std::get<3>(key);
-  if (round == 0) return false;
-  round = 0;
-  const std::optional<Outcome> first = outcome_of(key);
-  return first && *first != Outcome::answered;
+/// Returns true if an answer need not be measured: it is known, or the answer in round 0 failed.
+bool is_done(const std::map<RecordKey, Record>& known, RecordKey key) {
+  if (known.count(key) > 0) return true;
+  std::get<3>(key) = 0;
+  const auto first = known.find(key);
+  return first != known.end() && first->second.outcome != Outcome::answered;
 }
 
 class Survey {
@@ -61,31 +57,22 @@ class Survey {
     return o_.judges && r.round == 0 && r.outcome == Outcome::answered && !r.errors && !r.all.upper;
   }
 
-  bool is_done(const std::string& set, const std::string& name, std::uint64_t question,
-               unsigned round) const {
-    const auto outcome_of = [&](const RecordKey& key) -> std::optional<Outcome> {
-      const auto it = known_.find(key);
-      return it == known_.end() ? std::nullopt : std::optional(it->second.outcome);
-    };
-    return bench::is_done(outcome_of, {set, name, question, round});
-  }
-
   void ask(const DataSet& set, const Contestant& c, unsigned round, std::uint64_t begin, std::uint64_t end) {
-    const std::string name = name_of(c.method.column.name, c.setting);
+    const std::string name = name_of(c.method.info.name, c.setting);
     const std::string what = set.name + ", " + name;
     while (begin < end) {
-      for (; begin < end && is_done(set.name, name, begin, round); ++begin) notify(what);
+      for (; begin < end && is_done(known_, {set.name, name, begin, round}); ++begin) notify(what);
       std::uint64_t stop = begin;
-      while (stop < end && !is_done(set.name, name, stop, round)) ++stop;
+      while (stop < end && !is_done(known_, {set.name, name, stop, round})) ++stop;
       if (begin < stop) run(set, c, round, begin, stop);
       begin = stop;
     }
   }
 
   void run(const DataSet& set, const Contestant& c, unsigned round, std::uint64_t begin, std::uint64_t end) {
-    const std::string what = set.name + ", " + name_of(c.method.column.name, c.setting);
+    const std::string what = set.name + ", " + name_of(c.method.info.name, c.setting);
     workers::Job::Task task;
-    task.command = {c.method.program, "--method", c.method.column.name};
+    task.command = {c.method.program, "--method", c.method.info.name};
     task.question = [&](std::uint64_t k) {
       nlohmann::ordered_json question = {{"set", o_.folder + "/" + set.name + ".set.json"}, {"question", k}};
       if (c.setting) question["setting"] = *c.setting;
@@ -102,13 +89,8 @@ class Survey {
       notify(what);
     };
     task.on_failure = [&](std::uint64_t k, const workers::WorkerFailure& failure) {
-      Record r;
-      r.set = set.name;
-      r.method = c.method.column.name;
-      r.setting = c.setting;
-      r.question = k;
+      Record r = blank_record(set, k, c.method.info.name, c.setting);
       r.round = round;
-      r.pose_class = set.questions[k].pose_class;
       workers::note_failure(r, failure);
       keep(std::move(r));
       notify(what);
@@ -128,7 +110,7 @@ class Survey {
       for (const Contestant& c : o_.contestants)
         for (std::uint64_t q = 0; q < set.questions.size(); ++q)
           for (unsigned round = 0; round < o_.rounds; ++round)
-            if (const auto it = known_.find({set.name, name_of(c.method.column.name, c.setting), q, round});
+            if (const auto it = known_.find({set.name, name_of(c.method.info.name, c.setting), q, round});
                 it != known_.end())
               out.push_back(it->second);
     return out;
@@ -197,7 +179,7 @@ void write_plan(const SurveyOptions& options, const std::vector<std::string>& se
             {"rounds", 1}};
   merge(plan["sets"], sets);
   std::vector<std::string> names;
-  for (const Contestant& c : options.contestants) names.push_back(name_of(c.method.column.name, c.setting));
+  for (const Contestant& c : options.contestants) names.push_back(name_of(c.method.info.name, c.setting));
   merge(plan["methods"], names);
   plan["rounds"] = std::max(plan["rounds"].get<unsigned>(), options.rounds);
   io::write_text(plan_file(options.folder), plan.dump() + "\n");
@@ -207,12 +189,8 @@ std::vector<Missing> missing_answers(const std::string& folder, const std::vecto
                                      const std::vector<Record>& records) {
   const nlohmann::ordered_json plan = read_plan(folder);
   if (plan.is_null()) return {};
-  std::map<RecordKey, Outcome> known;
-  for (const Record& r : records) known[key_of(r)] = r.outcome;
-  const auto outcome_of = [&](const RecordKey& key) -> std::optional<Outcome> {
-    const auto it = known.find(key);
-    return it == known.end() ? std::nullopt : std::optional(it->second);
-  };
+  std::map<RecordKey, Record> known;
+  for (const Record& r : records) known[key_of(r)] = r;
   std::vector<Missing> out;
   bool any = false;
   for (const std::string name : plan["sets"]) {
@@ -225,7 +203,7 @@ std::vector<Missing> missing_answers(const std::string& folder, const std::vecto
         for (std::uint64_t q = 0; q < set->questions.size(); ++q)
           for (std::uint64_t round = 0; round < plan["rounds"].get<unsigned>(); ++round) {
             ++m.planned;
-            m.missing += !is_done(outcome_of, {m.set, method, q, round});
+            m.missing += !is_done(known, {m.set, method, q, round});
           }
     }
     any = any || m.missing > 0;

@@ -3,63 +3,15 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/methods/triangles.hpp"
+#include "bench/stability/rational_oracles.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "bench/workers/workers.hpp"
+#include "render/pictures/marks.hpp"
 #include "scenarios/io/poses.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb::stability {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json mesh_json(const Mesh& mesh) {
-  Json points = Json::array(), faces = Json::array();
-  for (const Eigen::Vector3d& x : mesh.vertices) {
-    if (!x.allFinite()) throw InputError("a vertex of the case is not finite");
-    points.push_back({x.x(), x.y(), x.z()});
-  }
-  for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    Json corners = Json::array();
-    for (const VertexId v : mesh.face(f)) corners.push_back(v.value());
-    faces.push_back(std::move(corners));
-  }
-  return {{"dim", mesh.dim}, {"vertices", std::move(points)}, {"faces", std::move(faces)}};
-}
-
-Mesh mesh_from(const nlohmann::json& value) {
-  Mesh mesh;
-  mesh.dim = value.at("dim");
-  for (const auto& x : value.at("vertices")) mesh.vertices.emplace_back(x.at(0), x.at(1), x.at(2));
-  std::vector<VertexId> corners;
-  for (const auto& face : value.at("faces")) {
-    corners.clear();
-    for (const auto& v : face) corners.emplace_back(v.get<std::uint32_t>());
-    mesh.add_face(corners);
-  }
-  return mesh;
-}
-
-Json finite_pose(const Pose& pose) {
-  if (!pose.r.allFinite() || !pose.t.allFinite()) throw InputError("a pose of the case is not finite");
-  return workers::pose_json(pose);
-}
-
-Pose pose_from(const nlohmann::json& value) {
-  return io::pose_of(value.get<std::array<double, 12>>());
-}
-
-std::string to_text(const CaseMeshes& c, const RightAnswer& right) {
-  const Json out = {{"a", mesh_json(c.a)},
-                    {"b", mesh_json(c.b)},
-                    {"pose_a", finite_pose(c.pose_a)},
-                    {"pose_b", finite_pose(c.pose_b)},
-                    {"right", to_json(right)}};
-  return out.dump();
-}
-
-}  // namespace
 
 CaseMeshes meshes_of(const cases::Case& c) {
   return {methods::real_mesh(*c.a), methods::real_mesh(*c.b), c.pose_a, c.pose_b};
@@ -74,42 +26,108 @@ cases::Case case_of(const CaseMeshes& meshes) {
   return c;
 }
 
-Replay CaseWorker::ask(const CaseMeshes& meshes) {
-  const RightAnswer right = expected_answer(case_of(meshes));
-  const std::string text = to_text(meshes, right);
-  Replay out;
-  out.expected = right.pairs;
-  if (!worker_) worker_.emplace(std::vector<std::string>{method_.program, "--method", method_.info.name});
-  const workers::MemoryFile file("case");
-  file.write(text);
-  worker_->ask(nlohmann::json{{"saved", file.path()}}.dump());
-  workers::WorkerFailure failure;
-  if (const auto line = worker_->answer(timeout_, failure)) {
-    if (const std::string error = workers::error_in(*line); !error.empty())
-      throw EnvironmentError(method_.program + ": " + error);
-    out.take(*line);
-    return out;
+Mesh joined(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  Mesh out;
+  out.dim = a.dim();
+  for (const auto& [rep, pose] : {std::pair{&a, &pose_a}, std::pair{&b, &pose_b}}) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    for (const Eigen::Vector3d& v : rep->vertices()) out.vertices.push_back(pose->apply(v));
+    for (SimplexId s = 0; s < rep->real_simplex_count(); ++s) {
+      VertexId v[3] = {};
+      rep->simplex(s, v);
+      for (VertexId& corner : v) corner = VertexId(first + corner);
+      out.add_face({v, static_cast<std::size_t>(out.dim)});
+    }
   }
-  worker_.reset();
-  out.record.method = method_.info.name;
-  out.record.expected = right.pairs.size();
-  workers::note_failure(out.record, failure);
   return out;
 }
 
-nlohmann::ordered_json answer_saved(const methods::MethodEntry& entry, const std::string& path) {
-  static const cases::Family kNoFamily = {"", "", nullptr};
+PosedPair::PosedPair(const cases::Case& c, const SimplexPair& pair)
+    : x{run::corners_of(*c.a, c.pose_a, pair.a), run::corners_of(*c.b, c.pose_b, pair.b)} {}
+
+exact::PairContact PosedPair::contact() const {
+  const double* p[2][3] = {};
+  for (std::size_t side = 0; side < 2; ++side)
+    for (std::size_t k = 0; k < x[side].size(); ++k) p[side][k] = x[side][k].data();
+  return x[0].size() == 3 ? exact::contact_of_triangles(p[0], p[1]) : exact::contact_of_segments(p[0], p[1]);
+}
+
+oracle::RationalClosest PosedPair::closest() const {
+  return oracle::closest_points(oracle::rational(x[0]), oracle::rational(x[1]));
+}
+
+Corners PosedPair::place() const {
+  const exact::PairContact found = contact();
+  Corners out;
+  for (std::size_t k = 0; k < found.corner_count; ++k) out.push_back(found.corners[k].x);
+  if (!out.empty()) return out;
+  const oracle::RationalClosest points = closest();
+  for (const oracle::RationalPoint& p : {points.on_f, points.on_g})
+    out.emplace_back(p[0].convert_to<double>(), p[1].convert_to<double>(), p[2].convert_to<double>());
+  return out;
+}
+
+// Cases in files, for workers: each mesh as its corners' coordinates, and the numbers of its faces' corners.
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(const std::vector<double>& numbers) {
+  for (const double x : numbers)
+    if (!std::isfinite(x)) throw InputError("a vertex or a pose of the case is not finite");
+  return numbers;
+}
+
+Json pose_json(const Pose& pose) {
+  const auto rows = io::rows_of(pose);
+  return finite({rows.begin(), rows.end()});
+}
+
+Json mesh_json(const Mesh& mesh) {
+  std::vector<double> points;
+  for (const Eigen::Vector3d& x : mesh.vertices) points.insert(points.end(), x.begin(), x.end());
+  Json faces = Json::array();
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    faces.push_back(Json::array());
+    for (const VertexId v : mesh.face(f)) faces.back().push_back(v.value());
+  }
+  return {{"dim", mesh.dim}, {"points", finite(points)}, {"faces", std::move(faces)}};
+}
+
+Mesh mesh_from(const nlohmann::json& value) {
+  Mesh mesh;
+  mesh.dim = value.at("dim");
+  const std::vector<double> x = value.at("points");
+  for (std::size_t i = 0; i < x.size(); i += 3) mesh.vertices.emplace_back(x[i], x[i + 1], x[i + 2]);
+  for (const std::vector<std::uint32_t> face : value.at("faces"))
+    mesh.add_face(std::vector<VertexId>(face.begin(), face.end()));
+  return mesh;
+}
+
+}  // namespace
+
+Replay CaseWorker::ask(const CaseMeshes& meshes) {
+  const RightAnswer right = expected_answer(case_of(meshes));
+  const workers::MemoryFile file("case"), answer("expected");
+  file.write(Json{{"a", mesh_json(meshes.a)},
+                  {"b", mesh_json(meshes.b)},
+                  {"pose_a", pose_json(meshes.pose_a)},
+                  {"pose_b", pose_json(meshes.pose_b)}}
+                 .dump());
+  answer.write(to_json(right).dump() + "\n");
+  if (!worker_) worker_.emplace(std::vector<std::string>{method_.program, "--method", method_.info.name});
+  Replay out;
+  out.expected = right.pairs;
+  out.record.method = method_.info.name;
+  if (!out.ask(*worker_, {{"saved", file.path()}}, answer.path(), timeout_)) worker_.reset();
+  return out;
+}
+
+cases::Case read_case(const std::string& path) {
   const auto value = nlohmann::json::parse(read_file(path));
-  const cases::Case c = case_of({mesh_from(value.at("a")), mesh_from(value.at("b")),
-                                 pose_from(value.at("pose_a")), pose_from(value.at("pose_b"))});
-  // A new runner for each case, so that an answer does not depend on the cases before it.
-  StabilityRunner runner(entry);
-  Record record;
-  record.method = entry.info.name;
-  runner.ask(kNoFamily, c, expected_from(value.at("right").dump()), record);
-  Json reply = to_json(record);
-  if (runner.pairs()) reply["answered_pairs"] = workers::PairsJson::write(*runner.pairs());
-  return reply;
+  const auto pose = [&](const char* key) { return io::pose_of(value.at(key).get<std::array<double, 12>>()); };
+  return case_of({mesh_from(value.at("a")), mesh_from(value.at("b")), pose("pose_a"), pose("pose_b")});
 }
 
 }  // namespace lrb::stability

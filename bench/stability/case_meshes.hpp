@@ -1,18 +1,25 @@
 #pragma once
 /// A case as two meshes at two poses, and a method that is queried about such cases one after the other.
 
+#include <array>
 #include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "bench/cases/families.hpp"
 #include "bench/methods/method.hpp"
 #include "bench/stability/stability_experiment.hpp"
+#include <lrbscope/contact.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/pose.hpp>
+
+namespace lrb::oracle {
+struct RationalClosest;
+}
 
 namespace lrb::stability {
 
@@ -26,10 +33,26 @@ CaseMeshes meshes_of(const cases::Case& c);
 /// Returns the case of two meshes. A body is closed if its mesh bounds a solid; it has no regions. Throws
 /// InputError if a mesh cannot be queried.
 cases::Case case_of(const CaseMeshes& meshes);
+/// Returns one mesh of the real simplices of two posed bodies, A's first.
+Mesh joined(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 inline bool is_identity(const Pose& pose) {
   return pose.r == Eigen::Matrix3d::Identity() && pose.t == Eigen::Vector3d::Zero();
 }
+
+/// The corners of a simplex, or of a part of it, in the world.
+using Corners = std::vector<Eigen::Vector3d>;
+
+/// A simplex of each body, as every exact method defines them: with corners rounded to doubles.
+struct PosedPair {
+  std::array<Corners, 2> x;
+
+  PosedPair(const cases::Case& c, const SimplexPair& pair);
+  exact::PairContact contact() const;
+  oracle::RationalClosest closest() const;
+  /// Returns the corners of the intersection, or the closest points.
+  Corners place() const;
+};
 
 /// A method in a worker, which is started again after a crash or a time-out.
 class CaseWorker {
@@ -48,7 +71,7 @@ class CaseWorker {
   std::optional<workers::Worker> worker_;
 };
 
-/// The worker's side: the answer to the case, with its right answer, of a file.
-nlohmann::ordered_json answer_saved(const methods::MethodEntry& entry, const std::string& path);
+/// The worker's side: the case of a file.
+cases::Case read_case(const std::string& path);
 
 }  // namespace lrb::stability

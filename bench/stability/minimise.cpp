@@ -18,20 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-exact::Meet meet_of(const cases::Case& c, const SimplexPair& pair) {
-  Vector3d x[2][3];
-  const double* p[2][3] = {};
-  for (std::size_t side = 0; side < 2; ++side) {
-    const LrbRep& rep = side == 0 ? *c.a : *c.b;
-    const Pose& pose = side == 0 ? c.pose_a : c.pose_b;
-    VertexId v[3] = {};
-    rep.simplex(side == 0 ? pair.a : pair.b, v);
-    for (int k = 0; k < rep.dim(); ++k) {
-      x[side][k] = pose.apply(rep.vertices()[v[k]]);
-      p[side][k] = x[side][k].data();
-    }
-  }
-  return c.a->dim() == 3 ? exact::meet_triangles(p[0], p[1]) : exact::meet_segments(p[0], p[1]);
+bool crosses(const cases::Case& c, const SimplexPair& pair) {
+  return PosedPair(c, pair).contact().meet == exact::Meet::cross;
 }
 
 /// Returns the wrong pairs of an answer, the worst kind first. Without a list, a wrong "no contact" misses
@@ -40,8 +28,7 @@ Pairs wrong_pairs(const cases::Case& c, const Replay& answer) {
   const Verdict verdict = compare(answer.expected, answer.answered);
   Pairs missed = verdict.missed;
   if (!answer.answered && answer.record.missed > 0) missed = answer.expected;
-  std::stable_partition(missed.begin(), missed.end(),
-                        [&](const SimplexPair& p) { return meet_of(c, p) == exact::Meet::cross; });
+  std::stable_partition(missed.begin(), missed.end(), [&](const SimplexPair& p) { return crosses(c, p); });
   missed.insert(missed.end(), verdict.extra.begin(), verdict.extra.end());
   return missed;
 }
@@ -359,11 +346,13 @@ class Shrinking {
     }
   }
 
-  std::set<double> numbers() const {
+  /// Returns the coordinates along an axis; -1: all.
+  std::set<double> numbers(int axis = -1) const {
     std::set<double> out;
     for (const Mesh* m : {&now_.a, &now_.b})
       for (const Vector3d& v : m->vertices)
-        for (int k = 0; k < m->dim; ++k) out.insert(v[k]);
+        for (int k = 0; k < m->dim; ++k)
+          if (axis < 0 || k == axis) out.insert(v[k]);
     return out;
   }
 
@@ -380,6 +369,13 @@ class Shrinking {
           if (!std::isfinite(x)) return false;
         }
     return attempt(c);
+  }
+
+  /// The same for the coordinates along an axis (-1: all): f(axis, value).
+  template <class Function>
+  bool attempt_on_axis(int axis, const Function& f) {
+    return attempt_on_all(
+        [&](std::size_t, std::size_t, int k, double x) { return axis < 0 || k == axis ? f(k, x) : x; });
   }
 
   void shorten_coordinates() {
@@ -399,10 +395,8 @@ class Shrinking {
     for (std::size_t side = 0; side < 2; ++side)
       for (std::size_t i = 0; i < mesh(now_, side).vertices.size(); ++i) {
         const Vector3d by = mesh(now_, side).vertices[i];
-        attempt_on_all([&](std::size_t, std::size_t, int k, double x) { return x - by[k]; });
-        for (int axis = 0; axis < 3; ++axis)
-          attempt_on_all(
-              [&](std::size_t, std::size_t, int k, double x) { return k == axis ? x - by[k] : x; });
+        for (int axis = -1; axis < 3; ++axis)
+          attempt_on_axis(axis, [&](int k, double x) { return x - by[k]; });
       }
   }
 
@@ -410,20 +404,16 @@ class Shrinking {
   void scale() {
     for (int axis = -1; axis < 3; ++axis) {
       double largest = 0, smallest = HUGE_VAL;
-      for (const Mesh* m : {&now_.a, &now_.b})
-        for (const Vector3d& v : m->vertices)
-          for (int k = 0; k < m->dim; ++k) {
-            if (v[k] == 0 || (axis >= 0 && k != axis)) continue;
-            largest = std::max(largest, std::abs(v[k]));
-            smallest = std::min(smallest, std::abs(v[k]));
-          }
+      for (const double x : numbers(axis)) {
+        if (x == 0) continue;
+        largest = std::max(largest, std::abs(x));
+        smallest = std::min(smallest, std::abs(x));
+      }
       if (largest == 0) continue;
       for (const double one : {largest, smallest})
         for (int shift = -2; shift <= 4; ++shift) {
           const int by = shift - std::ilogb(one);
-          attempt_on_all([&](std::size_t, std::size_t, int k, double x) {
-            return axis < 0 || k == axis ? std::ldexp(x, by) : x;
-          });
+          attempt_on_axis(axis, [&](int, double x) { return std::ldexp(x, by); });
         }
     }
   }
@@ -432,12 +422,8 @@ class Shrinking {
   void rank() {
     for (int axis = -1; axis < 3; ++axis)
       for (const bool from_zero : {true, false}) {
-        std::array<std::set<double>, 3> values;
-        for (const Mesh* m : {&now_.a, &now_.b})
-          for (const Vector3d& v : m->vertices)
-            for (int k = 0; k < m->dim; ++k) values[static_cast<std::size_t>(k)].insert(v[k]);
-        attempt_on_all([&](std::size_t, std::size_t, int k, double x) {
-          if (axis >= 0 && k != axis) return x;
+        const std::array<std::set<double>, 3> values = {numbers(0), numbers(1), numbers(2)};
+        attempt_on_axis(axis, [&](int k, double x) {
           const auto& all = values[static_cast<std::size_t>(k)];
           const auto begin = from_zero ? all.lower_bound(0) : all.begin();
           const auto at = all.find(x);
@@ -456,18 +442,14 @@ class Shrinking {
       for (int bits = 0; bits < 53; ++bits) {
         const double unit = std::ldexp(1, std::ilogb(largest) - bits);
         if (unit == 0) break;
-        const bool taken = attempt_on_all([&](std::size_t, std::size_t, int k, double x) {
-          return axis < 0 || k == axis ? std::nearbyint(x / unit) * unit : x;
-        });
-        if (taken) break;
+        if (attempt_on_axis(axis, [&](int, double x) { return std::nearbyint(x / unit) * unit; })) break;
       }
     }
   }
 
   /// Fewer negative numbers.
   void mirror() {
-    for (int axis = 0; axis < 3; ++axis)
-      attempt_on_all([&](std::size_t, std::size_t, int k, double x) { return k == axis ? -x : x; });
+    for (int axis = 0; axis < 3; ++axis) attempt_on_axis(axis, [](int, double x) { return -x; });
   }
 
   /// Equal numbers are replaced together: all of them, those of one axis, those of one body and axis. Planes
@@ -516,8 +498,7 @@ FailureKind failure_of(const cases::Case& c, const Replay& answer) {
   if (r.outcome != Outcome::wrong) return FailureKind::none;
   if (r.missed > 0) {
     const Pairs pairs = wrong_pairs(c, answer);
-    return meet_of(c, pairs.front()) == exact::Meet::cross ? FailureKind::misses_crossing
-                                                           : FailureKind::misses_touching;
+    return crosses(c, pairs.front()) ? FailureKind::misses_crossing : FailureKind::misses_touching;
   }
   return r.extra > 0 ? FailureKind::adds : FailureKind::relation;
 }

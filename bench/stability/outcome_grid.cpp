@@ -4,9 +4,8 @@
 #include <sstream>
 #include <tuple>
 
-#include "scenarios/io/files.hpp"
 #include "trace/json_records.hpp"
-#include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb::stability {
@@ -19,20 +18,22 @@ auto badness(const Record& r) {
 }
 
 void count(Cell& cell, const Record& r) {
-  ++cell.cases[r.difficulty];
-  if (r.outcome == Outcome::right) return;
-  auto& counted = r.outcome == Outcome::wrong      ? cell.wrong
-                  : r.outcome == Outcome::rejected ? cell.rejected
-                  : r.outcome == Outcome::crashed  ? cell.crashed
-                                                   : cell.timed_out;
-  ++counted[r.difficulty];
-  if (r.outcome == Outcome::rejected) return;
+  ++cell.of(r.outcome)[static_cast<std::size_t>(r.difficulty)];
+  if (r.outcome == Outcome::right || r.outcome == Outcome::rejected) return;
   if (!cell.worst || badness(r) > badness(*cell.worst)) cell.worst = r;
 }
 
 }  // namespace
 
-Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
+Record with_case(Record r, const Record& of) {
+  r.family = of.family;
+  r.difficulty = of.difficulty;
+  r.case_index = of.case_index;
+  r.seed = of.seed;
+  return r;
+}
+
+Grid count_grid(std::vector<methods::MethodInfo> methods, std::vector<FamilyRow> families,
                 const std::vector<Record>& records) {
   Grid grid;
   grid.methods = std::move(methods);
@@ -42,7 +43,7 @@ Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRo
     const auto family = std::find_if(grid.families.begin(), grid.families.end(),
                                      [&](const FamilyRow& f) { return f.name == r.family; });
     const auto method = std::find_if(grid.methods.begin(), grid.methods.end(),
-                                     [&](const workers::MethodColumn& m) { return m.name == r.method; });
+                                     [&](const methods::MethodInfo& m) { return m.name == r.method; });
     if (family == grid.families.end() || method == grid.methods.end()) continue;
     const auto row = static_cast<std::size_t>(family - grid.families.begin());
     const auto column = static_cast<std::size_t>(method - grid.methods.begin());
@@ -51,10 +52,44 @@ Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRo
   return grid;
 }
 
-std::uint64_t Cell::sum(const Counts& counts) {
+std::uint64_t Cell::cases(std::size_t difficulty) const {
   std::uint64_t n = 0;
-  for (const std::uint64_t c : counts) n += c;
+  for (const Counts& c : counts) n += c[difficulty];
   return n;
+}
+
+std::uint64_t Cell::failures(std::size_t difficulty) const {
+  return cases(difficulty) - of(Outcome::right)[difficulty] - of(Outcome::rejected)[difficulty];
+}
+
+std::uint64_t Cell::cases() const {
+  std::uint64_t n = 0;
+  for (std::size_t d = 0; d < kDifficulties; ++d) n += cases(d);
+  return n;
+}
+
+std::uint64_t Cell::failures() const {
+  return cases() - sum(Outcome::right) - sum(Outcome::rejected);
+}
+
+int Cell::first_failing() const {
+  for (std::size_t d = 0; d < kDifficulties; ++d)
+    if (failures(d) > 0) return static_cast<int>(d);
+  return -1;
+}
+
+int Cell::level() const {
+  if (failures() == 0) return 0;
+  const double share = static_cast<double>(failures()) / static_cast<double>(answered());
+  return share < 0.01 ? 1 : share < 0.1 ? 2 : share < 0.5 ? 3 : 4;
+}
+
+Cell sum_of_column(const Grid& grid, std::size_t method) {
+  Cell sum;
+  for (std::size_t f = 0; f < grid.families.size(); ++f)
+    for (std::size_t o = 0; o < sum.counts.size(); ++o)
+      for (std::size_t d = 0; d < kDifficulties; ++d) sum.counts[o][d] += grid.at(f, method).counts[o][d];
+  return sum;
 }
 
 Grid present_part(const Grid& grid) {
@@ -63,7 +98,7 @@ Grid present_part(const Grid& grid) {
   out.quantity = grid.quantity;
   out.command = grid.command;
   out.seconds = grid.seconds;
-  for (const workers::MethodColumn& m : grid.methods)
+  for (const methods::MethodInfo& m : grid.methods)
     if (m.present) out.methods.push_back(m);
   for (std::size_t i = 0; i < grid.cells.size(); ++i)
     if (grid.methods[i % grid.methods.size()].present) out.cells.push_back(grid.cells[i]);
@@ -73,7 +108,7 @@ Grid present_part(const Grid& grid) {
 std::string absent_text(const Grid& grid) {
   std::string names;
   std::size_t absent = 0;
-  for (const workers::MethodColumn& m : grid.methods)
+  for (const methods::MethodInfo& m : grid.methods)
     if (!m.present) names += (absent++ > 0 ? ", " : "") + m.name;
   if (absent == 0) return {};
   return std::to_string(absent) + (absent == 1 ? " method is" : " methods are") +
@@ -141,30 +176,14 @@ std::string to_lines(const std::vector<Record>& records) {
   return out;
 }
 
-std::vector<Record> read_records(const std::string& path) {
-  std::istringstream in(io::read_text(path));
-  std::vector<Record> records;
-  std::string line;
-  for (std::size_t number = 1; std::getline(in, line); ++number) {
-    const json value = json::parse(line, nullptr, false);
-    try {
-      if (value.is_discarded()) throw InputError("not JSON; expected one record per line");
-      records.push_back(record_from(value));
-    } catch (const InputError& e) {
-      throw InputError(printable_name(path) + ":" + std::to_string(number) + ": " + e.what());
-    }
-  }
-  return records;
-}
-
 namespace {
 
-std::string cell_text(const workers::MethodColumn& method, const Cell& c) {
+std::string cell_text(const methods::MethodInfo& method, const Cell& c) {
   if (!method.present) return "absent";
-  if (Cell::sum(c.cases) == 0) return "";
+  if (c.cases() == 0) return "";
   if (c.answered() == 0) return "refused";
   std::string text = std::to_string(c.failures()) + "/" + std::to_string(c.answered());
-  if (const int from = summarise(c).first_failing; from >= 0) text += " @" + std::to_string(from);
+  if (const int from = c.first_failing(); from >= 0) text += " @" + std::to_string(from);
   return text;
 }
 
@@ -172,24 +191,22 @@ std::string cell_text(const workers::MethodColumn& method, const Cell& c) {
 
 report::Table table_of(const Grid& grid) {
   report::Table table{"", {"family"}};
-  for (const workers::MethodColumn& m : grid.methods) table.columns.push_back(m.name);
+  for (const methods::MethodInfo& m : grid.methods) table.columns.push_back(m.name);
   std::vector<std::vector<std::string>>& rows = table.rows;
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     rows.push_back({grid.families[f].name});
     for (std::size_t m = 0; m < grid.methods.size(); ++m)
       rows.back().push_back(cell_text(grid.methods[m], grid.at(f, m)));
   }
-  const std::pair<const char*, Cell::Counts Cell::*> sums[] = {{"all: wrong", &Cell::wrong},
-                                                               {"all: crashed", &Cell::crashed},
-                                                               {"all: timed out", &Cell::timed_out},
-                                                               {"all: refused", &Cell::rejected},
-                                                               {"all: cases", &Cell::cases}};
-  for (const auto& [name, counts] : sums) {
-    rows.push_back({name});
+  const auto add_sums = [&](const std::string& name, const auto& number) {
+    rows.push_back({"all: " + name});
     for (std::size_t m = 0; m < grid.methods.size(); ++m)
-      rows.back().push_back(
-          grid.methods[m].present ? std::to_string(Cell::sum(sum_of_column(grid, m).*counts)) : "absent");
-  }
+      rows.back().push_back(grid.methods[m].present ? std::to_string(number(sum_of_column(grid, m)))
+                                                    : "absent");
+  };
+  for (const Outcome o : kNotRight)
+    add_sums(io::in_words(name_of(o)), [o](const Cell& c) { return c.sum(o); });
+  add_sums("cases", [](const Cell& c) { return c.cases(); });
   return table;
 }
 
@@ -200,10 +217,10 @@ std::string csv_of(const Grid& grid) {
     for (std::size_t m = 0; m < grid.methods.size(); ++m)
       for (std::size_t d = 0; d < kDifficulties; ++d) {
         const Cell& c = grid.at(f, m);
-        if (c.cases[d] == 0) continue;
-        table.rows.push_back({grid.families[f].name, grid.methods[m].name, std::to_string(d)});
-        for (const std::uint64_t n : {c.cases[d], c.wrong[d], c.crashed[d], c.timed_out[d], c.rejected[d]})
-          table.rows.back().push_back(std::to_string(n));
+        if (c.cases(d) == 0) continue;
+        table.rows.push_back(
+            {grid.families[f].name, grid.methods[m].name, std::to_string(d), std::to_string(c.cases(d))});
+        for (const Outcome o : kNotRight) table.rows.back().push_back(std::to_string(c.of(o)[d]));
       }
   return report::csv(table);
 }
@@ -214,7 +231,7 @@ std::string table(const Grid& grid) {
   out << report::in_columns(table_of(grid));
   out << "\nIn each cell: failures/cases answered, @ the lowest difficulty (0 benign, " << kDifficulties - 1
       << " degenerate) with a failure.\n";
-  for (const workers::MethodColumn& m : grid.methods)
+  for (const methods::MethodInfo& m : grid.methods)
     out << "  " << m.name << ": " << m.title << ". " << m.remark << "\n";
   return out.str();
 }

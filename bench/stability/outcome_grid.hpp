@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,10 @@ constexpr auto enum_names(Outcome) {
                                            {Outcome::timed_out, "timed_out"}});
 }
 
+/// All but `right`, in the order of tables, bars and legends.
+inline constexpr std::array<Outcome, 4> kNotRight = {Outcome::wrong, Outcome::crashed, Outcome::timed_out,
+                                                     Outcome::rejected};
+
 struct FamilyRow {
   std::string name, what;
   std::string benign, degenerate;        ///< meaning of difficulties 0 and 10: "gap 1e-1", "gap 1 ulp"
@@ -59,21 +64,38 @@ struct Record {
   std::string message;                      ///< of a rejection or a crash
 };
 
+/// Returns the record with the case of another: its family, difficulty, number and seed.
+Record with_case(Record r, const Record& of);
+
 /// The results of one method on one family.
 struct Cell {
   using Counts = std::array<std::uint64_t, kDifficulties>;
-  Counts cases{}, wrong{}, rejected{}, crashed{}, timed_out{};
-  std::optional<Record> worst;  ///< a failure of the lowest difficulty
+  std::array<Counts, kEnumNames<Outcome>.size()> counts{};  ///< by outcome and difficulty
+  std::optional<Record> worst;                              ///< a failure of the lowest difficulty
 
-  static std::uint64_t sum(const Counts& counts);
-  /// Returns the number of failures. Rejections do not count as failures.
-  std::uint64_t failures() const { return sum(wrong) + sum(crashed) + sum(timed_out); }
-  /// Returns the number of cases that were not rejected.
-  std::uint64_t answered() const { return sum(cases) - sum(rejected); }
+  Counts& of(Outcome o) { return counts[static_cast<std::size_t>(o)]; }
+  const Counts& of(Outcome o) const { return counts[static_cast<std::size_t>(o)]; }
+  std::uint64_t sum(Outcome o) const { return std::accumulate(of(o).begin(), of(o).end(), std::uint64_t{0}); }
+  /// Returns the number of cases at a difficulty, or at all.
+  std::uint64_t cases(std::size_t difficulty) const;
+  std::uint64_t cases() const;
+  /// Returns the number of failures. Rejections do not count, because they give no wrong answer; they have
+  /// their own mark.
+  std::uint64_t failures(std::size_t difficulty) const;
+  std::uint64_t failures() const;
+  std::uint64_t answered() const { return cases() - sum(Outcome::rejected); }
+  /// Returns the lowest difficulty with a failure, or -1.
+  int first_failing() const;
+  /// Returns the severity, from 0 (no failure) to 4; see kLevelNames.
+  int level() const;
+  bool only_rejected() const { return failures() == 0 && sum(Outcome::rejected) > 0; }
 };
 
+inline constexpr std::array<const char*, 5> kLevelNames = {"none fails", "under 1 %", "under 10 %",
+                                                           "under half", "half or more"};
+
 struct Grid {
-  std::vector<workers::MethodColumn> methods;
+  std::vector<methods::MethodInfo> methods;
   std::vector<FamilyRow> families;
   std::vector<Cell> cells;              ///< (|families| x |methods|), row by row
   Quantity quantity = Quantity::pairs;  ///< the queried quantity
@@ -86,7 +108,7 @@ struct Grid {
 };
 
 /// Counts records. Skips records of other methods and families.
-Grid count_grid(std::vector<workers::MethodColumn> methods, std::vector<FamilyRow> families,
+Grid count_grid(std::vector<methods::MethodInfo> methods, std::vector<FamilyRow> families,
                 const std::vector<Record>& records);
 
 /// Returns the grid without the methods that are absent from this build.
@@ -97,8 +119,7 @@ std::string absent_text(const Grid& grid);
 /// Returns the families of all_families(), in their order.
 std::vector<FamilyRow> family_rows();
 
-// Writing and reading records as JSON Lines: the output of the experiment, and the source of all other
-// results.
+// Records as JSON Lines: the output of the experiment, and the source of all other results.
 
 nlohmann::ordered_json to_json(const Record& r);
 /// Reads a record. Throws InputError, which describes the error in the value, if it is invalid.
@@ -106,50 +127,9 @@ Record record_from(const nlohmann::json& value);
 
 /// Returns the records, one per line.
 std::string to_lines(const std::vector<Record>& records);
-/// Reads the records of a file. Throws InputError, which names file and line, if one is invalid.
-std::vector<Record> read_records(const std::string& path);
-
-/// The totals of a cell, for page and print.
-struct CellSummary {
-  std::uint64_t cases = 0, wrong = 0, rejected = 0, crashed = 0, timed_out = 0;
-  int first_failing = -1;  ///< the lowest difficulty with a failure; -1: none
-
-  /// Returns the number of failures. Rejections do not count, because they give no wrong answer; they have
-  /// their own mark.
-  std::uint64_t failures() const { return wrong + crashed + timed_out; }
-  std::uint64_t answered() const { return cases - rejected; }
-  double failure_share() const {
-    return answered() == 0 ? 0 : static_cast<double>(failures()) / static_cast<double>(answered());
-  }
-  /// Returns the severity, from 0 (no failure) to 4; see kLevelNames.
-  int level() const {
-    const double share = failure_share();
-    return share <= 0 ? 0 : share < 0.01 ? 1 : share < 0.1 ? 2 : share < 0.5 ? 3 : 4;
-  }
-  bool only_rejected() const { return failures() == 0 && rejected > 0; }
-};
-
-inline constexpr std::array<const char*, 5> kLevelNames = {"none fails", "under 1 %", "under 10 %",
-                                                           "under half", "half or more"};
-
-inline CellSummary summarise(const Cell& cell) {
-  CellSummary s{Cell::sum(cell.cases), Cell::sum(cell.wrong), Cell::sum(cell.rejected),
-                Cell::sum(cell.crashed), Cell::sum(cell.timed_out)};
-  for (std::size_t d = kDifficulties; d-- > 0;)
-    if (cell.wrong[d] + cell.crashed[d] + cell.timed_out[d] > 0) s.first_failing = static_cast<int>(d);
-  return s;
-}
 
 /// Returns the sum of a method's cells over all families.
-inline Cell sum_of_column(const Grid& grid, std::size_t method) {
-  Cell sum;
-  for (std::size_t f = 0; f < grid.families.size(); ++f) {
-    const Cell& c = grid.at(f, method);
-    for (const auto counts : {&Cell::cases, &Cell::wrong, &Cell::rejected, &Cell::crashed, &Cell::timed_out})
-      for (std::size_t i = 0; i < kDifficulties; ++i) (sum.*counts)[i] += (c.*counts)[i];
-  }
-  return sum;
-}
+Cell sum_of_column(const Grid& grid, std::size_t method);
 
 /// Returns the grid as a table: a row per family; in each cell failures/answered and the lowest difficulty
 /// with a failure.

@@ -9,13 +9,14 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_int.hpp>
 
 namespace lrb::oracle {
 
 using Rational = boost::multiprecision::cpp_rational;  // represents doubles exactly
 
-using Corners = std::vector<std::array<double, 3>>;  ///< 1 to 3 points
+using Corners = std::vector<Eigen::Vector3d>;  ///< 1 to 3 points
 
 /// Solves a linear system in place. Returns nullopt if it is singular.
 inline std::optional<std::vector<Rational>> solve(std::vector<std::vector<Rational>> m,
@@ -111,12 +112,12 @@ inline RationalClosest closest_points(const RationalPoints& a, const RationalPoi
 
 using RationalPoint = std::array<Rational, 3>;
 
-inline RationalPoint rational(const std::array<double, 3>& x) {
+inline RationalPoint rational(const Eigen::Vector3d& x) {
   return {Rational(x[0]), Rational(x[1]), Rational(x[2])};
 }
 inline RationalPoints rational(const Corners& corners) {
   RationalPoints out;
-  for (const auto& x : corners) out.push_back(rational(x));
+  for (const Eigen::Vector3d& x : corners) out.push_back(rational(x));
   return out;
 }
 
@@ -145,8 +146,8 @@ inline RationalPoint moved(const RationalPoint& x, const RationalPoint& way, con
   return {x[0] + t * way[0], x[1] + t * way[1], x[2] + t * way[2]};
 }
 
-/// Returns true if two triangles intersect.
-inline bool triangles_meet(const RationalPoints& a, const RationalPoints& b) {
+/// Returns true if two simplices intersect.
+inline bool simplices_meet(const RationalPoints& a, const RationalPoints& b) {
   for (const RationalPoints& f : features_of(a))
     for (const RationalPoints& g : features_of(b)) {
       const auto d = closest_of_features(f, g);
@@ -159,41 +160,35 @@ inline bool triangles_meet(const RationalPoints& a, const RationalPoints& b) {
 /// sizes and distance, along a normal or a cross product of two edges. Coordinates are relative to a corner,
 /// so that precision does not depend on the distance to the world's origin.
 inline bool clearly_apart(const RationalPoints& a, const RationalPoints& b) {
-  using Point = std::array<double, 3>;
-  std::array<Point, 3> x[2];
+  std::array<Eigen::Vector3d, 3> x[2];
   double size = 0;
   for (std::size_t side = 0; side < 2; ++side)
     for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t i = 0; i < 3; ++i) {
-        x[side][k][i] = Rational((side == 0 ? a : b)[k][i] - a[0][i]).convert_to<double>();
+      for (int i = 0; i < 3; ++i) {
+        const auto axis = static_cast<std::size_t>(i);
+        x[side][k][i] = Rational((side == 0 ? a : b)[k][axis] - a[0][axis]).convert_to<double>();
         size = std::max(size, std::abs(x[side][k][i]));
       }
   if (size == 0) return false;
   for (auto& corners : x)
-    for (Point& p : corners)
-      for (double& c : p) c /= size;
-  const auto edge = [&](std::size_t side, std::size_t k) {
-    const Point &p = x[side][k], &q = x[side][(k + 1) % 3];
-    return Point{q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+    for (Eigen::Vector3d& p : corners) p /= size;
+  const auto edge = [&](std::size_t side, std::size_t k) -> Eigen::Vector3d {
+    return x[side][(k + 1) % 3] - x[side][k];
   };
-  const auto across = [](const Point& p, const Point& q) {
-    return Point{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-  };
-  const auto parts = [&](const Point& n) {
+  const auto parts = [&](const Eigen::Vector3d& n) {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     for (std::size_t side = 0; side < 2; ++side)
-      for (const Point& p : x[side]) {
-        const double d = n[0] * p[0] + n[1] * p[1] + n[2] * p[2];
-        low[side] = std::min(low[side], d);
-        high[side] = std::max(high[side], d);
+      for (const Eigen::Vector3d& p : x[side]) {
+        low[side] = std::min(low[side], n.dot(p));
+        high[side] = std::max(high[side], n.dot(p));
       }
-    const double slack = 1e-9 * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
+    const double slack = 1e-9 * n.lpNorm<1>();
     return low[0] - high[1] > slack || low[1] - high[0] > slack;
   };
-  if (parts(across(edge(0, 0), edge(0, 1))) || parts(across(edge(1, 0), edge(1, 1)))) return true;
+  if (parts(edge(0, 0).cross(edge(0, 1))) || parts(edge(1, 0).cross(edge(1, 1)))) return true;
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t j = 0; j < 3; ++j)
-      if (parts(across(edge(0, k), edge(1, j)))) return true;
+      if (parts(edge(0, k).cross(edge(1, j)))) return true;
   return false;
 }
 
@@ -223,13 +218,13 @@ inline std::optional<Rational> first_time(const RationalPoints& of_a, const Rati
   for (const Rational& t : times) {
     RationalPoints there;
     for (const RationalPoint& x : of_b) there.push_back(moved(x, by, t));
-    if (!clearly_apart(of_a, there) && triangles_meet(of_a, there)) return t;
+    if (!clearly_apart(of_a, there) && simplices_meet(of_a, there)) return t;
   }
   return std::nullopt;
 }
 
-inline std::optional<Rational> first_time(const Corners& a, const Corners& b,
-                                          const std::array<double, 3>& way, const Rational& before = 1) {
+inline std::optional<Rational> first_time(const Corners& a, const Corners& b, const Eigen::Vector3d& way,
+                                          const Rational& before = 1) {
   return first_time(rational(a), rational(b), rational(way), before);
 }
 

@@ -28,25 +28,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns the corners of a simplex in the world, as every exact method defines them: rounded to doubles.
-oracle::Corners world_corners(const LrbRep& rep, const Pose& pose, SimplexId s) {
-  VertexId v[3] = {};
-  rep.simplex(s, v);
-  oracle::Corners out;
-  for (int k = 0; k < rep.dim(); ++k) {
-    const Eigen::Vector3d x = pose.apply(rep.vertices()[v[k]]);
-    out.push_back({x.x(), x.y(), x.z()});
-  }
-  return out;
-}
-
-Json point_json(const std::array<oracle::Rational, 3>& x) {
+Json point_json(const oracle::RationalPoint& x) {
   return {x[0].str(), x[1].str(), x[2].str()};
 }
 
-Json corners_json(const oracle::Corners& corners) {
+Json corners_json(const Corners& corners) {
   Json out = Json::array();
-  for (const auto& x : corners) out.push_back(point_json(oracle::rational(x)));
+  for (const oracle::RationalPoint& x : oracle::rational(corners)) out.push_back(point_json(x));
   return out;
 }
 
@@ -73,16 +61,18 @@ Json engine_json(const Replay& r) {
 }  // namespace
 
 Json pair_proof(const cases::Case& c, const SimplexPair& pair) {
-  const oracle::Corners a = world_corners(*c.a, c.pose_a, pair.a), b = world_corners(*c.b, c.pose_b, pair.b);
-  const oracle::RationalClosest closest = oracle::closest_points(a, b);
-  Json out = {{"pair", {pair.a.value(), pair.b.value()}}, {"a", corners_json(a)}, {"b", corners_json(b)}};
+  const PosedPair posed(c, pair);
+  const oracle::RationalClosest closest = posed.closest();
+  Json out = {{"pair", {pair.a.value(), pair.b.value()}},
+              {"a", corners_json(posed.x[0])},
+              {"b", corners_json(posed.x[1])}};
   out["intersect"] = closest.distance_sq == 0;
   if (closest.distance_sq == 0) {
     out["common_point"] = point_json(closest.on_f);
     return out;
   }
   // The planes through the closest points, across the segment between them, separate convex sets.
-  const std::array<oracle::Rational, 3> way = oracle::minus(closest.on_g, closest.on_f);
+  const oracle::RationalPoint way = oracle::minus(closest.on_g, closest.on_f);
   out["closest_points"] = {point_json(closest.on_f), point_json(closest.on_g)};
   out["direction"] = point_json(way);
   out["largest_of_a"] = oracle::dot(way, closest.on_f).str();
@@ -95,6 +85,10 @@ Json pair_proof(const cases::Case& c, const SimplexPair& pair) {
   return out;
 }
 
+namespace {
+
+/// Returns the pair that decides: the worst that an engine missed or added (failing_pair()), else the first
+/// of the right answer. Returns nullopt if there is none.
 std::optional<SimplexPair> deciding_pair(const cases::Case& c, const std::vector<Replay>& replays) {
   for (const Replay& r : replays)
     if (const auto pair = failing_pair(c, r)) return pair;
@@ -102,6 +96,8 @@ std::optional<SimplexPair> deciding_pair(const cases::Case& c, const std::vector
     if (!r.expected.empty()) return r.expected.front();
   return std::nullopt;
 }
+
+}  // namespace
 
 std::vector<std::string> save_case(const cases::Case& c, const std::vector<Replay>& replays,
                                    const std::string& folder, const Json* minimised) {
@@ -119,8 +115,8 @@ std::vector<std::string> save_case(const cases::Case& c, const std::vector<Repla
   j["what"] =
       "Do the simplices (triangles; segments in the plane) of A and of B intersect, each pair of them? They are numbered from "
       "0 in file order, polygons as fans. A vertex is at the doubles next to pose * vertex, as in a_world.obj and b_world.obj.";
-  j["pose_a"] = workers::pose_json(c.pose_a);
-  j["pose_b"] = workers::pose_json(c.pose_b);
+  j["pose_a"] = io::rows_of(c.pose_a);
+  j["pose_b"] = io::rows_of(c.pose_b);
   make_folder(folder);
   write(*c.a, "a.obj");
   write(*c.b, "b.obj");
@@ -223,19 +219,7 @@ bool fits_float(const CaseMeshes& c) {
 
 /// Returns how a pair intersects: "cross in a segment".
 std::string meet_text(const cases::Case& c, const SimplexPair& pair) {
-  Vector3d x[2][3];
-  const double* p[2][3] = {};
-  for (std::size_t side = 0; side < 2; ++side) {
-    const LrbRep& rep = side == 0 ? *c.a : *c.b;
-    VertexId v[3] = {};
-    rep.simplex(side == 0 ? pair.a : pair.b, v);
-    for (int k = 0; k < rep.dim(); ++k) {
-      x[side][k] = (side == 0 ? c.pose_a : c.pose_b).apply(rep.vertices()[v[k]]);
-      p[side][k] = x[side][k].data();
-    }
-  }
-  const exact::PairContact contact =
-      c.a->dim() == 3 ? exact::contact_of_triangles(p[0], p[1]) : exact::contact_of_segments(p[0], p[1]);
+  const exact::PairContact contact = PosedPair(c, pair).contact();
   static constexpr const char* kShapes[] = {"nowhere", "a point", "a segment", "a polygon"};
   return std::string(contact.meet == exact::Meet::cross ? "cross" : "touch") + " in " +
          kShapes[std::min<std::size_t>(contact.corner_count, 3)] +
@@ -311,8 +295,7 @@ std::string versions(const Counterexample& c) {
          + ", " + machine.sysname + " " + machine.machine + "\n";
 }
 
-}  // namespace
-
+/// Returns the failure in words: "misses a pair of triangles that cross".
 std::string failure_text(const Counterexample& c) {
   const std::string what = flat(c) ? "segments" : "triangles";
   const bool lists = c.found.answer.answered.has_value();
@@ -336,6 +319,57 @@ std::string failure_text(const Counterexample& c) {
   return "does not fail";
 }
 
+/// Returns a program in C++ that shows the failure with the engine alone, or an empty string for
+/// other methods than FCL's.
+std::string program_text(const Counterexample& c) {
+  const std::string& name = c.method.info.name;
+  const bool lists = c.found.kind != FailureKind::crashes && c.found.kind != FailureKind::times_out;
+  if ((name != "fcl" && name != "fcl-float") || !lists || !is_identity(meshes(c).pose_a) ||
+      !is_identity(meshes(c).pose_b))
+    return "";
+  const std::string real = name == "fcl" ? "double" : "float";
+  const auto model = [&](const char* body, const Mesh& m) {
+    std::string points, triangles;
+    for (const Vector3d& v : m.vertices)
+      points += (points.empty() ? "{" : ", {") + io::exact_text(v.x()) + ", " + io::exact_text(v.y()) + ", " +
+                io::exact_text(v.z()) + "}";
+    for (FaceId f = 0; f < m.face_count(); ++f)
+      triangles += (triangles.empty() ? "{" : ", {") + std::to_string(m.face(f)[0]) + ", " +
+                   std::to_string(m.face(f)[1]) + ", " + std::to_string(m.face(f)[2]) + "}";
+    return std::string("  fill(") + body + ", {" + points + "},\n       {" + triangles + "});\n";
+  };
+  return "// g++ -std=c++17 -I/usr/include/eigen3 fcl.cpp -lfcl -lccd && ./a.out\n// Expected: " +
+         std::to_string(c.found.answer.expected.size()) + R"( contacts.
+#include <cstdio>
+#include <vector>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
+
+using Real = )" +
+         real + R"(;
+using Model = fcl::BVHModel<fcl::OBBRSS<Real>>;
+
+void fill(Model& m, const std::vector<fcl::Vector3<Real>>& x, const std::vector<fcl::Triangle>& t) {
+  m.beginModel();
+  m.addSubModel(x, t);
+  m.endModel();
+}
+
+int main() {
+  Model a, b;
+)" + model("a", meshes(c).a) +
+         model("b", meshes(c).b) + R"(  const fcl::CollisionRequest<Real> request(1000000, false);
+  fcl::CollisionResult<Real> result;
+  const fcl::Transform3<Real> identity = fcl::Transform3<Real>::Identity();
+  fcl::collide(&a, identity, &b, identity, request, result);
+  std::printf("%zu contacts\n", result.numContacts());
+}
+)";
+}
+
+/// Returns the text for the tracker, in Markdown: the function called, the meshes, the right answer with its
+/// proof, the engine's answer, and versions.
 std::string tracker_text(const Counterexample& c) {
   std::ostringstream out;
   out << "# " << c.method.info.title << " " << failure_text(c) << "\n\n";
@@ -361,50 +395,7 @@ std::string tracker_text(const Counterexample& c) {
   return out.str();
 }
 
-std::string program_text(const Counterexample& c) {
-  const std::string& name = c.method.info.name;
-  const bool lists = c.found.kind != FailureKind::crashes && c.found.kind != FailureKind::times_out;
-  if ((name != "fcl" && name != "fcl-float") || !lists || !is_identity(meshes(c).pose_a) ||
-      !is_identity(meshes(c).pose_b))
-    return "";
-  const std::string real = name == "fcl" ? "double" : "float";
-  const auto model = [&](const char* body, const Mesh& m) {
-    std::string points, triangles;
-    for (const Vector3d& v : m.vertices)
-      points += (points.empty() ? "{" : ", {") + io::exact_text(v.x()) + ", " + io::exact_text(v.y()) + ", " +
-                io::exact_text(v.z()) + "}";
-    for (FaceId f = 0; f < m.face_count(); ++f)
-      triangles += (triangles.empty() ? "{" : ", {") + std::to_string(m.face(f)[0]) + ", " +
-                   std::to_string(m.face(f)[1]) + ", " + std::to_string(m.face(f)[2]) + "}";
-    return std::string("  fill(") + body + ", {" + points + "},\n       {" + triangles + "});\n";
-  };
-  return "// g++ -std=c++17 -I/usr/include/eigen3 fcl.cpp -lfcl -lccd && ./a.out\n"
-         "// Expected: " +
-         std::to_string(c.found.answer.expected.size()) +
-         " contacts.\n"
-         "#include <cstdio>\n"
-         "#include <vector>\n\n"
-         "#include <fcl/geometry/bvh/BVH_model.h>\n"
-         "#include <fcl/narrowphase/collision.h>\n\n"
-         "using Real = " +
-         real +
-         ";\n"
-         "using Model = fcl::BVHModel<fcl::OBBRSS<Real>>;\n\n"
-         "void fill(Model& m, const std::vector<fcl::Vector3<Real>>& x, const std::vector<fcl::Triangle>& t) {\n"
-         "  m.beginModel();\n"
-         "  m.addSubModel(x, t);\n"
-         "  m.endModel();\n"
-         "}\n\n"
-         "int main() {\n"
-         "  Model a, b;\n" +
-         model("a", meshes(c).a) + model("b", meshes(c).b) +
-         "  const fcl::CollisionRequest<Real> request(1000000, false);\n"
-         "  fcl::CollisionResult<Real> result;\n"
-         "  const fcl::Transform3<Real> identity = fcl::Transform3<Real>::Identity();\n"
-         "  fcl::collide(&a, identity, &b, identity, request, result);\n"
-         "  std::printf(\"%zu contacts\\n\", result.numContacts());\n"
-         "}\n";
-}
+}  // namespace
 
 std::vector<std::string> save_counterexample(const Counterexample& c, const std::string& folder) {
   const cases::Case built = case_of(meshes(c));

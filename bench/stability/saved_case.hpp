@@ -21,10 +21,6 @@ namespace lrb::stability {
 /// B.
 nlohmann::ordered_json pair_proof(const cases::Case& c, const SimplexPair& pair);
 
-/// Returns the pair that decides: the worst that an engine missed or added (failing_pair()), else the first
-/// of the right answer. Returns nullopt if there is none.
-std::optional<SimplexPair> deciding_pair(const cases::Case& c, const std::vector<Replay>& replays);
-
 /// Writes a.obj and b.obj, a_world.obj and b_world.obj (at their poses, if those are representable as
 /// doubles) and case.json. `replays`: of the same case, at least one. `minimised`: how the case was made
 /// from another; null if it was not. Returns the names of the files.
@@ -47,18 +43,8 @@ struct Counterexample {
   std::string command;  ///< that makes it again
 };
 
-/// Returns the failure in words: "misses a pair of triangles that cross".
-std::string failure_text(const Counterexample& c);
-
-/// Returns the text for the tracker, in Markdown: the function called, the meshes, the right answer with its
-/// proof, the engine's answer, and versions.
-std::string tracker_text(const Counterexample& c);
-
-/// Returns a program in C++ that shows the failure with the engine alone, or an empty string for
-/// other methods than FCL's.
-std::string program_text(const Counterexample& c);
-
-/// Writes the files of save_case(), report.md, picture.png and, for FCL, fcl.cpp. Returns their names.
+/// Writes the files of save_case(), report.md for the engine's tracker, picture.png and, for FCL, fcl.cpp, a
+/// program that shows the failure with the engine alone. Returns their names.
 std::vector<std::string> save_counterexample(const Counterexample& c, const std::string& folder);
 
 }  // namespace lrb::stability

@@ -151,17 +151,6 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 constexpr Seconds kBruteForceTimeout(120);  // brute force is slow, but never hangs
 
-Record blank_record(const std::string& family, const std::string& method, int difficulty,
-                    std::uint64_t case_index, std::uint64_t seed) {
-  Record r;
-  r.family = family;
-  r.method = method;
-  r.difficulty = difficulty;
-  r.case_index = case_index;
-  r.seed = seed;
-  return r;
-}
-
 /// `method`: empty for right answers.
 std::vector<std::string> command_of(const std::string& program, Quantity quantity,
                                     const std::string& method) {
@@ -170,9 +159,8 @@ std::vector<std::string> command_of(const std::string& program, Quantity quantit
   return command;
 }
 
-nlohmann::ordered_json question_of(const std::string& family, int difficulty, std::uint64_t case_index,
-                                   std::uint64_t seed) {
-  return {{"family", family}, {"difficulty", difficulty}, {"case", case_index}, {"seed", seed}};
+nlohmann::ordered_json question_of(const Record& of) {
+  return {{"family", of.family}, {"difficulty", of.difficulty}, {"case", of.case_index}, {"seed", of.seed}};
 }
 
 /// The state of one family while its jobs run.
@@ -190,16 +178,14 @@ class Unfinished {
  public:
   Unfinished(const std::string& path, const std::string& head) : file_(path, head) {
     for (const std::string& line : file_.lines()) {
-      Record r = record_from(nlohmann::json::parse(line, nullptr, false));
-      RecordKey key{r.family, r.method, r.difficulty, r.case_index};
-      known_[std::move(key)] = std::move(r);
+      const Record r = record_from(nlohmann::json::parse(line, nullptr, false));
+      known_[key_of(r)] = r;
     }
   }
 
-  /// Returns the record of an earlier run, or null.
-  const Record* find(const std::string& family, const std::string& method, int difficulty,
-                     std::uint64_t case_index) const {
-    const auto it = known_.find({family, method, difficulty, case_index});
+  /// Returns the record of the same case and method of an earlier run, or null.
+  const Record* find(const Record& of) const {
+    const auto it = known_.find(key_of(of));
     return it == known_.end() ? nullptr : &it->second;
   }
 
@@ -208,6 +194,8 @@ class Unfinished {
 
  private:
   using RecordKey = std::tuple<std::string, std::string, int, std::uint64_t>;
+  static RecordKey key_of(const Record& r) { return {r.family, r.method, r.difficulty, r.case_index}; }
+
   io::UnfinishedFile file_;
   std::map<RecordKey, Record> known_;
 };
@@ -225,7 +213,7 @@ class Experiment {
  public:
   Experiment(const ExperimentOptions& options, const ProgressFunction& progress)
       : o_(options), progress_(progress), unfinished_(options.unfinished_file, head_of(options)) {
-    std::erase_if(o_.methods, [](const workers::WorkerMethod& m) { return !m.column.present; });
+    std::erase_if(o_.methods, [](const workers::WorkerMethod& m) { return !m.info.present; });
     begin_ = o_.difficulty ? static_cast<std::uint64_t>(*o_.difficulty) * o_.cases : 0;
     end_ = o_.difficulty ? begin_ + o_.cases : cases::kDifficulties * o_.cases;
     total_ = o_.families.size() * (o_.methods.size() + 1) * (end_ - begin_);
@@ -272,7 +260,7 @@ class Experiment {
   void start_expected(FamilyWork& family) {
     workers::Job::Task task;
     task.command = command_of(o_.methods.front().program, o_.quantity, "");
-    task.question = [this, &family](std::uint64_t k) { return question(family, k).dump(); };
+    task.question = [this, &family](std::uint64_t k) { return question_of(record(family, k)).dump(); };
     task.begin = begin_;
     task.end = end_;
     task.limit = kBruteForceTimeout;
@@ -293,19 +281,20 @@ class Experiment {
   void start_method(FamilyWork& family, std::size_t m) {
     const workers::WorkerMethod& method = o_.methods[m];
     workers::Job::Task task;
-    task.command = command_of(method.program, o_.quantity, method.column.name);
+    task.command = command_of(method.program, o_.quantity, method.info.name);
     task.question = [this, &family](std::uint64_t k) {
-      nlohmann::ordered_json out = question(family, k);
+      nlohmann::ordered_json out = question_of(record(family, k));
       out["right"] = family.expected.path();
       out["line"] = k - begin_;
       return out.dump();
     };
     task.begin = begin_;
     task.end = end_;
-    while (const Record* known = earlier(family, m, task.begin)) {
+    for (; task.begin < end_; ++task.begin) {
+      const Record* known = unfinished_.find(record(family, task.begin, method.info.name));
+      if (known == nullptr) break;
       family.records[m].push_back(*known);
-      notify(family.name + ", " + method.column.name);
-      ++task.begin;
+      notify(family.name + ", " + method.info.name);
     }
     const auto on_done = [this, &family] {
       ++family.methods_done;
@@ -317,8 +306,7 @@ class Experiment {
       keep(family, m, record_from(nlohmann::json::parse(line)));
     };
     task.on_failure = [this, &family, m](std::uint64_t k, const workers::WorkerFailure& failure) {
-      Record r = blank_record(family.name, o_.methods[m].column.name, static_cast<int>(k / o_.cases),
-                              k % o_.cases, o_.seed);
+      Record r = record(family, k, o_.methods[m].info.name);
       r.expected = family.expected_pairs[k - begin_];
       workers::note_failure(r, failure);
       keep(family, m, std::move(r));
@@ -326,21 +314,21 @@ class Experiment {
     running_.push_back({std::make_unique<workers::Job>(std::move(task)), on_done});
   }
 
-  nlohmann::ordered_json question(const FamilyWork& family, std::uint64_t k) const {
-    return question_of(family.name, static_cast<int>(k / o_.cases), k % o_.cases, o_.seed);
-  }
-
-  /// Returns the record of case k of an earlier run, or null.
-  const Record* earlier(const FamilyWork& family, std::size_t m, std::uint64_t k) const {
-    if (k >= end_) return nullptr;
-    return unfinished_.find(family.name, o_.methods[m].column.name, static_cast<int>(k / o_.cases),
-                            k % o_.cases);
+  /// Returns the record of case k, without an answer.
+  Record record(const FamilyWork& family, std::uint64_t k, const std::string& method = "") const {
+    Record r;
+    r.family = family.name;
+    r.method = method;
+    r.difficulty = static_cast<int>(k / o_.cases);
+    r.case_index = k % o_.cases;
+    r.seed = o_.seed;
+    return r;
   }
 
   void keep(FamilyWork& family, std::size_t m, Record record) {
     unfinished_.add(record);
     family.records[m].push_back(std::move(record));
-    notify(family.name + ", " + o_.methods[m].column.name);
+    notify(family.name + ", " + o_.methods[m].info.name);
   }
 
   /// Passes on finished families in their order.
@@ -392,42 +380,36 @@ std::vector<Record> run_experiment(const ExperimentOptions& options, const Progr
   return Experiment(options, progress).run();
 }
 
-Replay replay(const workers::WorkerMethod& method, const std::string& family, int difficulty,
-              std::uint64_t case_index, std::uint64_t seed, double timeout, Quantity quantity) {
-  nlohmann::ordered_json question = question_of(family, difficulty, case_index, seed);
-  Replay result;
-  const auto answer = [&](const std::string& name, Seconds limit, workers::WorkerFailure& failure) {
-    workers::Worker worker(command_of(method.program, quantity, name));
-    worker.ask(question.dump());
-    std::optional<std::string> line = worker.answer(limit, failure);
-    if (const std::string error = line ? workers::error_in(*line) : ""; !error.empty())
-      throw EnvironmentError(method.program + ": " + error);
-    return line;
-  };
+bool Replay::ask(workers::Worker& worker, nlohmann::ordered_json question, const std::string& right,
+                 std::chrono::duration<double> limit) {
+  question.update({{"right", right}, {"line", 0}, {"pairs", true}});
   workers::WorkerFailure failure;
-  const auto right = answer("", kBruteForceTimeout, failure);
-  if (!right) throw EnvironmentError("exact brute force: " + failure.message + "; please report it");
-  result.expected = expected_from(*right).pairs;
-  const workers::MemoryFile file("expected");
-  file.write(*right + "\n");
-  question["right"] = file.path();
-  question["line"] = 0;
-  question["pairs"] = true;
-  if (const auto line = answer(method.column.name, Seconds(timeout), failure)) {
-    result.take(*line);
-  } else {
-    Record r = blank_record(family, method.column.name, difficulty, case_index, seed);
-    r.expected = result.expected.size();
-    workers::note_failure(r, failure);
-    result.record = std::move(r);
+  const std::optional<std::string> line = worker.ask(question.dump(), limit, failure);
+  if (!line) {
+    record.expected = expected.size();
+    workers::note_failure(record, failure);
+    return false;
   }
-  return result;
-}
-
-void Replay::take(const std::string& line) {
-  const auto value = nlohmann::json::parse(line);
+  const auto value = nlohmann::json::parse(*line);
   record = record_from(value);
   if (value.contains("answered_pairs")) answered = workers::PairsJson::read(value.at("answered_pairs"));
+  return true;
+}
+
+Replay replay(const workers::WorkerMethod& method, const Record& of, double timeout, Quantity quantity) {
+  Replay out;
+  out.record = with_case({}, of);
+  out.record.method = method.info.name;
+  workers::WorkerFailure failure;
+  const auto right = workers::Worker(command_of(method.program, quantity, ""))
+                         .ask(question_of(of).dump(), kBruteForceTimeout, failure);
+  if (!right) throw EnvironmentError("exact brute force: " + failure.message + "; please report it");
+  out.expected = expected_from(*right).pairs;
+  const workers::MemoryFile file("expected");
+  file.write(*right + "\n");
+  workers::Worker worker(command_of(method.program, quantity, method.info.name));
+  out.ask(worker, question_of(of), file.path(), Seconds(timeout));
+  return out;
 }
 
 StabilityRunner::Posed StabilityRunner::place(const LrbRep& rep, const Pose& pose, int side) {

@@ -1,6 +1,7 @@
 #pragma once
 /// The stability experiment: runs every method on every case, in worker processes that may crash or hang.
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -76,12 +77,14 @@ struct Replay {
   std::vector<SimplexPair> expected;
   std::optional<std::vector<SimplexPair>> answered;  ///< nullopt: no answer, or one without a list of pairs
 
-  /// Takes record and pairs from a worker's answer.
-  void take(const std::string& line);
+  /// Asks a worker, and takes record and pairs from its answer. `right`: a file with the right answer.
+  /// Returns false, with the failure in the record, if there is no answer.
+  bool ask(workers::Worker& worker, nlohmann::ordered_json question, const std::string& right,
+           std::chrono::duration<double> limit);
 };
 
-Replay replay(const workers::WorkerMethod& method, const std::string& family, int difficulty,
-              std::uint64_t case_index, std::uint64_t seed, double timeout,
+/// Runs the case of a record.
+Replay replay(const workers::WorkerMethod& method, const Record& of, double timeout,
               Quantity quantity = Quantity::pairs);
 
 // Runs one method on cases.

@@ -83,9 +83,18 @@ std::vector<std::string> wrap(const std::string& text, std::size_t width) {
   return lines;
 }
 
-std::vector<std::string> title_lines(const workers::MethodColumn& method) {
+std::vector<std::string> title_lines(const methods::MethodInfo& method) {
   constexpr std::size_t kCharacters = 16;
   return wrap(method.title, kCharacters);
+}
+
+/// Of kNotRight.
+constexpr std::array<render::Rgba, 4> kColours = {page::kWrong.light, page::kCrashed.light,
+                                                  page::kTimedOut.light, page::kRejected.light};
+
+/// Returns the share of an outcome in the cases of a difficulty.
+double share_of(const Cell& cell, Outcome o, std::size_t difficulty) {
+  return static_cast<double>(cell.of(o)[difficulty]) / static_cast<double>(cell.cases(difficulty));
 }
 
 void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
@@ -93,39 +102,32 @@ void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
   sheet.rect(x + kFrom - 0.02, y + kLow - 0.03, x + kTo + 0.02, y + kHigh + 0.03, render::kWhite);
   const double step = (kTo - kFrom) / kDifficulties;
   for (std::size_t i = 0; i < kDifficulties; ++i) {
-    if (cell.cases[i] == 0) continue;
+    if (cell.cases(i) == 0) continue;
     const double left = x + kFrom + step * (static_cast<double>(i) + 0.1), right = left + 0.8 * step;
     sheet.rect(left, y + kLow - 0.012, right, y + kLow, render::palette::kRule);
     double at = y + kLow;
-    const auto part = [&](std::uint64_t n, render::Rgba c) {
-      if (n == 0) return;
-      const double share = static_cast<double>(n) / static_cast<double>(cell.cases[i]);
+    for (std::size_t k = 0; k < kNotRight.size(); ++k) {
+      const double share = share_of(cell, kNotRight[k], i);
+      if (share == 0) continue;
       const double top = std::min(y + kHigh, at + std::max(kLeast, (kHigh - kLow) * share));
-      sheet.rect(left, at, right, top, c);
+      sheet.rect(left, at, right, top, kColours[k]);
       at = top;
-    };
-    part(cell.wrong[i], page::kWrong.light);
-    part(cell.crashed[i], page::kCrashed.light);
-    part(cell.timed_out[i], page::kTimedOut.light);
-    part(cell.rejected[i], page::kRejected.light);
+    }
   }
 }
 
 void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
   constexpr double kGap = 0.02;
-  const CellSummary s = summarise(cell);
   sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
-             s.only_rejected() ? page::kOnlyRejected.light
-                               : page::kLevels[static_cast<std::size_t>(s.level())].light);
-  const std::string failures = std::to_string(s.failures()) + "/" + std::to_string(s.answered());
+             cell.only_rejected() ? page::kOnlyRejected.light
+                                  : page::kLevels[static_cast<std::size_t>(cell.level())].light);
+  const std::string failures = std::to_string(cell.failures()) + "/" + std::to_string(cell.answered());
   sheet.text(x + 0.06, y + 0.8, Sheet::small, failures);
   std::string marks;
-  const auto mark = [&](std::uint64_t n, const char* sign) {
-    if (n > 0) marks += (marks.empty() ? "" : " ") + (sign + std::to_string(n));
-  };
-  mark(s.crashed, "\u2715");
-  mark(s.timed_out, "\u25f7");
-  mark(s.rejected, "\u2298");
+  for (const auto& [outcome, sign] :
+       {std::pair{Outcome::crashed, "\u2715"}, {Outcome::timed_out, "\u25f7"}, {Outcome::rejected, "\u2298"}})
+    if (const std::uint64_t n = cell.sum(outcome); n > 0)
+      marks += (marks.empty() ? "" : " ") + (sign + std::to_string(n));
   // Marks that do not fit beside the failures get their own line.
   constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
   sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
@@ -140,7 +142,7 @@ void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
   sheet.text(-0.08, y + 0.2, Sheet::small_right, family.degenerate, render::palette::kFaint);
 }
 
-void add_column_head(Sheet& sheet, const workers::MethodColumn& method, double x) {
+void add_column_head(Sheet& sheet, const methods::MethodInfo& method, double x) {
   const std::vector<std::string> lines = title_lines(method);
   for (std::size_t i = 0; i < lines.size(); ++i)
     sheet.text(x + 0.5, 0.2 + kLine * static_cast<double>(lines.size() - 1 - i), Sheet::small_centre,
@@ -193,24 +195,22 @@ report::Chart profile(const Grid& grid, std::size_t family) {
     constexpr double kApart = 0.07;
     const double shift = kApart * (static_cast<double>(m) - static_cast<double>(grid.methods.size() - 1) / 2);
     for (std::size_t i = 0; i < kDifficulties; ++i) {
-      if (cell.cases[i] == 0) continue;
-      const double failed = static_cast<double>(cell.wrong[i] + cell.crashed[i] + cell.timed_out[i]);
+      if (cell.cases(i) == 0) continue;
       s.x.push_back(static_cast<double>(i) + shift);
-      s.y.push_back(100 * failed / static_cast<double>(cell.cases[i]));
+      s.y.push_back(100 * static_cast<double>(cell.failures(i)) / static_cast<double>(cell.cases(i)));
     }
     chart.series.push_back(std::move(s));
   }
   return chart;
 }
 
-}  // namespace
-
+/// The grid.
 report::Gnuplot grid_chart(const Grid& whole) {
   const Grid grid = present_part(whole);
   const double columns = static_cast<double>(grid.methods.size());
   const double rows = static_cast<double>(grid.families.size()) + 1.1;  // a little room above the sums
   std::size_t max_lines = 1;
-  for (const workers::MethodColumn& m : grid.methods) max_lines = std::max(max_lines, title_lines(m).size());
+  for (const methods::MethodInfo& m : grid.methods) max_lines = std::max(max_lines, title_lines(m).size());
   const double top = 0.2 + kLine * static_cast<double>(max_lines);
   report::Gnuplot chart;
   chart.width = kCellWidth * (kLeft + columns + 0.1);
@@ -240,13 +240,12 @@ report::Gnuplot grid_chart(const Grid& whole) {
   return chart;
 }
 
+/// For each family a chart of failures by difficulty with a line per present method.
 report::Gnuplot profile_chart(const Grid& grid) {
   std::vector<report::Chart> panels;
   for (std::size_t f = 0; f < grid.families.size(); ++f) panels.push_back(profile(grid, f));
   return report::gnuplot(panels, {4, 38, 28, 6, "", 2});
 }
-
-namespace {
 
 /// Returns a difficulty, with its parameter if known: "7 of 0 to 10 (4e-13)".
 std::string setting_text(const FamilyRow& family, int difficulty) {
@@ -255,39 +254,30 @@ std::string setting_text(const FamilyRow& family, int difficulty) {
   return out;
 }
 
-std::string sentence(const CellSummary& s, const FamilyRow& family) {
-  std::string out =
-      render::group_digits(s.failures()) + " of " + render::counted(s.answered(), "case fails", "cases fail");
-  const auto add = [&](std::uint64_t n, const std::string& what) {
-    if (n > 0) out += ", " + render::group_digits(n) + " " + what;
-  };
-  add(s.wrong, "with a wrong answer");
-  add(s.crashed, "by a crash");
-  add(s.timed_out, "by a time-out");
-  add(s.rejected, "refused");
-  if (s.first_failing >= 0) out += "; first at difficulty " + setting_text(family, s.first_failing);
+std::string sentence(const Cell& cell, const FamilyRow& family) {
+  std::string out = render::group_digits(cell.failures()) + " of " +
+                    render::counted(cell.answered(), "case fails", "cases fail");
+  static constexpr const char* kHow[] = {"with a wrong answer", "by a crash", "by a time-out", "refused"};
+  for (std::size_t k = 0; k < kNotRight.size(); ++k)
+    if (const std::uint64_t n = cell.sum(kNotRight[k]); n > 0)
+      out += ", " + render::group_digits(n) + " " + kHow[k];
+  if (cell.first_failing() >= 0) out += "; first at difficulty " + setting_text(family, cell.first_failing());
   return out;
 }
 
 report::GridCell page_cell(const Cell& cell, const FamilyRow& family, const std::string& where) {
-  const CellSummary s = summarise(cell);
+  const std::uint64_t answered = cell.answered();
   report::GridCell out;
-  out.level = s.only_rejected() ? report::GridCell::kOnlyRejected : s.level();
-  out.count = s.answered() > 0 ? render::group_digits(s.failures()) : "\u2013";
-  out.of = s.answered() > 0 ? "of " + render::group_digits(s.answered()) : "all refused";
-  const auto mark = [](std::uint64_t n) { return n > 0 ? render::group_digits(n) : std::string(); };
-  out.marks = {"", mark(s.crashed), mark(s.timed_out), mark(s.rejected)};
-  out.label = where + ": " + sentence(s, family);
+  out.level = cell.only_rejected() ? report::GridCell::kOnlyRejected : cell.level();
+  out.count = answered > 0 ? render::group_digits(cell.failures()) : "\u2013";
+  out.of = answered > 0 ? "of " + render::group_digits(answered) : "all refused";
+  for (std::size_t k = 1; k < kNotRight.size(); ++k)
+    if (const std::uint64_t n = cell.sum(kNotRight[k]); n > 0) out.marks[k] = render::group_digits(n);
+  out.label = where + ": " + sentence(cell, family);
   for (std::size_t i = 0; i < kDifficulties; ++i) {
-    if (cell.cases[i] == 0) {
-      out.bars.push_back({-1, 0, 0, 0});
-      continue;
-    }
-    const auto share = [&](std::uint64_t n) {
-      return static_cast<double>(n) / static_cast<double>(cell.cases[i]);
-    };
-    out.bars.push_back(
-        {share(cell.wrong[i]), share(cell.crashed[i]), share(cell.timed_out[i]), share(cell.rejected[i])});
+    out.bars.push_back({-1, 0, 0, 0});
+    for (std::size_t k = 0; k < kNotRight.size() && cell.cases(i) > 0; ++k)
+      out.bars.back()[k] = share_of(cell, kNotRight[k], i);
   }
   return out;
 }
@@ -312,7 +302,6 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
   d.text = answer_text(r);
   const std::size_t cell = f * grid.methods.size() + m;
   if (cell < options.pictures.size()) d.file = options.pictures[cell];
-  const CellSummary s = summarise(grid.at(f, m));
   const bool answered = r.outcome == Outcome::right || r.outcome == Outcome::wrong;
   d.facts = {{"Outcome", to_text(r.outcome)}};
   if (grid.quantity == Quantity::pairs) {
@@ -330,7 +319,7 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
   d.facts.emplace_back("Difficulty", setting_text(family, r.difficulty));
   d.facts.emplace_back("Case, seed", render::group_digits(r.case_index) + ", " + std::to_string(r.seed));
   if (answered) d.facts.emplace_back("Query", render::short_number(r.microseconds) + " \u00b5s");
-  d.note = "This family, this method: " + sentence(s, family) + ".";
+  d.note = "This family, this method: " + sentence(grid.at(f, m), family) + ".";
   if (options.command) d.command = options.command(r);
   if (options.command && grid.quantity == Quantity::pairs)
     d.note +=
@@ -345,7 +334,7 @@ report::Grid page_grid(const Grid& grid, const ReportOptions& options) {
   out.corner = "family, and its difficulty from benign to degenerate";
   out.level_names.assign(kLevelNames.begin(), kLevelNames.end());
   out.part_names = {"wrong answer", "crashed", "timed out", "refused"};
-  for (const workers::MethodColumn& m : grid.methods) out.columns.push_back({m.title, m.remark});
+  for (const methods::MethodInfo& m : grid.methods) out.columns.push_back({m.title, m.remark});
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     const FamilyRow& family = grid.families[f];
     out.rows.push_back({family.name, family.what, family.benign, family.degenerate, family.values});
@@ -443,7 +432,7 @@ report::Document stability_page(const Grid& whole, const std::string& folder, co
   for (std::size_t i = 0; i < given.pictures.size(); ++i)
     if (whole.methods[i % whole.methods.size()].present) options.pictures.push_back(given.pictures[i]);
   std::uint64_t answers = 0;
-  for (const Cell& c : grid.cells) answers += summarise(c).cases;
+  for (const Cell& c : grid.cells) answers += c.cases();
   const std::size_t absent = whole.methods.size() - grid.methods.size();
   const bool pairs = grid.quantity == Quantity::pairs;
   report::Document doc(pairs ? "Where collision methods fail"

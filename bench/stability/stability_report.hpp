@@ -27,10 +27,6 @@ struct ReportOptions {
 report::Document write_stability_report(const Grid& grid, const report::Folder& folder,
                                         const ReportOptions& options = {});
 
-/// The grid, and for each family a chart of failures by difficulty with a line per present method.
-report::Gnuplot grid_chart(const Grid& grid);
-report::Gnuplot profile_chart(const Grid& grid);
-
 /// Returns the outcome of a case as text.
 std::string answer_text(const Record& r);
 

@@ -30,40 +30,16 @@ static_assert(kFieldCount<methods::MethodInfo> + 1 == detail::member_count<metho
 namespace lrb::workers {
 
 nlohmann::ordered_json to_json(const methods::MethodInfo& info) {
-  const nlohmann::ordered_json record = io::record_to_json(info);
-  nlohmann::ordered_json out;
-  const auto add = [&](methods::Trait t) { out[std::string(name_of(t))] = info.has(t); };
-  // The first trait comes before "says", the others after it.
-  for (const auto& [key, value] : record.items()) {
-    if (key == "says") add(methods::Trait::loose);
-    out[key] = value;
-    if (key != "says") continue;
-    for (const auto& entry : kEnumNames<methods::Trait>)
-      if (entry.value != methods::Trait::loose) add(entry.value);
-  }
+  nlohmann::ordered_json out = io::record_to_json(info);
+  for (const auto& trait : kEnumNames<methods::Trait>) out[std::string(trait.name)] = info.has(trait.value);
   return out;
 }
 
 methods::MethodInfo method_info_from(const nlohmann::json& value) {
   auto info = io::record_from_json<methods::MethodInfo>(value);
-  for (const auto& entry : kEnumNames<methods::Trait>) {
-    const char* key = entry.name.data();
-    try {
-      info.traits.set(entry.value, value.at(key).get<bool>());
-    } catch (const nlohmann::json::exception& e) {
-      throw InputError(std::string(key) + ": " + e.what());
-    }
-  }
+  for (const auto& trait : kEnumNames<methods::Trait>)
+    info.traits.set(trait.value, value.value(std::string(trait.name), false));
   return info;
-}
-
-nlohmann::ordered_json pose_json(const Pose& pose) {
-  nlohmann::ordered_json out = nlohmann::ordered_json::array();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out.push_back(pose.r(i, j));
-    out.push_back(pose.t[i]);
-  }
-  return out;
 }
 
 }  // namespace lrb::workers

@@ -12,16 +12,12 @@
 #include "trace/json_records.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/pose.hpp>
 
 namespace lrb::workers {
 
 nlohmann::ordered_json to_json(const methods::MethodInfo& info);
 /// Reads a line. Throws InputError, which describes the error in the line, if it is invalid.
 methods::MethodInfo method_info_from(const nlohmann::json& value);
-
-/// Returns a pose as the 12 numbers of a 3x4 matrix, row by row.
-nlohmann::ordered_json pose_json(const Pose& pose);
 
 // Outcome of a query that a method rejects, or that ends with an exception.
 

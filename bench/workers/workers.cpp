@@ -146,13 +146,23 @@ Pipe::~Pipe() {
   close(ends_[1]);
 }
 
-void Pipe::write(std::string_view text) const {
+namespace {
+
+void write_all(int file, std::string_view text) {
   while (!text.empty()) {
-    const ssize_t n = ::write(ends_[1], text.data(), text.size());
+    const ssize_t n = ::write(file, text.data(), text.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw EnvironmentError(std::string("cannot write to a pipe: ") + std::strerror(errno));
+    if (n < 0)
+      throw EnvironmentError(std::string("cannot write to a worker, or to its file in memory: ") +
+                             std::strerror(errno));
     text.remove_prefix(static_cast<std::size_t>(n));
   }
+}
+
+}  // namespace
+
+void Pipe::write(std::string_view text) const {
+  write_all(ends_[1], text);
 }
 
 MemoryFile::MemoryFile(const char* name) : file_(memfd_create(name, MFD_CLOEXEC)) {
@@ -169,26 +179,7 @@ std::string MemoryFile::path() const {
 }
 
 void MemoryFile::write(std::string_view text) const {
-  while (!text.empty()) {
-    const ssize_t n = ::write(file_, text.data(), text.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw EnvironmentError(std::string("cannot write to memory: ") + std::strerror(errno));
-    text.remove_prefix(static_cast<std::size_t>(n));
-  }
-}
-
-std::vector<std::byte> MemoryFile::bytes() const {
-  std::vector<std::byte> out;
-  lseek(file_, 0, SEEK_SET);
-  constexpr std::size_t kPiece = std::size_t{1} << 20;
-  while (true) {
-    const std::size_t size = out.size();
-    out.resize(size + kPiece);
-    const ssize_t n = ::read(file_, out.data() + size, kPiece);
-    out.resize(size + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return out;
-  }
+  write_all(file_, text);
 }
 
 namespace {
@@ -217,6 +208,15 @@ std::optional<std::string> Worker::answer(std::chrono::duration<double> limit, W
   if (status == kNoSuchProgram) throw EnvironmentError(command_.front() + ": cannot be started; rebuild it");
   failure = {false, text_of_end(status)};
   return std::nullopt;
+}
+
+std::optional<std::string> Worker::ask(const std::string& question, std::chrono::duration<double> limit,
+                                       WorkerFailure& failure) {
+  ask(question);
+  std::optional<std::string> line = answer(limit, failure);
+  if (const std::string error = line ? error_in(*line) : ""; !error.empty())
+    throw EnvironmentError(command_.front() + ": " + error);
+  return line;
 }
 
 std::string text_of_end(int status) {
@@ -343,7 +343,6 @@ std::vector<WorkerMethod> methods_of(const std::string& program, const std::vect
     if (!value.is_object()) break;
     WorkerMethod m;
     m.info = method_info_from(value);
-    m.column = {m.info.name, m.info.title, m.info.remark, m.info.present};
     m.program = program;
     methods.push_back(m);
   }
@@ -352,13 +351,9 @@ std::vector<WorkerMethod> methods_of(const std::string& program, const std::vect
   return methods;
 }
 
-std::vector<WorkerMethod> find_methods() {
-  std::vector<WorkerMethod> methods = find_all_methods();
-  std::erase_if(methods, [](const WorkerMethod& m) { return !m.info.has(methods::Trait::hard_cases); });
-  return methods;
-}
-
-std::vector<WorkerMethod> find_all_methods() {
+std::vector<WorkerMethod> find_methods(methods::Quantity quantity) {
+  if (quantity != methods::Quantity::pairs)
+    return methods_of(number_worker(), {"--quantity", std::string(name_of(quantity))});
   const fs::path folder = folder_of_workers();
   std::vector<WorkerMethod> methods;
   for (const fs::path& program : programs_in(folder))
@@ -367,8 +362,10 @@ std::vector<WorkerMethod> find_all_methods() {
   return methods;
 }
 
-std::vector<WorkerMethod> find_number_methods(methods::Quantity quantity) {
-  return methods_of(number_worker(), {"--quantity", std::string(name_of(quantity))});
+std::vector<methods::MethodInfo> infos_of(const std::vector<WorkerMethod>& methods) {
+  std::vector<methods::MethodInfo> out;
+  for (const WorkerMethod& m : methods) out.push_back(m.info);
+  return out;
 }
 
 std::string number_worker() {

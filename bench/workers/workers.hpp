@@ -82,10 +82,7 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   std::string path() const;
-  int descriptor() const { return file_; }
   void write(std::string_view text) const;
-  /// Returns the whole content, and sets the position to the end.
-  std::vector<std::byte> bytes() const;
 
  private:
   int file_;
@@ -120,6 +117,9 @@ class Worker {
   /// Returns the next answer, or nullopt and the reason why there is none; the process is then of no more
   /// use. Throws EnvironmentError if the program cannot be started.
   std::optional<std::string> answer(std::chrono::duration<double> limit, WorkerFailure& failure);
+  /// Asks and waits for the answer. Throws EnvironmentError as well if the answer is an error.
+  std::optional<std::string> ask(const std::string& question, std::chrono::duration<double> limit,
+                                 WorkerFailure& failure);
 
  private:
   std::vector<std::string> command_;
@@ -171,28 +171,20 @@ class Job {
 /// Runs a job to its end, with all its lines and failures.
 void run_to_end(Job job);
 
-struct MethodColumn {
-  std::string name;     ///< for the command line: "ours", "fcl"
-  std::string title;    ///< display name: "FCL 0.7.0, OBBRSS, double"
-  std::string remark;   ///< meaning of the answer, and the options of the query
-  bool present = true;  ///< false: not available when this was built
-};
-
 struct WorkerMethod {
-  MethodColumn column;
   std::string program;       ///< path of the worker with this method
-  methods::MethodInfo info;  ///< the worker's description of it, including the entries of the table column
+  methods::MethodInfo info;  ///< the worker's description of it
 };
 
 /// Queries the workers in the folder of the running program, or in the folder named by the environment
-/// variable LRBSCOPE_METHODS. Throws EnvironmentError if there is no worker or one does not answer.
-std::vector<WorkerMethod> find_all_methods();
-/// Returns the methods of the stability experiment.
-std::vector<WorkerMethod> find_methods();
+/// variable LRBSCOPE_METHODS, for their methods for a quantity. Throws EnvironmentError if there is no worker
+/// or one does not answer.
+std::vector<WorkerMethod> find_methods(methods::Quantity quantity = methods::Quantity::pairs);
+/// Returns their descriptions.
+std::vector<methods::MethodInfo> infos_of(const std::vector<WorkerMethod>& methods);
 
-/// Returns the methods that return a number. Throws EnvironmentError if their worker is missing.
-std::vector<WorkerMethod> find_number_methods(methods::Quantity quantity);
-/// Returns the path of that worker. Throws EnvironmentError if it is missing.
+/// Returns the path of the worker with methods that return a number. Throws EnvironmentError if it is
+/// missing.
 std::string number_worker();
 
 /// Returns the methods of one program, in its order; options may select some of them. Throws EnvironmentError

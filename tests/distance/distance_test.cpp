@@ -46,7 +46,7 @@ Rational surface_distance_sq(const LrbRep& a, const Pose& pose_a, const LrbRep& 
       const double apart = test::simplex_distance(s, t);
       if (apart > about) continue;
       if (least >= 0 && oracle::square(apart * (1 - 1e-6)) > least && apart > 1e-5 * size) continue;
-      const Rational sq = oracle::distance_sq(test::corners_of(s), test::corners_of(t));
+      const Rational sq = oracle::distance_sq(s, t);
       if (least < 0 || sq < least) least = sq;
     }
   return least;

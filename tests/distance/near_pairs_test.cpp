@@ -52,8 +52,7 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
       const double apart = meet != exact::Meet::disjoint ? 0 : test::simplex_distance(of_a[s], of_b[t]);
       bool is_near = apart <= within;
       if (meet == exact::Meet::disjoint && std::abs(apart - within) <= rough) {
-        is_near = oracle::distance_sq(test::corners_of(of_a[s]), test::corners_of(of_b[t])) <=
-                  oracle::square(within);
+        is_near = oracle::distance_sq(of_a[s], of_b[t]) <= oracle::square(within);
         ++seen.close_calls;
       }
       const bool is_listed =

@@ -27,7 +27,7 @@ Rational distance_sq(const std::vector<test::Points>& simplices, const Vector3d&
   std::optional<Rational> exact;
   for (std::size_t i = 0; i < simplices.size(); ++i) {
     if (apart[i] > least * (1 + 1e-7) + 1e-9 * size) continue;
-    const Rational d = oracle::distance_sq(test::corners_of(p), test::corners_of(simplices[i]));
+    const Rational d = oracle::distance_sq({p}, simplices[i]);
     if (!exact || d < *exact) exact = d;
   }
   return *exact;

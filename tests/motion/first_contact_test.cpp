@@ -69,9 +69,9 @@ std::optional<Rational> exact_time(const LrbRep& a, const LrbRep& b, const Vecto
         box_b.extend(Vector3d(x + (first ? first->convert_to<double>() + 1e-9 : 1) * way));
       }
       if (!box_a.intersects(box_b)) continue;
-      const auto time =
-          oracle::first_time(test::corners_of(a, Pose{}, s), test::corners_of(b, Pose::translation(from), t),
-                             {way.x(), way.y(), way.z()}, first ? *first : Rational(1));
+      const auto time = oracle::first_time(test::simplex_points(a, Pose{}, s),
+                                           test::simplex_points(b, Pose::translation(from), t), way,
+                                           first ? *first : Rational(1));
       if (time && (!first || *time < *first)) first = time;
     }
   return first;

@@ -27,19 +27,17 @@ inline Grid made_up_grid() {
       Cell c;
       if (g.methods[m].present)
         for (std::size_t d = 0; d < cases::kDifficulties; ++d) {
-          c.cases[d] = 30;
-          const bool begun = d + m > 6 + f % 5;
-          if (m == 0) {
-            if (f == 10 && d > 7) c.rejected[d] = 5 * (d - 7);
-            continue;
-          }
-          if (begun) c.wrong[d] = std::min<std::uint64_t>(24, (d + m + f) % 5 * (f % 4 + (d > 8 ? 3 : 0)));
-          if (m == 6 && f % 6 == 2 && d > 5) c.crashed[d] = 2;
-          if (m == 4 && f % 7 == 3 && d > 8) c.timed_out[d] = 3;
-          if (m == 5 && f % 5 == 1 && d > 6) c.rejected[d] = 3;
+          const auto some = [&](Outcome o, std::uint64_t n) { c.of(o)[d] = n; };
+          if (m == 0 && f == 10 && d > 7) some(Outcome::rejected, 5 * (d - 7));
+          if (m > 0 && d + m > 6 + f % 5)
+            some(Outcome::wrong, std::min<std::uint64_t>(24, (d + m + f) % 5 * (f % 4 + (d > 8 ? 3 : 0))));
+          if (m == 6 && f % 6 == 2 && d > 5) some(Outcome::crashed, 2);
+          if (m == 4 && f % 7 == 3 && d > 8) some(Outcome::timed_out, 3);
+          if (m == 5 && f % 5 == 1 && d > 6) some(Outcome::rejected, 3);
+          some(Outcome::right, 30 - c.cases(d));
         }
       for (std::size_t d = 0; d < cases::kDifficulties && !c.worst; ++d) {
-        if (c.wrong[d] + c.crashed[d] + c.timed_out[d] + c.rejected[d] == 0) continue;
+        if (c.cases(d) == c.of(Outcome::right)[d]) continue;
         Record r;
         r.family = g.families[f].name;
         r.method = g.methods[m].name;
@@ -47,10 +45,8 @@ inline Grid made_up_grid() {
         r.case_index = d;
         r.seed = 1;
         r.expected = 12;
-        r.outcome = c.crashed[d] > 0     ? Outcome::crashed
-                    : c.timed_out[d] > 0 ? Outcome::timed_out
-                    : c.wrong[d] > 0     ? Outcome::wrong
-                                         : Outcome::rejected;
+        for (const Outcome o : {Outcome::rejected, Outcome::wrong, Outcome::timed_out, Outcome::crashed})
+          if (c.of(o)[d] > 0) r.outcome = o;
         if (r.outcome == Outcome::wrong) r.missed = 3, r.extra = 1;
         if (r.outcome == Outcome::crashed) r.message = "signal 11 (<Segmentation fault>)";
         r.relation = "separate";

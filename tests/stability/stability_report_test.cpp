@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include "bench/stability/case_meshes.hpp"
 #include "bench/stability/case_picture.hpp"
 #include "bench/stability/outcome_grid.hpp"
 #include "scenarios/bodies/shapes.hpp"
@@ -155,18 +156,18 @@ TEST_CASE("names are escaped, and their addresses are plain") {
 
 TEST_CASE("rejections are not failures, and the first failing difficulty is found") {
   Cell c;
-  c.cases.fill(10);
-  c.rejected[3] = 10;
-  CHECK(summarise(c).failures() == 0);
-  CHECK(summarise(c).only_rejected());
-  c.timed_out[7] = 1;
-  c.crashed[9] = 2;
-  c.wrong[10] = 3;
-  const CellSummary s = summarise(c);
-  CHECK(s.failures() == 6);
-  CHECK(s.first_failing == 7);
-  CHECK(s.level() == 2);
-  CHECK_FALSE(s.only_rejected());
+  c.of(Outcome::right).fill(10);
+  c.of(Outcome::right)[3] = 0;
+  c.of(Outcome::rejected)[3] = 10;
+  CHECK(c.failures() == 0);
+  CHECK(c.only_rejected());
+  c.of(Outcome::timed_out)[7] = 1;
+  c.of(Outcome::crashed)[9] = 2;
+  c.of(Outcome::wrong)[10] = 3;
+  CHECK(c.failures() == 6);
+  CHECK(c.first_failing() == 7);
+  CHECK(c.level() == 2);
+  CHECK_FALSE(c.only_rejected());
 }
 
 TEST_CASE("an inconsistent grid is rejected") {
@@ -253,7 +254,7 @@ TEST_CASE("the picture does not depend on scale and position of the world") {
   CHECK(differing(here, picture(boxes(), 3)) > 0.01);
 }
 
-TEST_CASE("two triangles have the bodies' colours, and the place where they cross or come close") {
+TEST_CASE("the place of a pair: where its triangles cross, or the closest points; the worst kind of pairs") {
   const auto triangle = [](const std::vector<Eigen::Vector3d>& corners) {
     Mesh m;
     m.vertices = corners;
@@ -264,23 +265,15 @@ TEST_CASE("two triangles have the bodies' colours, and the place where they cros
   cases::Case c;
   c.a = triangle({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   c.b = triangle({{0.25, 0.25, -1}, {0.25, 0.25, 1}, {2, 2, 1}});
-  const Pairs pair = {{SimplexId(0), SimplexId(0)}};
-  const CasePicture crossing(c, compare(pair, Pairs{}));
-  CHECK(crossing.all_marked());
-  REQUIRE(crossing.places.size() == 1);
-  REQUIRE(crossing.places[0].corners.size() == 2);
+  const SimplexPair pair = {SimplexId(0), SimplexId(0)};
+  const Corners crossing = PosedPair(c, pair).place();
+  REQUIRE(crossing.size() == 2);
   const Eigen::Vector3d end(0.25, 0.25, 0);
-  CHECK((crossing.places[0].corners[0] == end || crossing.places[0].corners[1] == end));
-  CHECK(crossing.worst == Mark::missed);
+  CHECK((crossing[0] == end || crossing[1] == end));
   c.pose_b = Pose::translation({0, 0, 1.5});
-  const CasePicture apart(c, compare({}, pair));
-  REQUIRE(apart.places.size() == 1);
-  CHECK(apart.places[0].corners[0] == Eigen::Vector3d(0.25, 0.25, 0));  // closest points
-  CHECK(apart.places[0].corners[1] == Eigen::Vector3d(0.25, 0.25, 0.5));
-  CHECK(apart.worst == Mark::extra);
-  const CasePicture whole(boxes(), compare({}, Pairs{{SimplexId(0), SimplexId(0)}}));
-  CHECK(!whole.all_marked());
-  CHECK(whole.places.empty());
+  CHECK(PosedPair(c, pair).place() == Corners{{0.25, 0.25, 0}, {0.25, 0.25, 0.5}});  // closest points
+  CHECK(compare(Pairs{pair}, Pairs{}).mark() == Mark::missed);
+  CHECK(compare({}, Pairs{pair}).mark() == Mark::extra);
 }
 
 TEST_CASE("cases that cannot be drawn are rejected") {

@@ -18,7 +18,7 @@ struct WorkerPrograms {
 
 inline workers::WorkerMethod worker_method(const std::string& name) {
   for (const workers::WorkerMethod& m : workers::find_methods())
-    if (m.column.name == name) return m;
+    if (m.info.name == name) return m;
   FAIL("no method " << name);
   return {};
 }
