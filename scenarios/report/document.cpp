@@ -482,15 +482,20 @@ std::string Document::html() const {
     source += "<section><h2>Files</h2>\n<ul class=\"links\">\n" + files + "</ul></section>\n";
   const std::string texts = texts_.empty() ? "" : "<div class=\"texts\">\n" + texts_ + "</div>\n";
   std::string numbers = numbers_.empty() ? "" : "<dl class=\"numbers\">\n" + numbers_ + "</dl>\n";
+  std::string head = purpose_.empty() ? "" : fill("<p class=\"purpose\">{}</p>", {purpose_});
   if (of_run_) {
-    numbers = tab_html("Answer", numbers);
+    head = numbers + (summary_ + purpose_ == ""
+                          ? ""
+                          : fill("<p class=\"lead\"><b>Whole run</b> {} {}</p>\n", {summary_, purpose_}));
+    numbers = "";
     source = tab_html("Run", source);
+  } else if (!summary_.empty()) {
+    head = fill("<p class=\"lead\">{}</p>\n", {summary_}) + head;
   }
   return filled(io::embedded_file("page.html"),
                 {{"title", render::escape_markup(title_)},
                  {"verdict", verdict_},
-                 {"purpose", (summary_.empty() ? "" : fill("<p class=\"lead\">{}</p>\n", {summary_})) +
-                                 (purpose_.empty() ? "" : fill("<p class=\"purpose\">{}</p>", {purpose_}))},
+                 {"purpose", head},
                  {"noscript", of_run_              ? kNoScript
                               : view_data_.empty() ? ""
                                                    : kNoScriptView},

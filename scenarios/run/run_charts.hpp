@@ -15,6 +15,10 @@ std::string_view meaning_of_column(std::string_view name);
 /// The same for the page of another engine's run, without terms of lrbscope's wrappers.
 std::string_view meaning_for_engines(std::string_view name);
 
+/// Returns the key figures of a step of two bodies, the relation first. Returns an empty list for a step that
+/// is not finished, and for other runs.
+std::vector<report::Number> step_numbers(const RecordedRun& recorded, std::size_t step);
+
 /// Returns what a verdict on a cap means, as a clause.
 std::string_view meaning_of(CapVerdict verdict);
 

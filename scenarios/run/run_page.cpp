@@ -31,115 +31,82 @@ const trace::Step* last_step(const trace::Trace& trace) {
   return trace.steps.empty() || !trace.steps.back().finished ? nullptr : &trace.steps.back();
 }
 
-/// Returns the number of pairs of the last step's answer in which not both faces are real.
-std::size_t pseudo_pairs(const trace::Trace& trace) {
+/// Returns the number of pairs of a step's answer in which not both faces are real.
+std::size_t pseudo_pairs(const trace::Trace& trace, std::size_t step) {
   const auto& bodies = trace.header.bodies;
-  const auto events = trace.events_of(trace.steps.size() - 1);
+  const auto events = trace.events_of(step);
   return static_cast<std::size_t>(std::count_if(events.begin(), events.end(), [&](const trace::Event& e) {
     return e.kind == EventKind::contact &&
            (e.a >= bodies[0].real_simplices || e.b >= bodies[1].real_simplices);
   }));
 }
 
-/// Returns the names of the bodies for which the test is true: "A", "B" or "A and B".
-template <class Test>
-std::string sides_of(const RecordedRun& p, Test test) {
-  std::string out;
-  for (std::size_t i = 0; i < p.reps.size(); ++i)
-    if (test(*p.reps[i])) out += (out.empty() ? "" : " and ") + std::string(i == 0 ? "A" : "B");
-  return out;
-}
-
 /// Adds the measurements of a step other than pairs.
-void add_measured(const trace::StepResult& r, const std::string& at, std::vector<report::Number>& out) {
+void add_measured(const trace::StepResult& r, std::vector<report::Number>& out) {
   if (r.distance)
     out.push_back({"Distance", interval_text(r.distance->lower, r.distance->upper),
-                   at + "; of the surfaces, proven" +
+                   std::string("of the surfaces, proven") +
                        (r.distance->solids_meet && r.distance->upper > 0 ? ". The solids overlap" : "")});
   if (r.near)
-    out.push_back({"Near pairs", render::group_digits(r.near->pairs),
-                   at + "; pairs of triangles at most " + render::short_number(r.near->within) +
-                       " apart, none missed"});
+    out.push_back(
+        {"Near pairs", render::group_digits(r.near->pairs),
+         "pairs of triangles at most " + render::short_number(r.near->within) + " apart, none missed"});
   if (r.manifold)
     out.push_back({"Contact manifolds", render::group_digits(r.manifold->manifolds),
-                   at + "; " + render::counted(r.manifold->found, "point", "points")});
+                   render::counted(r.manifold->found, "point", "points")});
   if (r.points)
     out.push_back({r.points->has_sides ? "Points inside" : "Points",
                    render::group_digits(r.points->has_sides ? r.points->inside : r.points->count),
-                   at + "; " + text_of(*r.points)});
+                   text_of(*r.points)});
   if (!r.clash) return;
-  const std::string reason(name_of(r.clash->reason));
-  out.push_back({"Contact kind", kind_text(r.clash->kind), reason.empty() ? at : at + "; " + reason});
+  out.push_back({"Contact kind", kind_text(r.clash->kind), std::string(name_of(r.clash->reason))});
   if (r.clash->depth)
     out.push_back({"Penetration depth", interval_text((*r.clash->depth)[0], (*r.clash->depth)[1]),
-                   at + "; length of B's separation vector, proven"});
+                   "length of B's separation vector, proven"});
   if (r.clash->volume)
-    out.push_back({"Shared volume", interval_text((*r.clash->volume)[0], (*r.clash->volume)[1]), at});
+    out.push_back({"Shared volume", interval_text((*r.clash->volume)[0], (*r.clash->volume)[1]), ""});
 }
 
-std::vector<report::Number> collision_numbers(const RecordedRun& p, const trace::Step& step) {
-  const trace::StepResult& r = step.result;
-  const auto at = "at step " + std::to_string(step.index);
-  std::uint64_t regions = 0, faces = 0;
-  std::string each;
-  for (const LrbRep* rep : p.reps) {
-    regions += rep->region_count();
-    faces += rep->real_face_count();
-    each += (each.empty() ? "" : " + ") + render::group_digits(rep->real_face_count());
-  }
-  std::vector<report::Number> out = {{"Relation", io::in_words(name_of(r.relation)), at},
-                                     {"Intersecting pairs", render::group_digits(r.pair_count), at}};
-  const std::string open = sides_of(p, [](const LrbRep& rep) { return !rep.closed(); });
-  if (r.relation == Relation::undefined && !open.empty())
-    out[0].note +=
-        "; " + open + (open.size() > 1 ? " are" : " is") + " open: inside and outside are not defined";
-  if (const std::string bare = sides_of(p, [](const LrbRep& rep) { return rep.region_count() == 0; });
-      !bare.empty() && p.trace->header.engine.empty())
-    out.push_back({"Without wrapper", bare,
-                   (open.empty() ? std::string() : open + (open.size() > 1 ? " are" : " is") + " open; ") +
-                       "no regions; all faces are visible"});
-  if (const CollideRequest& request = p.trace->header.request; request.is_coarse()) {
-    out.back().note +=
-        "; of wrappers: " + render::group_digits(pseudo_pairs(*p.trace)) + " with a pseudo face";
+}  // namespace
+
+std::vector<report::Number> step_numbers(const RecordedRun& p, std::size_t step) {
+  const trace::Step& s = p.trace->steps[step];
+  if (!s.finished || p.reps.size() != 2 || p.trace->has_engine_reports()) return {};
+  const trace::StepResult& r = s.result;
+  std::vector<report::Number> out = {{"Relation", io::in_words(name_of(r.relation)), ""},
+                                     {"Pairs", render::group_digits(r.pair_count), ""}};
+  if (r.relation == Relation::undefined) out[0].note = "of open bodies: inside and outside are not defined";
+  if (p.trace->header.request.is_coarse()) {
+    out.back().note =
+        "of wrappers: " + render::group_digits(pseudo_pairs(*p.trace, step)) + " with a pseudo face";
     out.push_back({"Error bound", error_bound_text(r.error_bound),
-                   at + (r.finished ? "; deviation of those wrappers from the bodies"
-                                    : "; a limit was reached before the tolerance")});
-  } else if (p.results != nullptr && !p.results->empty()) {
-    out.push_back({"Contact regions", render::group_digits(p.results->back().regions.size()), at});
+                   r.finished ? "deviation of those wrappers from the bodies"
+                              : "a limit was reached before the tolerance"});
+  } else if (p.results != nullptr && step < p.results->size()) {
+    out.push_back({"Contact regions", render::group_digits((*p.results)[step].regions.size()), ""});
   }
-  add_measured(r, at, out);
-  if (const auto& search = p.trace->header.first_contact; search && search->step)
-    out.push_back({"First contact", spec::contact_step(*search),
-                   spec::contact_way(*search) + "; proven collision-free until then"});
+  add_measured(r, out);
   out.push_back({"Face tests", render::group_digits(r.counters.face_tests),
-                 at + "; brute force: " +
-                     render::group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
-                                          p.reps[1]->real_simplex_count())});
-  if (p.trace->header.engine.empty())
-    out.push_back({"Refined regions", render::group_digits(r.counters.regions_opened),
-                   "of " + render::group_digits(regions) + ", " + at});
-  out.push_back({p.trace->header.engine.empty() ? "Real faces" : "Faces", render::group_digits(faces), each});
+                 "brute force: " + render::group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
+                                                        p.reps[1]->real_simplex_count())});
+  if (!p.trace->header.engine.empty()) return out;
+  std::uint64_t regions = 0;
+  for (const LrbRep* rep : p.reps) regions += rep->region_count();
+  out.push_back(
+      {"Refined", render::group_digits(r.counters.regions_opened), "of " + render::group_digits(regions)});
   return out;
 }
+
+namespace {
 
 std::string body_text(const RecordedRun& p, std::size_t side) {
   const LrbRep& rep = *p.reps[side];
   const std::string name = std::filesystem::path(p.trace->header.bodies[side].name).stem().string();
   return std::string(p.reps.size() == 1 ? ""
-                     : side == 0        ? "A, "
-                                        : "B, ") +
+                     : side == 0        ? "A: "
+                                        : "B: ") +
          (name.empty() ? "the body" : name) + " (" + render::counted(rep.real_face_count(), "face", "faces") +
          ")";
-}
-
-std::string whole_percent(std::uint64_t part, std::uint64_t whole) {
-  return std::to_string((100 * part + whole / 2) / std::max<std::uint64_t>(whole, 1)) + " %";
-}
-
-std::string time_text(double seconds) {
-  constexpr double kMillis = 1e3, kMicros = 1e6;
-  return seconds < 1 / kMillis ? render::short_number(kMicros * seconds) + " µs"
-                               : render::short_number(kMillis * seconds) + " ms";
 }
 
 std::uint64_t tests_of(const trace::Step& step) {
@@ -147,61 +114,37 @@ std::uint64_t tests_of(const trace::Step& step) {
   return c.box_tests + c.prefilter_tests + c.face_tests;
 }
 
-/// Returns the answer and the cost of a step in a sentence, and where the work was.
-std::string step_sentence(const RecordedRun& p, const trace::Step& step) {
-  using render::counted;
-  const trace::StepResult& r = step.result;
-  const Counters& c = r.counters;
-  const std::uint64_t tests = tests_of(step);
-  const std::string relation = io::in_words(name_of(r.relation));
-  const auto index = static_cast<std::size_t>(&step - p.trace->steps.data());
-  const double seconds = trace::seconds_of_step(*p.trace, index);
-  std::string out = "At step " + std::to_string(step.index) + " the relation is " + relation;
-  if (r.pair_count > 0)
-    out += " with " + counted(r.pair_count, "intersecting pair of faces", "intersecting pairs of faces");
-  out += ". That query takes " + (seconds > 0 ? time_text(seconds) + " and " : std::string()) +
-         counted(tests, "test", "tests");
-  if (tests > c.face_tests)
-    out += " (" + whole_percent(c.box_tests, tests) + " of boxes, " +
-           (p.trace->header.engine.empty() ? whole_percent(c.prefilter_tests, tests) + " of planes, " : "") +
-           whole_percent(c.face_tests, tests) + " of faces)";
-  const std::uint64_t all = std::uint64_t{p.reps[0]->real_simplex_count()} * p.reps[1]->real_simplex_count();
-  return out + " of " + counted(all, "possible pair", "possible pairs") + ".";
-}
-
-/// Returns the bodies, their first contact, and the cost of a query by sort of work, in a few sentences.
+/// Returns the bodies, their first contact and the costliest query, in a sentence.
 std::string sentence_of(const RecordedRun& p) {
   using render::counted;
   if (p.reps.size() == 2) {
-    const std::string both = body_text(p, 0) + ", and " + body_text(p, 1);
+    const std::string both = body_text(p, 0) + ", " + body_text(p, 1);
     if (p.trace->has_engine_reports())
       return "For " + both + ", " + p.trace->header.engine + " " + engine_sentence(p);
     std::string out = both;
+    const auto& steps = p.trace->steps;
     if (const auto& search = p.trace->header.first_contact; search && search->step)
-      out += ", first touch at " + spec::contact_step(*search);
+      out += ". First touch at " + spec::contact_step(*search) + ", " + spec::contact_way(*search) +
+             ", proven collision-free until then";
     else if (const trace::EventId at = first_contact(*p.trace); at != kNull)
-      out += ", intersect from step " + std::to_string(p.trace->steps[p.trace->step_of(at)].index);
+      out += steps.size() > 1
+                 ? ". They intersect from step " + std::to_string(steps[p.trace->step_of(at)].index)
+                 : ". They intersect";
     else
-      out += p.trace->steps.size() > 1 ? ", do not touch in any step" : ", do not touch";
-    out += ".";
-    // An approach ends with its answer; for other motions, the costliest step is reported.
-    const trace::Step* step = last_step(*p.trace);
-    if (step != nullptr && !p.trace->header.first_contact)
-      step = &*std::max_element(
-          p.trace->steps.begin(), p.trace->steps.end(),
-          [](const trace::Step& x, const trace::Step& y) { return tests_of(x) < tests_of(y); });
-    if (step == nullptr) return out;
-    out += " " + step_sentence(p, *step);
-    // Times are of one execution each, and may name another step. Steps without events have none (NaN).
-    double longest = 0;
-    const trace::Step* slowest = step;
-    for (std::size_t i = 0; i < p.trace->steps.size(); ++i)
-      if (const double seconds = trace::seconds_of_step(*p.trace, i); seconds > longest)
-        longest = seconds, slowest = &p.trace->steps[i];
-    if (slowest != step)
-      out += " By single measurements, step " + std::to_string(slowest->index) +
-             " takes longest: " + time_text(longest) + ".";
-    return out;
+      out += steps.size() > 1 ? ". They do not touch in any step" : ". They do not touch";
+    if (steps.size() > 1)
+      out += ". Step " +
+             std::to_string(std::max_element(steps.begin(), steps.end(),
+                                             [](const trace::Step& x, const trace::Step& y) {
+                                               return tests_of(x) < tests_of(y);
+                                             })
+                                ->index) +
+             " costs most";
+    for (const LrbRep* rep : p.reps)
+      if (rep->region_count() == 0 && p.trace->header.engine.empty())
+        out += std::string(". ") + (rep == p.reps[0] ? "A" : "B") + (rep->closed() ? "" : " is open and") +
+               " has no wrapper";
+    return out + ".";
   }
   const LrbRep& rep = *p.reps[0];
   std::string name = body_text(p, 0);
@@ -390,7 +333,7 @@ void add_answer(report::Document& doc, const RecordedRun& p, const ReportText& t
     add_engine_answer(doc, p);
   } else if (const trace::Step* step = last_step(*p.trace); two && step != nullptr) {
     doc.verdict(io::in_words(name_of(step->result.relation)));
-    doc.each(collision_numbers(p, *step), &report::Document::number);
+    doc.each(step_numbers(p, p.trace->steps.size() - 1), &report::Document::number);
   } else if (!two) {
     doc.each(wrapper_numbers(*p.reps[0]), &report::Document::number);
   }

@@ -24,10 +24,10 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     // Key figures.
     {"Relation",
      "how the bodies are to each other at the last step: separate, touching, crossing, or one inside the other"},
-    {"Intersecting pairs", "pairs of intersecting faces, one of A and one of B; none is missed"},
+    {"Pairs", "pairs of intersecting faces, one of A and one of B; none is missed"},
     {"Contact regions", "connected groups of intersecting pairs"},
     {"First contact", "the step, with fraction, at which the surfaces first touch; proven"},
-    {"Refined regions", "regions that the query removed from the wrappers because the other body is near"},
+    {"Refined", "regions that the query removed from the wrappers because the other body is near"},
     {"Real faces", "faces of the bodies themselves, without pseudo faces"},
     {"Pseudo faces", "faces of the wrappers that are not faces of the body"},
     {"Outermost wrapper", "faces of the simplest surface that encloses the body"},

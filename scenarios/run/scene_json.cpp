@@ -460,6 +460,52 @@ json steps_json(const RecordedRun& p, const Numbers& steps, const SceneFrame& fr
           {"poses", std::move(poses)}};
 }
 
+/// The key figures of each step: the names of all of them, and lists of [index of the name, value, note].
+json answers_json(const RecordedRun& p, const Numbers& steps) {
+  std::vector<std::string> names;
+  json of_steps = json::array(), meanings = json::array();
+  for (const std::uint32_t step : steps) {
+    json& out = of_steps.emplace_back(json::array());
+    for (const report::Number& n : step_numbers(p, step)) {
+      const auto at = std::find(names.begin(), names.end(), n.label);
+      const auto index = at - names.begin();
+      if (at == names.end()) {
+        names.push_back(n.label);
+        meanings.push_back(meaning_of_column(n.label));
+      }
+      out.push_back({index, n.value, n.note});
+    }
+  }
+  if (names.empty()) return nullptr;
+  return {{"names", names}, {"meanings", std::move(meanings)}, {"steps", std::move(of_steps)}};
+}
+
+/// The contact curves of each step, in the page's frame: the step (an index into `steps`), the number of
+/// points, and whether it is closed. A point contact is a curve of one point. Null if the contacts are not
+/// known.
+json curves_json(const RecordedRun& p, const Numbers& steps, const SceneFrame& frame) {
+  if (p.results == nullptr) return nullptr;
+  Numbers of_step, sizes, closed;
+  std::vector<float> points;
+  for (std::uint32_t i = 0; i < steps.size(); ++i) {
+    if (steps[i] >= p.results->size()) continue;
+    const auto add = [&](std::span<const Eigen::Vector3d> curve, bool is_closed) {
+      of_step.push_back(i);
+      sizes.push_back(static_cast<std::uint32_t>(curve.size()));
+      closed.push_back(is_closed ? 1 : 0);
+      for (const Eigen::Vector3d& x : curve) frame.add_point(points, x);
+    };
+    for (const ContactRegion& region : (*p.results)[steps[i]].regions) {
+      if (region.loops.empty()) add({&region.centroid, 1}, false);
+      for (const ContactLoop& loop : region.loops) add(loop.points, loop.closed);
+    }
+  }
+  return {{"step", packed(of_step)},
+          {"size", packed(sizes)},
+          {"closed", packed(closed)},
+          {"points", packed(points)}};
+}
+
 Numbers steps_of(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
   Numbers out;
   for (const trace::EventId id : kept) {
@@ -574,6 +620,8 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"work", work_json(trace, work)},
                     {"wrong", wrong_json(p, steps)},
                     {"measured", measured_json(p, frame)},
+                    {"answers", answers_json(p, steps)},
+                    {"curves", curves_json(p, steps, frame)},
                     {"kinds", kinds_json()},
                     {"phases", words_json<Phase>()},
                     {"engine", trace.header.engine},
@@ -590,13 +638,26 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+namespace {
+
+/// Returns a colour of the page's scale: from pale to dark, in hues that neither bodies nor events have.
+render::Rgba heat(double t) {
+  static constexpr render::Rgba kKnots[] = {
+      {238, 232, 243}, {205, 184, 221}, {166, 118, 190}, {122, 54, 149}, {66, 10, 92}};
+  const double at = t * (std::size(kKnots) - 1);
+  const auto i = std::min<std::size_t>(static_cast<std::size_t>(at), std::size(kKnots) - 2);
+  return render::mix(kKnots[i], kKnots[i + 1], at - static_cast<double>(i));
+}
+
+}  // namespace
+
 json scene_colours() {
   namespace palette = render::palette;
   using render::css;
   constexpr std::uint32_t kStops = 17, kCategories = 96;
   json scale = json::array(), categories = json::array();
   for (std::uint32_t i = 0; i < kStops; ++i)
-    scale.push_back(css(palette::viridis(static_cast<double>(i) / (kStops - 1))));
+    scale.push_back(css(heat(static_cast<double>(i) / (kStops - 1))));
   for (std::uint32_t i = 0; i < kCategories; ++i) categories.push_back(css(palette::category(i)));
   return {{"bodies", {css(palette::body(Side::a)), css(palette::body(Side::b))}},
           {"contact", css(palette::kContact)},

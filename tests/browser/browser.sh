@@ -42,7 +42,7 @@ command=$(sed -n 's/^command lrbscope //p' "$work/driven")
 verdict=$(sed -n 's/^verdict .*Decided by \(.*\)\./\1/p' "$work/driven")
 hash=$(sed -n 's/^hash //p' "$work/driven")
 drive 1400 900 "page.html?drive=reload$hash" "${webgl[@]}"
-for size in "1920 1080" "1000 800"; do
+for size in "1920 1080" "1280 800" "1000 800"; do
   # shellcheck disable=SC2086
   drive $size 'page.html?drive=screen' "${webgl[@]}"
 done

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# measure.sh LRBSCOPE [STABILITY_PAGE]: makes a page of each kind, opens it in Chromium at 400, 1,000, 1,400 and 3,000 pixels, light and
-# dark, and measures it (measure.js): cut off or overlapping text, low contrast, and messages in the console.
+# measure.sh LRBSCOPE [STABILITY_PAGE]: makes a page of each kind, opens it in Chromium at 400, 1,000, 1,280 and 3,000 pixels, light and
+# dark, and measures it (measure.js): cut off or overlapping text, low contrast, a run's view that is small or covered, and
+# messages in the console.
 # STABILITY_PAGE: a program that writes a page from made-up results. Skipped (77) without Chromium.
 # measure.sh --pages PAGE...: measures only these pages.
 set -euo pipefail

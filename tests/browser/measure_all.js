@@ -1,10 +1,10 @@
 // Opens `pages` one after the other in frames of each width, which measure.js measures, and writes down what it says.
 (async function () {
   const lines = document.getElementById("measured");
-  const opened = (page, width) =>
+  const opened = (page, width, height) =>
     new Promise((then) => {
       const frame = document.createElement("iframe"), started = Date.now();
-      Object.assign(frame.style, { border: 0, width: `${width}px`, height: "900px", position: "absolute", top: 0, left: 0 });
+      Object.assign(frame.style, { border: 0, width: `${width}px`, height: `${height}px`, position: "absolute", top: 0, left: 0 });
       const end = (text) => {
         clearTimeout(late);
         removeEventListener("message", hear);
@@ -19,8 +19,8 @@
     });
   const shown = [];
   for (const page of pages)
-    for (const width of [400, 1000, 1400, 3000]) {
-      const text = await opened(page, width), name = page.split("/").slice(-2).join("/").replace(".measured", "");
+    for (const [width, height] of [[400, 800], [1000, 900], [1280, 800], [3000, 900]]) {
+      const text = await opened(page, width, height), name = page.split("/").slice(-2).join("/").replace(".measured", "");
       for (const line of text ? text.split("\n") : ["ok"]) shown.push(`${name} at ${width}: ${line}`);
     }
   lines.textContent = `${shown.join("\n")}\ndone\n`;

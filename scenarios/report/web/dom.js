@@ -2,6 +2,14 @@
 export const byId = (id) => document.getElementById(id);
 export const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 export const digits = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+/** Returns a number with few digits. */
+export const rounded = (x, few) => {
+  const text = Math.abs(x) >= 1e6 ? x.toExponential(2) : String(Number(x.toPrecision(few)));
+  return text.replace("e+", "e").replace("-", "\u2212");
+};
+export const short = (x) => rounded(x, 4);
+/** Returns a share in percent, with two digits. */
+export const percent = (part, whole) => `${rounded((100 * part) / whole, part === whole ? 3 : 2)} %`;
 export const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : many}`;
 
 // The parser names the namespace of pictures, so that pages contain no address.

@@ -3,8 +3,8 @@ import { data, listeners, moment, seek, seekBy, tell } from "./page.js";
 import { AttemptPanel, Attempts } from "./scene_attempts.js";
 import { listenToKeys, Timeline, toggleHelp, ViewControls } from "./scene_controls.js";
 import { explainCells, PageAddress, printView, showMore, stripOfRun, Tabs } from "./scene_page.js";
-import { concernsPicked, EventFilter, EventTable, FilterForm, Panel, RowLinks, Selection, WhyPanel, WorkIcicle } from "./scene_panels.js";
-import { Body, Events, eventSentence, Explanations, lastAtMost, NONE, SIDES, Wrappers } from "./scene_run.js";
+import { AnswerLine, concernsPicked, EventFilter, EventTable, FilterForm, Panel, RowLinks, Selection, WhyPanel, WorkIcicle } from "./scene_panels.js";
+import { Body, Events, eventSentence, Explanations, lastAtMost, NONE, SIDES, tellingEvent, Wrappers } from "./scene_run.js";
 import { SceneView, webglWorks } from "./scene_view.js";
 
 // ---- all events of a run whose page has only some: loaded from its trace, which the user chooses or drops
@@ -280,10 +280,14 @@ function startScene() {
     if (what === "event") byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
   });
   new RowLinks(events, selection, controls);
+  new AnswerLine(scene.answers, events, selection);
   const strip = stripOfRun(scene, events, selection, work.ofStep || new Map());
   const tabs = new Tabs();
   explainCells();
   if (view) printView(view);
+  const lead = document.querySelector(".lead"); // it may be cut at the end
+  if (lead) lead.title = lead.textContent;
+  for (const row of document.querySelectorAll(".tools, .keys, header .numbers")) showMore(row);
   const panelMark = showMore(document.querySelector(".panel"));
   selection.listeners.push((what) => {
     if (what === "pick") markAbout(events, selection);
@@ -315,7 +319,9 @@ function startScene() {
     controls.colourBy("region");
     view.opened = { ...view.now };
   }
-  selection.goTo(events.at(Math.max(0, scene.firstContact)));
+  selection.goTo(tellingEvent(events));
+  const [wrong] = events.wrong[events.step(selection.event)];
+  if (wrong) selection.choose(wrong.simplices);
   if (view) view.frameAll(view.camera.from);
   const address = new PageAddress({ events, selection, view, controls, tabs });
   if (location.hash.length > 1) address.read();
@@ -379,7 +385,7 @@ function keysOfAttempts(panel) {
 }
 
 function keysOfTabs(tabs, listPicked) {
-  const numbered = tabs.names.slice(0, 9).map((name, i) => [String(i + 1), () => tabs.show(name)]);
+  const numbered = tabs.names.slice(0, 9).map((name, i) => [String(i + 1), () => tabs.toggle(name)]);
   return { ...Object.fromEntries(numbered), t: () => tabs.toggleHeight(), l: listPicked };
 }
 

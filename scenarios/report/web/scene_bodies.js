@@ -59,6 +59,10 @@ export class Colours {
   lid(side) {
     return mixed(this.bodies[side], WHITE, this.shares.lid);
   }
+  /** Of the inside of a 2D body, darker than its regions. */
+  solid(side) {
+    return mixed(this.bodies[side], this.edgeInk, 0.28);
+  }
 
   /** Returns the face colours of a mode: {of(side, face), key: {most, title} or null}. `newest`: regions
       of earlier layers are pale; 0: none is. */
@@ -68,7 +72,7 @@ export class Colours {
     if (by === "kind")
       return {
         of: (side, face) =>
-          bodies[side].isReal(face) ? this.bodies[side] : this.lid(side),
+          bodies[side].isReal(face) ? this.bodies[side] : mixed(this.bodies[side], WHITE, 0.4),
         key: null,
       };
     if (by === "layer")
@@ -91,13 +95,16 @@ export class Colours {
               ),
         key: null,
       };
-    const most = counts.reduce((m, values) => values.reduce((x, v) => Math.max(x, v), m), 0);
+    // The scale ends at the number that 99 of 100 counted faces do not exceed: few outliers would hide the others.
+    const counted = counts.flatMap((values) => [...values].filter((v) => v > 0)).sort((x, y) => x - y),
+      most = counted.length ? counted[Math.floor(0.99 * (counted.length - 1))] : 0,
+      top = counted.length ? counted[counted.length - 1] : 0;
     return {
       of: (side, face) =>
         counts[side][face] > 0
           ? this.onScale(counts[side][face] / most)
           : mixed(this.bodies[side], WHITE, this.shares.noValue),
-      key: { most, title: "" },
+      key: { most, top, title: "" },
     };
   }
 }
@@ -231,76 +238,121 @@ export function discard(group, object) {
   object.material.dispose();
 }
 
-/** Returns lines one pixel wide along edges. */
-function thinLines(body, edges, material) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(body.vertices, 3));
-  geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(edges), 1));
-  return new THREE.LineSegments(geometry, material);
+// ---- lines
+/** Returns the geometry of lines, six numbers each, with their lengths, by which they fade. */
+function lineGeometry(ends) {
+  const geometry = new THREE.BufferGeometry(),
+    at = Float32Array.from(ends),
+    span = new Float32Array(at.length / 3);
+  for (let i = 0; i < span.length; i += 2)
+    span[i] = span[i + 1] = Math.hypot(at[3 * i] - at[3 * i + 3], at[3 * i + 1] - at[3 * i + 4], at[3 * i + 2] - at[3 * i + 5]);
+  geometry.setAttribute("position", new THREE.BufferAttribute(at, 3));
+  geometry.setAttribute("span", new THREE.BufferAttribute(span, 1));
+  return geometry;
 }
 
-/** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers
-    for each line. */
+/** Returns lines one pixel wide that fade where they are short on the screen, and with their distance. `lens`: size of
+    the picture and depths, kept by the view. */
+function fadingLines(ends, colour, opacity, lens, depthWrite = false) {
+  const material = new THREE.ShaderMaterial({
+    uniforms: { colour: { value: colour }, opacity: { value: opacity }, size: { value: lens.size }, depths: { value: lens.depths } },
+    vertexShader: `
+      attribute float span;
+      uniform vec2 size, depths;
+      varying float seen;
+      void main() {
+        vec4 at = modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * at;
+        float pixels = span * projectionMatrix[1][1] * size.y / 2.0 / gl_Position.w;
+        seen = smoothstep(3.0, 60.0, pixels) * mix(1.0, 0.15, clamp((-at.z - depths.x) / depths.y, 0.0, 1.0));
+      }`,
+    fragmentShader: `
+      uniform vec3 colour;
+      uniform float opacity;
+      varying float seen;
+      void main() { gl_FragColor = vec4(colour, opacity * seen); }`,
+    transparent: true,
+    depthWrite,
+  });
+  const lines = new THREE.LineSegments(lineGeometry(ends), material);
+  lines.frustumCulled = false;
+  return lines;
+}
+
+/** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers for each line.
+    A line that starts where the one before it ends continues its dashes. */
 export function thickLines(ends, material) {
   const count = ends.length / 6,
     at = new Float32Array(12 * count),
     other = new Float32Array(12 * count),
     side = new Float32Array(4 * count),
+    along = new Float32Array(4 * count),
     index = new Uint32Array(6 * count);
+  let length = 0;
   for (let l = 0; l < count; l++) {
     const a = ends.slice(6 * l, 6 * l + 3),
       b = ends.slice(6 * l + 3, 6 * l + 6);
-    [
-      [a, b, 1],
-      [a, b, -1],
-      [b, a, -1],
-      [b, a, 1],
-    ].forEach(([here, there, s], k) => {
+    if (l === 0 || a.some((x, i) => x !== ends[6 * l - 3 + i])) length = 0;
+    const until = length + Math.hypot(...a.map((x, i) => x - b[i]));
+    [[a, b, 1], [a, b, -1], [b, a, -1], [b, a, 1]].forEach(([here, there, s], k) => {
       at.set(here, 12 * l + 3 * k);
       other.set(there, 12 * l + 3 * k);
       side[4 * l + k] = s;
+      along[4 * l + k] = k < 2 ? length : until;
     });
-    index.set(
-      [0, 1, 2, 2, 1, 3].map((i) => 4 * l + i),
-      6 * l,
-    );
+    length = until;
+    index.set([0, 1, 2, 2, 1, 3].map((i) => 4 * l + i), 6 * l);
   }
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(at, 3));
-  geometry.setAttribute("other", new THREE.BufferAttribute(other, 3));
-  geometry.setAttribute("side", new THREE.BufferAttribute(side, 1));
+  for (const [name, array, size] of [["position", at, 3], ["other", other, 3], ["side", side, 1], ["along", along, 1]])
+    geometry.setAttribute(name, new THREE.BufferAttribute(array, size));
   geometry.setIndex(new THREE.BufferAttribute(index, 1));
   const mesh = new THREE.Mesh(geometry, material);
   mesh.frustumCulled = false;
   return mesh;
 }
 
-export function thickMaterial(colour, width, size, opacity = 1) {
+/** `lens`: see fadingLines(). `dash`: length of a dash and its gap in pixels; 0: no dashes. `hides`: bodies hide the line,
+    except where it is at most a few pixels behind their faces. */
+export function thickMaterial(colour, width, lens, { opacity = 1, dash = 0, hides = false } = {}) {
   return new THREE.ShaderMaterial({
     uniforms: {
       colour: { value: new THREE.Color(...colour) },
       opacity: { value: opacity },
       width: { value: width },
-      size: { value: size },
+      dash: { value: dash },
+      size: { value: lens.size },
+      pixel: lens.pixel,
     },
     vertexShader: `
       attribute vec3 other;
-      attribute float side;
+      attribute float side, along;
       uniform vec2 size;
-      uniform float width;
+      uniform float width, pixel;
+      varying float on;
       void main() {
-        vec4 a = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        vec4 at = modelViewMatrix * vec4(position, 1.0);
+        vec4 a = projectionMatrix * at;
         vec4 b = projectionMatrix * modelViewMatrix * vec4(other, 1.0);
         vec2 way = (b.xy / b.w - a.xy / a.w) * size;
         way = length(way) > 0.0 ? normalize(way) : vec2(1.0, 0.0);
-        a.xy += vec2(-way.y, way.x) * side * width / size * a.w;
+        a.xy += (vec2(-way.y, way.x) * side - 0.4 * way) * width / size * a.w; // a little longer, so that lines join
+        vec4 near = projectionMatrix * (at + vec4(0.0, 0.0, 4.0 * pixel, 0.0));
+        a.z = near.z / near.w * a.w;
+        on = along / pixel;
         gl_Position = a;
       }`,
-    fragmentShader:
-      "uniform vec3 colour; uniform float opacity; void main() { gl_FragColor = vec4(colour, opacity); }",
+    fragmentShader: `
+      uniform vec3 colour;
+      uniform float opacity, dash;
+      varying float on;
+      void main() {
+        if (dash > 0.0 && mod(on, dash) > 0.6 * dash) discard;
+        gl_FragColor = vec4(colour, opacity);
+      }`,
     side: THREE.DoubleSide,
     transparent: true,
-    depthTest: false,
+    depthTest: hides,
     depthWrite: false,
   });
 }
@@ -445,36 +497,53 @@ export class FlatFill {
 const LAYER_STEP = 0.12;
 
 export class BodyView {
-  constructor(body, colours) {
-    this.body = body;
-    this.group = new THREE.Group();
+  /** `lens`: see fadingLines(). */
+  constructor(body, colours, lens) {
+    Object.assign(this, { body, colours, lens, group: new THREE.Group(), pieces: [] });
     this.group.matrixAutoUpdate = false;
-    this.materials = BodyView.materialsOf(new THREE.Color(...colours.edge(body.side)));
-    const range = (from, to) => Uint32Array.from({ length: to - from }, (_, i) => from + i);
+    this.materials = BodyView.materialsOf(body.dim);
+    const range = (from, to) => Uint32Array.from({ length: to - from }, (_, i) => from + i),
+      flat = body.dim === 2;
     this.real = new FaceMesh(body, range(0, body.realCount), this.materials.real);
-    this.lids = new FaceMesh(body, range(body.realCount, body.faceCount), this.materials.lids);
-    this.edges = thinLines(body, edgesOf(body, range(0, body.realCount)), this.materials.edges);
-    this.lidEdges = thinLines(
-      body,
-      new Uint32Array(2 * (body.corners.length - body.offsets[body.realCount])),
-      this.materials.lidEdges,
-    );
+    // In 2D the whole wrapper is one bold line, also where it is the body itself.
+    this.lids = new FaceMesh(body, range(flat ? 0 : body.realCount, body.faceCount), this.materials.lids);
     this.lids.mesh.renderOrder = 1;
-    this.lidEdges.renderOrder = 2;
-    this.edges.frustumCulled = this.lidEdges.frustumCulled = this.lids.mesh.frustumCulled = false;
-    this.group.add(this.real.mesh, this.edges, this.lids.mesh, this.lidEdges);
-    this.pieces = [];
-    this.boxLines = null;
+    this.lids.mesh.frustumCulled = false;
+    this.group.add(this.real.mesh, this.lids.mesh);
+    this.put("edges", this.lines(flat ? [] : edgesOf(body, range(0, body.realCount)), 0.5));
+    this.put("lidEdges", this.lines([], 0));
     this.measure();
-    this.fills = body.dim === 2 ? this.makeFills(colours.bodies[body.side]) : null;
+    this.fills = flat ? this.makeFills() : null;
+  }
+
+  /** Replaces an object of the body, named as a member; null: removes it. */
+  put(name, object) {
+    if (this[name]) discard(this.group, this[name]);
+    if (this[name] && object) object.visible = this[name].visible;
+    this[name] = object;
+    if (object) this.group.add(object);
+  }
+
+  /** Returns thin lines along edges, pairs of corners. */
+  lines(edges, opacity) {
+    const { vertices } = this.body,
+      ends = new Float32Array(3 * edges.length);
+    edges.forEach((v, i) => ends.set(vertices.subarray(3 * v, 3 * v + 3), 3 * i));
+    return this.thin(ends, opacity);
+  }
+  thin(ends, opacity, depthWrite = false) {
+    const lines = fadingLines(ends, new THREE.Color(...this.colours.edge(this.body.side)), opacity, this.lens, depthWrite);
+    lines.renderOrder = 2;
+    return lines;
   }
 
   /** Returns the fills of a 2D body: of the solid, and under it, paler, of the wrapper. */
-  makeFills(colour) {
+  makeFills() {
     const { realCount, side } = this.body,
+      colour = this.colours.bodies[side],
       fill = (shade, opacity, place) =>
         new FlatFill(this.body, shade, opacity, 2 * side + place, (0.02 - 0.005 * place) * this.radius);
-    const fills = { wrapper: fill(mixed(colour, WHITE, 0.5), 0.45, 0), solid: fill(colour, 0.6, 1) };
+    const fills = { wrapper: fill(this.colours.lid(side), 0.8, 0), solid: fill(this.colours.solid(side), 0.85, 1) };
     fills.solid.show(Array.from({ length: realCount }, (_, face) => face));
     for (const f of [fills.wrapper, fills.solid]) this.group.add(f.fan, f.sheet);
     return fills;
@@ -489,14 +558,15 @@ export class BodyView {
 
   /** Draws the segments of a 2D body as strips; `pixel`: the width of a pixel. */
   widen(pixel) {
-    this.real.widen(3 * pixel);
-    this.lids.widen(3 * pixel);
+    this.real.widen(1.2 * pixel);
+    this.lids.widen(4 * pixel);
     for (const piece of this.pieces) piece.widen(3 * pixel);
     if (this.counted) this.counted.widen(4 * pixel);
   }
 
-  /** Returns the materials of faces and lines; `edge`: the colour of lines. */
-  static materialsOf(edge) {
+  /** Returns the materials of faces. Lids are glass: nearly clear where they are seen from the front, visible where they
+      turn away, so that the body under them keeps its colour; `rim` 0: they are lit, and as opaque everywhere. */
+  static materialsOf(dim) {
     const faces = (Material, before, more = {}) =>
         new Material({
           vertexColors: THREE.VertexColors,
@@ -506,18 +576,35 @@ export class BodyView {
           polygonOffsetUnits: before,
           ...more,
         }),
-      lines = (opacity, depthWrite = false) =>
-        new THREE.LineBasicMaterial({ color: edge, transparent: true, opacity, depthWrite }),
       glass = { transparent: true, depthWrite: false };
     return {
       real: faces(THREE.MeshLambertMaterial, 2),
-      lids: faces(THREE.MeshLambertMaterial, 1, glass),
+      lids: faces(THREE.ShaderMaterial, 1, {
+        ...glass,
+        uniforms: { veil: { value: 1 }, rim: { value: 0 }, isPlane: { value: dim === 2 } },
+        vertexShader: `
+          varying vec3 tint;
+          varying float facing;
+          void main() {
+            vec4 at = modelViewMatrix * vec4(position, 1.0);
+            bool parallel = projectionMatrix[2][3] == 0.0;
+            facing = abs(dot(normalize(normalMatrix * normal), parallel ? vec3(0.0, 0.0, 1.0) : normalize(at.xyz)));
+            tint = color;
+            gl_Position = projectionMatrix * at;
+          }`,
+        fragmentShader: `
+          uniform float veil, rim;
+          uniform bool isPlane;
+          varying vec3 tint;
+          varying float facing;
+          void main() {
+            float clear = isPlane ? 1.0 : mix(1.0, 0.06 + 0.94 * pow(1.0 - facing, 2.5), rim);
+            gl_FragColor = vec4(isPlane ? tint : tint * mix(0.6 + 0.45 * facing, 1.0, rim), veil * clear);
+          }`,
+      }),
       piece: faces(THREE.MeshLambertMaterial, 1),
       counted: faces(THREE.MeshBasicMaterial, 1),
       openLids: faces(THREE.MeshLambertMaterial, 0, { ...glass, opacity: 0.6 }),
-      edges: lines(0.35),
-      lidEdges: lines(0.6),
-      boxes: lines(0.8, true),
     };
   }
 
@@ -579,58 +666,40 @@ export class BodyView {
 
   /** Takes a pose as rows of [R | t]. */
   setPose(p) {
-    this.group.matrix.set(
-      p[0],
-      p[1],
-      p[2],
-      p[3],
-      p[4],
-      p[5],
-      p[6],
-      p[7],
-      p[8],
-      p[9],
-      p[10],
-      p[11],
-      0,
-      0,
-      0,
-      1,
-    );
+    this.group.matrix.set(...p, 0, 0, 0, 1);
     this.group.matrixWorldNeedsUpdate = true;
   }
 
-  /** `veil`: opacity of the lids. */
-  paint(mode, veil) {
-    const of = (face) => mode.of(this.body.side, face);
-    for (const faces of [this.real, this.lids, ...this.pieces]) faces.paint(of);
-    this.materials.lids.opacity = veil;
-    this.materials.lidEdges.opacity = Math.min(0.6, 1.2 * veil);
+  /** `veil`: opacity of the lids; `rim`: see materialsOf(). */
+  paint(mode, veil, rim = 0) {
+    const { side, dim } = this.body,
+      of = (face) => mode.of(side, face);
+    for (const faces of [this.real, ...this.pieces]) faces.paint(of);
+    this.lids.paint(dim === 2 ? () => this.colours.edge(side) : of);
+    this.materials.lids.uniforms.veil.value = dim === 2 ? 1 : veil;
+    this.materials.lids.uniforms.rim.value = rim;
   }
 
   /** Shows the lids of the wrapper: its pseudo faces. */
   showLids(onBoundary) {
+    const { realCount, faceCount, dim } = this.body,
+      shown = [];
     this.lids.show(onBoundary);
-    if (this.fills)
-      this.fills.wrapper.show([...Array(this.body.faceCount).keys()].filter((face) => onBoundary(face)));
-    const shown = [];
-    for (let f = this.body.realCount; f < this.body.faceCount; f++) if (onBoundary(f)) shown.push(f);
-    const edges = edgesOf(this.body, shown),
-      { geometry } = this.lidEdges;
-    geometry.index.array.set(edges);
-    geometry.index.needsUpdate = true;
-    geometry.setDrawRange(0, edges.length);
+    for (let f = dim === 2 ? 0 : realCount; f < faceCount; f++) if (onBoundary(f)) shown.push(f);
+    if (this.fills) this.fills.wrapper.show(shown);
+    else this.put("lidEdges", this.lines(edgesOf(this.body, shown), 0.35));
+    this.lidCount = shown.filter((f) => f >= realCount).length;
   }
 
   ghost(on) {
-    const { real, edges } = this.materials;
+    const { real } = this.materials;
     Object.assign(real, {
       transparent: on,
       opacity: on ? 0.13 : 1,
       depthWrite: !on,
       side: on ? THREE.FrontSide : THREE.DoubleSide,
     });
-    edges.opacity = on ? 0.1 : 0.35;
+    this.edges.material.uniforms.opacity.value = on ? 0.15 : 0.5;
     real.needsUpdate = true;
     this.real.mesh.renderOrder = on ? 3 : 0;
   }
@@ -640,11 +709,7 @@ export class BodyView {
       this.group.remove(piece.mesh);
       piece.dispose();
     }
-    if (this.pieceEdges) {
-      this.group.remove(this.pieceEdges);
-      this.pieceEdges.geometry.dispose();
-      this.pieceEdges = null;
-    }
+    this.put("pieceEdges", null);
     this.pieces = [];
     this.reached = this.extremes;
   }
@@ -657,10 +722,7 @@ export class BodyView {
       ends = [];
     for (const r of regions) {
       const shift = share > 0 ? this.explodeShift(r, share) : [0, 0, 0];
-      for (const [list, faces] of [
-        [open ? glass : solid, this.body.lids(r)],
-        [solid, this.body.floor(r)],
-      ])
+      for (const [list, faces] of [[open ? glass : solid, this.body.lids(r)], [solid, this.body.floor(r)]])
         for (const face of faces) {
           list.faces.push(face);
           list.shifts.push(shift);
@@ -677,10 +739,8 @@ export class BodyView {
       this.reached = this.farthest((visit) => {
         for (let i = 0; i < ends.length; i += 3) visit(ends[i], ends[i + 1], ends[i + 2]);
       });
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(ends), 3));
-    this.pieceEdges = new THREE.LineSegments(geometry, this.materials.lidEdges);
-    this.group.add(...this.pieces.map((p) => p.mesh), this.pieceEdges);
+    this.group.add(...this.pieces.map((p) => p.mesh));
+    this.put("pieceEdges", this.thin(ends, 0.6));
   }
 
   explodeShift(region, share) {
@@ -708,23 +768,8 @@ export class BodyView {
 
   /** Shows the tree's boxes at a depth; below 0: none. */
   showBoxes(depth) {
-    if (this.boxLines) {
-      this.group.remove(this.boxLines);
-      this.boxLines.geometry.dispose();
-      this.boxLines = null;
-    }
-    const boxes = [];
-    this.body.boxes.depth.forEach((d, i) => {
-      if (d === depth) boxes.push(i);
-    });
-    if (!boxes.length) return;
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute(
-      "position",
-      new THREE.BufferAttribute(Float32Array.from(boxEdges(this.body.boxes.places, boxes)), 3),
-    );
-    this.boxLines = new THREE.LineSegments(geometry, this.materials.boxes);
-    this.boxLines.renderOrder = 2;
-    this.group.add(this.boxLines);
+    const { depth: depths, places } = this.body.boxes,
+      boxes = [...depths.keys()].filter((i) => depths[i] === depth);
+    this.put("boxLines", boxes.length ? this.thin(boxEdges(places, boxes), 0.8, true) : null);
   }
 }

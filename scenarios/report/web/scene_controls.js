@@ -80,10 +80,8 @@ export class Timeline {
     this.eventSlider.value = selection.event - this.firstHere;
     const [first, last] = [0, -1].map((at) => digits(events.stepNumbers.at(at)));
     byId("step-count").textContent = `step ${digits(events.stepNumber(selection.event))} (${first}–${last})`;
-    const here = digits(selection.event - this.firstHere + 1);
-    const all = digits(this.lastHere - this.firstHere + 1);
-    const where = events.firstOfStep.length > 1 ? " in this step" : "";
-    byId("event-place").textContent = `event ${here} of ${all}${where}`;
+    const [here, all] = [selection.event, this.lastHere].map((i) => digits(i - this.firstHere + 1));
+    byId("event-place").textContent = `event ${here} / ${all}`;
   }
 
   // -- playback: the wrappers of this step are refined, one region after the other; or all events; or the

@@ -5,10 +5,9 @@ import { SIDES, unpack } from "./scene_run.js";
 // ---- the elements of the event and of the selection: painted over the bodies, with outlines visible through
 // everything
 export class Marks {
-  constructor(views, colours, size) {
-    this.views = views;
-    this.colours = colours;
-    this.size = size; // of the picture in pixels, kept by the view
+  /** `lens`: see fadingLines(). */
+  constructor(views, colours, lens) {
+    Object.assign(this, { views, colours, lens });
     this.shown = new Map(); // by name: {key, parts: [{group, object}]}
   }
 
@@ -39,7 +38,7 @@ export class Marks {
       mesh.renderOrder = over ? 5 : opacity < 1 ? 3 : 0;
       const rim = thickLines(
         edgesOf(view.body, own, true).flatMap((v) => view.point(v)),
-        thickMaterial(mixed(colour, this.colours.ink, 0.35), width, this.size),
+        thickMaterial(mixed(colour, this.colours.ink, 0.35), width, this.lens),
       );
       rim.renderOrder = 6;
       if (!through)
@@ -85,7 +84,7 @@ export class Marks {
       if (!own.length) return;
       const lines = thickLines(
         boxEdges(places, own),
-        thickMaterial(mixed(colour, this.colours.ink, 0.35), 1.5, this.size),
+        thickMaterial(mixed(colour, this.colours.ink, 0.35), 1.5, this.lens),
       );
       lines.renderOrder = 6;
       view.group.add(lines);
@@ -137,7 +136,7 @@ export class WhyMarks {
             [colours.ink, "between the nearest points", WHITE],
             [PLANE, "plane that separates the faces"],
           ]
-        : [[colours.contact, "intersection of the two faces", WHITE]],
+        : [],
       "why",
     );
   }
@@ -154,9 +153,9 @@ export class WhyMarks {
     if (square.length) this.addSquare([0, 3, 6, 9].map((i) => [...square.subarray(i, i + 3)]));
     this.view.legend.also(
       [
-        ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "closest pair of disjoint boxes"]] : []),
+        ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "nearest disjoint boxes"]] : []),
         ...(square.length
-          ? [[PLANE, plane ? "plane that separates the bodies" : "plane that separates these boxes"]]
+          ? [[PLANE, plane ? "plane between the bodies" : "plane between these boxes"]]
           : []),
       ],
       "why",
@@ -172,7 +171,7 @@ export class WhyMarks {
   }
 
   addLines(ends, colour, width) {
-    const lines = thickLines(ends, thickMaterial(colour, width, this.view.size));
+    const lines = thickLines(ends, thickMaterial(colour, width, this.view.lens));
     lines.renderOrder = 7;
     this.group.add(lines);
   }
@@ -223,7 +222,7 @@ function squareBetween(p, q, half) {
 // ---- in the view: the distance of the bodies in the current step, the separation vector where they overlap,
 // near pairs, contact manifolds and points of B
 const MEASURED = [
-  { colour: "ink", key: "between the nearest points of the bodies", width: 3.5, isArrow: false },
+  { colour: "ink", key: "nearest points of the bodies", width: 3.5, isArrow: false },
   { colour: "ink", key: "B leaves A this way", width: 3.5, isArrow: true },
   { colour: "ink", key: "between the closest points of near pairs", width: 1.5, isArrow: false },
   { colour: "ink", key: "normals of contacts, from A to B", width: 2.5, isArrow: true },
@@ -269,35 +268,39 @@ export class MeasuredMarks {
   /** A pale line under each, so that they are visible on bodies of any colour. */
   addLines(points, colour, lineWidth) {
     const ends = points.flatMap((p) => p.toArray());
-    for (const [c, width, order] of [
-      [WHITE, 2 * lineWidth, 8],
-      [colour, lineWidth, 9],
-    ]) {
-      const lines = thickLines(ends, thickMaterial(c, width, this.view.size));
+    for (const [c, width, order] of [[WHITE, 2 * lineWidth, 8], [colour, lineWidth, 9]]) {
+      const lines = thickLines(ends, thickMaterial(c, width, this.view.lens));
       lines.renderOrder = order;
       this.group.add(lines);
     }
   }
 
-  /** Writes the length over the midpoint of the segment, or under it if there is no space; above the scale of colours. */
+  /** Writes the length beside the bodies, with a line that leads to the midpoint of the segment. */
   write() {
-    const label = byId("measured"),
-      { shown, view } = this;
-    label.hidden = !shown;
-    if (!shown) return;
-    const at = shown.from.clone().add(shown.to).multiplyScalar(0.5).project(view.camera.camera);
-    label.hidden = Math.abs(at.x) > 1 || Math.abs(at.y) > 1 || at.z > 1;
+    const [label, leader] = ["measured", "leader"].map(byId),
+      { shown, view } = this,
+      { x: width, y: height } = view.size,
+      onScreen = (p) => {
+        const at = p.project(view.camera.camera);
+        return [(width * (1 + at.x)) / 2, (height * (1 - at.y)) / 2];
+      };
+    const [x, y] = shown ? onScreen(shown.from.clone().add(shown.to).multiplyScalar(0.5)) : [-1, -1];
+    label.hidden = leader.hidden = !(x > 0 && x < width && y > 0 && y < height);
     if (label.hidden) return;
     label.textContent = shown.words;
-    const { x: width, y: height } = view.size,
-      half = label.offsetWidth / 2 + 4,
-      y = (height * (1 - at.y)) / 2,
-      off = 14;
-    label.style.left = `${Math.max(half, Math.min(width - half, (width * (1 + at.x)) / 2))}px`;
-    const above = y - label.offsetHeight - off,
-      scale = byId("scale"),
-      lowest = (scale.hidden ? height : scale.offsetTop) - label.offsetHeight - 4;
-    label.style.top = `${Math.min(above > 0 ? above : y + off, lowest)}px`;
+    const ends = view.extremes().map(onScreen),
+      [left, top] = [0, 1].map((i) => Math.min(...ends.map((p) => p[i]))),
+      [right, bottom] = [0, 1].map((i) => Math.max(...ends.map((p) => p[i]))),
+      [w, h] = [label.offsetWidth / 2 + 10, label.offsetHeight / 2 + 10],
+      within = (v, half, size) => Math.max(half, Math.min(size - half, v));
+    const places = [[x, top - h], [x, bottom + h], [left - w, y], [right + w, y]].map(([u, v]) => {
+      const at = [within(u, w, width), within(v, h, height)];
+      return { at, far: Math.hypot(at[0] - x, at[1] - y) + 3 * Math.hypot(at[0] - u, at[1] - v) }; // those with room first
+    });
+    const [u, v] = places.reduce((p, q) => (q.far < p.far ? q : p)).at;
+    Object.assign(label.style, { left: `${u}px`, top: `${v}px` });
+    const way = `rotate(${Math.atan2(y - v, x - u)}rad)`;
+    Object.assign(leader.style, { left: `${u}px`, top: `${v}px`, width: `${Math.hypot(x - u, y - v)}px`, transform: way });
   }
 }
 
@@ -314,18 +317,74 @@ function arrowOf(from, to, dim) {
   return [from, to, ...sides.flatMap((side) => [back.clone().add(side), to])];
 }
 
-// ---- the meaning of the view's colours
+// ---- the curves along which the surfaces meet in the current step, over the wrappers: solid where they are seen, dashed
+// where a body hides them, as in frames
+export class ContactCurves {
+  /** `curves`: as the page has them; null: not known. */
+  constructor(view, curves) {
+    Object.assign(this, { view, group: new THREE.Group(), shown: -1, count: 0, ofStep: new Map() });
+    view.stage.add(this.group);
+    if (!curves) return;
+    const [points, sizes, closed] = ["points", "size", "closed"].map((name) => unpack(curves[name]));
+    let at = 0;
+    unpack(curves.step).forEach((step, i) => {
+      const number = view.events.stepNumbers[step],
+        own = Array.from({ length: sizes[i] }, (_, k) => [...points.subarray(3 * (at + k), 3 * (at + k) + 3)]);
+      at += sizes[i];
+      if (closed[i]) own.push(own[0]);
+      this.ofStep.set(number, [...(this.ofStep.get(number) || []), own]);
+    });
+  }
+
+  draw() {
+    const { view, group } = this,
+      step = view.events.stepNumber(view.selection.event);
+    group.visible = !view.now.isolate && view.now.explode === 0;
+    if (step === this.shown) return;
+    this.shown = step;
+    for (const object of group.children.slice()) discard(group, object);
+    const curves = this.ofStep.get(step) || [],
+      { contact } = view.colours,
+      ends = curves.flatMap((points) => points.slice(1).flatMap((p, i) => [...points[i], ...p])),
+      hidden = view.events.dim === 3 ? [[WHITE, 5, 0.5, 0], [contact, 2.2, 0.85, 9]] : [];
+    this.count = curves.length;
+    this.dashed = hidden.length > 0 && ends.length > 0;
+    const add = (object) => {
+      object.renderOrder = 7 + group.children.length;
+      group.add(object);
+    };
+    if (ends.length) {
+      for (const [colour, width, opacity, dash] of hidden) add(thickLines(ends, thickMaterial(colour, width, view.lens, { opacity, dash })));
+      for (const [colour, width] of [[WHITE, 6], [contact, 3]])
+        add(thickLines(ends, thickMaterial(colour, width, view.lens, { hides: view.events.dim === 3 })));
+    }
+    // Curves too small to be noticed, and single points, have a dot.
+    const least = 0.01 * view.reach().radius,
+      small = curves.filter((points) => points.every((p) => Math.hypot(...p.map((x, i) => x - points[0][i])) < least));
+    if (small.length) add(roundPoints(small.flatMap((points) => points[0]), contact, 10 * Math.min(2, window.devicePixelRatio || 1)));
+  }
+}
+
+// ---- the meaning of the colours that the view shows now
+const MARKED = [
+  ["tested", "underTest", "pair under test"],
+  ["refined", "refining", "region being refined"],
+  ["attempt", "underTest", "patch of this attempt"],
+  ["picked", "selected", "selected"],
+  ["wrong", "wrong", "pairs that the engine got wrong"],
+];
+
 export class Legend {
   constructor(view) {
     this.view = view;
-    this.items = [];
     this.more = {};
+    this.shown = "";
   }
 
   /** Adds highlighted items, and replaces the previous ones of the same `who`: [[colour, words, colour of
       the rim]]; an outline where the colour alone is not visible on a dark card. */
   also(items, who) {
-    this.more[who] = items.map(([colour, text, rim]) => [Legend.css(colour), text, rim ? Legend.css(rim) : ""]);
+    this.more[who] = items;
     this.write();
   }
 
@@ -334,63 +393,61 @@ export class Legend {
   }
 
   write() {
+    const { css } = Legend,
+      items = [...this.items(), ...Object.values(this.more).flat()],
+      text = JSON.stringify(items);
+    if (text === this.shown) return;
+    this.shown = text;
     byId("legend").replaceChildren(
-      ...[...this.items, ...Object.values(this.more).flat()].map(([colour, text, rim]) => {
-        const dot = element("i");
-        dot.style.background = colour;
-        if (rim) dot.style.outline = `1.5px solid ${rim}`;
-        return element("span", {}, dot, text);
+      ...items.map(([colour, words, rim, mark]) => {
+        const dot = element("i", { class: mark || "" });
+        dot.style[mark ? "borderColor" : "background"] = css(colour);
+        if (rim) dot.style.outline = `1.5px solid ${css(rim)}`;
+        return element("span", {}, dot, words);
       }),
     );
   }
 
-  /** `key`: the scale of the colours; null: bodies have one colour each. */
-  show(key) {
-    const { colours, bodies, now } = this.view,
-      { passes } = this.view.events,
-      { css } = Legend,
-      items = [];
-    bodies.forEach((b) => {
-      const name = bodies.length > 1 ? `${SIDES[b.side]} ${b.name}` : b.name,
-        colour = colours.bodies[b.side],
-        pale = ["layer", "region"].includes(now.by) ? colours.shares.ground : key ? colours.shares.noValue : 0;
-      items.push([
-        css(mixed(colour, WHITE, pale)),
-        `${name}${this.view.events?.engine ? "" : ", real faces"}${key && COUNTERS.includes(now.by) ? ` without ${now.by}` : ""}`,
-        pale ? css(colours.edge(b.side)) : "",
-      ]);
-      if (!key && now.by === "kind" && b.regionCount && !this.view.events?.engine)
-        items.push([css(colours.lid(b.side)), `${name}, pseudo faces`, css(colours.edge(b.side))]);
-    });
-    if (now.by === "region")
-      items.push([css(colours.categories[0]), `pseudo faces, a colour for each region${passes ? "; pale: of earlier passes" : ""}`, ""]);
-    if (this.view.events.passes)
-      items.push(
-        [css(colours.refining), "lids that are new in this pass", ""],
-        [css(colours.underTest), "patch of this attempt", ""],
-      );
-    else
-      items.push(
-        [css(colours.contact), "intersecting faces", ""],
-        ...(this.view.events.engine ? [] : [[css(colours.refining), "region being refined", ""]]),
-        [css(colours.underTest), "pair under test", ""],
-      );
-    items.push([css(colours.selected), "selected", ""]);
-    if (this.view.events.wrong.some((pairs) => pairs.length))
-      items.push([css(colours.wrong), `pairs that ${this.view.events.engine} got wrong`, ""]);
-    this.items = items;
-    this.write();
-    this.showScale(key);
+  /** Returns the items of a run's view: [colour, words, rim, "line" or "dashed"]. */
+  items() {
+    const { colours, bodies, now, views, marks, events, curves } = this.view,
+      coloured = ["layer", "region"].includes(now?.by),
+      counting = COUNTERS.includes(now?.by);
+    if (!now) return []; // of other pages
+    const pale = coloured ? colours.shares.ground : counting ? colours.shares.noValue : 0,
+      items = bodies.map((b, side) => [
+        mixed(b.dim === 2 ? colours.solid(side) : colours.bodies[side], WHITE, pale),
+        `${bodies.length > 1 ? `${SIDES[side]}: ` : ""}${b.name}${counting ? `, faces without ${now.by}` : ""}`,
+        pale ? colours.edge(side) : null,
+      ]),
+      withLids = bodies.filter((_, side) => views[side].lids.mesh.visible && views[side].lidCount);
+    if (now.by === "kind")
+      for (const { side } of withLids)
+        items.push([colours.lid(side), `pseudo faces${bodies.length > 1 ? ` of ${SIDES[side]}` : ""}`, colours.edge(side)]);
+    if (now.by === "region" && withLids.length)
+      items.push([colours.categories[0], `pseudo faces, a colour for each region${events.passes ? "; pale: of earlier passes" : ""}`]);
+    if (curves?.count && curves.group.visible) items.push([colours.contact, "contact", null, "line"]);
+    if (curves?.dashed && curves.group.visible) items.push([colours.contact, "contact, hidden", null, "dashed"]);
+    for (const [name, colour, words] of MARKED)
+      if (marks.shown.get(name)?.parts.length)
+        items.push(
+          name === "tested" && events.kind[this.view.selection.event] === events.CONTACT
+            ? [colours.contact, "intersecting pair"]
+            : [colours[colour], name === "refined" && events.passes ? "lids that are new in this pass" : words],
+        );
+    return items;
   }
 
+  /** `key`: the scale of the colours; null: there is none. */
   showScale(key) {
     const { colours, bodies, now } = this.view;
     byId("scale").hidden = !key;
     if (!key) return;
     byId("scale-bar").style.background = `linear-gradient(to right, ${colours.stops.join(", ")})`;
-    byId("scale-most").textContent = digits(key.most);
+    byId("scale-most").textContent = key.top > key.most ? `\u2265 ${digits(key.most)} (at most ${digits(key.top)})` : digits(key.most);
     const whose = bodies.length > 1 ? " of both bodies" : "";
     const when = now.scope === "run" ? "in the whole run" : "in this step so far";
-    byId("scale-title").textContent = key.title || `${now.by}, for each ${now.per}${whose}, ${when}`;
+    byId("scale-title").textContent = key.title || `${now.by} for each ${now.per}`;
+    byId("scale").title = key.title ? "" : `${now.by}, for each ${now.per}${whose}, ${when}. The scale ends where 99 % of the counted faces do`;
   }
 }

@@ -4,7 +4,7 @@ import { seek } from "./page.js";
 import { WORK_SORTS, workSort } from "./scene_panels.js";
 import { eventText, lastAtMost, NONE, SIDES } from "./scene_run.js";
 
-const TAB_ORDER = ["Not as expected", "This step", "Answer", "Events", "Work", "Steps", "Queries", "Charts"], // then all others
+const TAB_ORDER = ["Not as expected", "This step", "Events", "Work", "Steps", "Queries", "Charts"], // then all others
   LAST_TABS = ["Frames", "Words", "Run"];
 
 /** Fades the edges of a box beyond which it can be scrolled. */
@@ -22,7 +22,8 @@ export function showMore(box) {
   return mark;
 }
 
-/** The parts of the page below the view, one at a time. Without scripts, and in print, they follow each other. */
+/** The parts of the page below the view, one at a time, closed until used. Without scripts, and in print, they follow each
+    other. */
 export class Tabs {
   constructor() {
     const groups = new Map();
@@ -56,19 +57,20 @@ export class Tabs {
       if (!way) return;
       e.preventDefault();
       e.stopPropagation();
-      this.show(this.names[(this.names.indexOf(this.shown) + way + this.names.length) % this.names.length]);
+      const at = this.names.indexOf(document.activeElement.textContent) + way + this.names.length;
+      this.show(this.names[at % this.names.length]);
       this.buttons.get(this.shown).focus();
     });
     this.marks = [this.bar, this.body, ...this.body.querySelectorAll(".scroll, .charts, .event-rows")].map(showMore);
     if (byId("frames")) byId("frames").open = true;
-    this.show(this.names[0]);
+    this.show("");
   }
 
   add(name, parts, i) {
     const id = `tab-${i}`,
       button = element("button", { type: "button", id, role: "tab", title: i < 9 ? `Key ${i + 1}` : "" }, name),
       panel = element("div", { class: "tab-panel", role: "tabpanel", "aria-labelledby": id }, ...parts);
-    button.onclick = () => this.show(name);
+    button.onclick = () => this.toggle(name);
     this.bar.append(button);
     this.body.append(panel);
     this.buttons.set(name, button);
@@ -78,18 +80,25 @@ export class Tabs {
   has(name) {
     return this.panels.has(name);
   }
+  /** Opens a tab, or closes it. */
+  toggle(name) {
+    this.show(this.shown === name ? "" : name);
+  }
+  /** Opens a tab; "": closes the open one. */
   show(name) {
-    if (!this.has(name)) return;
+    if (name && !this.has(name)) return;
     this.shown = name;
+    byId("scene").classList.toggle("open", name !== "");
+    this.taller.hidden = this.body.hidden = name === "";
     for (const [other, button] of this.buttons) {
       const is = other === name;
       button.setAttribute("aria-selected", is);
-      button.tabIndex = is ? 0 : -1;
+      button.tabIndex = is || (!name && other === this.names[0]) ? 0 : -1;
       this.panels.get(other).hidden = !is;
     }
     this.body.scrollTop = this.body.scrollLeft = 0;
     const { bar } = this,
-      button = this.buttons.get(name);
+      button = this.buttons.get(name || this.names[0]);
     if (button.offsetLeft < bar.scrollLeft || button.offsetLeft + button.offsetWidth > bar.scrollLeft + bar.clientWidth)
       bar.scrollLeft = button.offsetLeft - 24;
     for (const mark of this.marks || []) mark();
@@ -100,6 +109,7 @@ export class Tabs {
     return byId("scene").classList.contains("tall");
   }
   toggleHeight() {
+    if (!this.shown) this.show(this.names[0]);
     byId("scene").classList.toggle("tall");
     this.taller.textContent = this.tall ? "lower" : "taller";
     for (const listener of this.listeners) listener();
@@ -134,31 +144,27 @@ export function printView(view) {
 
 // ---- at the top: what each step cost, and when the bodies meet; of a single body, how many faces it shows
 export class CostStrip {
-  /** `bars`: [{values, words, go}] with a value for each of `sorts`, [{name, colour}]; `contactStep`: index of
+  /** `unit`: counted in the bars. `bars`: [{values, words, go}] with a value for each of `sorts`, [{name, colour}]; `contactStep`: index of
       the bar of the first contact; -1: none. */
-  constructor({ title, sorts, bars, contactStep = -1 }) {
-    Object.assign(this, { title, sorts, bars, contactStep, at: 0 });
-    if (!bars.length) return;
+  constructor({ title, unit, sorts, bars, contactStep = -1 }) {
+    Object.assign(this, { title, unit, sorts, bars, contactStep, at: 0 });
+    if (bars.length < 2) return;
     this.box = element("div", { class: "strip" });
     document.querySelector("header").append(this.box);
-    new ResizeObserver(oncePerFrame(() => this.draw())).observe(this.box);
+    this.draw();
   }
 
   draw() {
     const { bars, sorts, box } = this,
-      width = Math.max(200, box.clientWidth);
-    if (width === this.width) return;
-    this.width = width;
-    const height = 46,
+      [width, height] = [1000, 100], // stretched to the place
       sum = (b) => b.values.reduce((n, v) => n + v, 0),
       most = Math.max(1, ...bars.map(sum)),
       label = `${this.title}; a click selects one`,
-      svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label }),
+      svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, preserveAspectRatio: "none", role: "img", "aria-label": label }),
       step = width / bars.length;
     const make = (name, parent, attributes) => parent.appendChild(svgElement(name, attributes));
     bars.forEach((bar, i) => {
-      const group = make("g", svg, { class: "bar" }),
-        gap = step > 4 ? Math.min(2, step / 5) : 0;
+      const group = make("g", svg, { class: "bar" });
       make("title", group, {}).textContent =
         `${bar.words}: ` +
         sorts
@@ -168,23 +174,23 @@ export class CostStrip {
       make("rect", group, { x: i * step, y: 0, width: step, height, class: "hit" });
       let top = height;
       bar.values.forEach((value, k) => {
-        const h = (value / most) * (height - 4);
+        const h = (value / most) * 0.92 * height;
         top -= h;
-        if (h > 0) make("rect", group, { x: i * step, y: top, width: step - gap, height: h }).style.fill = sorts[k].colour;
+        if (h > 0) make("rect", group, { x: i * step, y: top, width: 0.88 * step, height: h }).style.fill = sorts[k].colour;
       });
       group.addEventListener("click", bar.go);
     });
     if (this.contactStep > 0)
       make("line", svg, { x1: this.contactStep * step, x2: this.contactStep * step, y1: 0, y2: height, class: "contact" });
-    this.cursor = make("rect", svg, { y: 1, height: height - 2, width: Math.max(3, step), class: "cursor" });
-    const words = element("p", {}, `${this.title}, up to ${digits(most)}: `);
+    this.cursor = make("rect", svg, { y: 2, height: height - 4, width: Math.max(3, step), class: "cursor" });
+    const words = element("p", { title: `${this.title}; a click on a bar selects it` }, `up to ${digits(most)} ${this.unit}`);
     const addKey = (name) => {
       const dot = element("i");
       words.append(element("span", {}, dot, name));
       return dot;
     };
     sorts.forEach((s, k) => {
-      if (bars.some((b) => b.values[k] > 0)) addKey(s.name).style.background = s.colour;
+      if (sorts.length > 1 && bars.some((b) => b.values[k] > 0)) addKey(s.name).style.background = s.colour;
     });
     if (this.contactStep > 0) addKey("first contact").className = "contact";
     box.replaceChildren(svg, words);
@@ -196,7 +202,7 @@ export class CostStrip {
     this.at = at;
     if (!this.cursor) return;
     this.cursor.style.visibility = at < 0 ? "hidden" : "";
-    this.cursor.setAttribute("x", at < 0 ? 0 : (at * this.width) / this.bars.length);
+    this.cursor.setAttribute("x", at < 0 ? 0 : (1000 * at) / this.bars.length);
   }
 }
 
@@ -220,16 +226,11 @@ export function stripOfRun(scene, events, selection, ofStep) {
 
 /** A bar for each step, divided by sorts of work. */
 function barsOfSteps(ofStep) {
-  const [all] = ofStep.values();
-  const sorts = WORK_SORTS.map((sort) => {
-    const names = [...new Set(all.filter((o) => workSort(o) === sort).map((o) => o.outcome || o.phase))];
-    return names.length === 1 ? { ...sort, name: names[0] } : sort;
-  });
   const bars = [...ofStep].map(([step, outcomes]) => {
     const values = WORK_SORTS.map((sort) => outcomes.reduce((n, o) => n + (workSort(o) === sort ? o.operations : 0), 0));
     return { step, values, words: `step ${digits(step)}`, go: () => seek("step", step) };
   });
-  return { title: "operations in each step", sorts, bars };
+  return { title: "operations in each step", unit: "operations", sorts: WORK_SORTS, bars };
 }
 
 /** A bar for each pass of a construction, or each refinement. */
@@ -243,6 +244,7 @@ function barsOfFaces(events, selection) {
   }));
   return {
     title: events.passes ? "faces of the front after each pass" : "faces of the wrapper after each refinement",
+    unit: "faces",
     sorts: [{ name: "faces", colour: "var(--work-boxes)" }],
     bars: events.bodies.length > 1 ? [] : bars,
   };
@@ -270,7 +272,7 @@ export class PageAddress {
     const { events, selection, view, tabs } = this,
       parts = [`e${events.id(selection.event)}`],
       { picked, chosen } = selection;
-    if (tabs.shown !== tabs.names[0]) parts.push(`tab=${encodeURIComponent(tabs.shown)}`);
+    if (tabs.shown) parts.push(`tab=${encodeURIComponent(tabs.shown)}`);
     if (picked)
       parts.push(`pick=${SIDES[picked.side]}.${["vertex", "face", "region"].filter((sort) => picked[sort] !== NONE).map((sort) => `${sort}.${picked[sort]}`)[0]}`);
     if (chosen.every((s) => s !== NONE)) parts.push(`pair=${chosen.join(",")}`);

@@ -1,4 +1,4 @@
-import { byId, digits, element, linkRow, oncePerFrame, plural, svgElement, textButton } from "./dom.js";
+import { byId, digits, element, linkRow, oncePerFrame, percent, plural, short, svgElement, textButton } from "./dom.js";
 import { seek, showEvent } from "./page.js";
 import { eventPlace, eventText, lastAtMost, NONE, outcomeText, SIDES, sizeText, unpack } from "./scene_run.js";
 
@@ -102,6 +102,36 @@ export class Selection {
   pickOnly(picked) {
     this.picked = picked && { vertex: NONE, ...picked };
     this.tell("pick");
+  }
+}
+
+// ---- in the header: the relation of the bodies at the current step as a badge, and its other key figures
+export class AnswerLine {
+  /** `answers`: as the page has them; null: the header is about the whole run. */
+  constructor(answers, events, selection) {
+    Object.assign(this, { answers, events, badge: document.querySelector(".verdict:not(.bad)") });
+    this.box = document.querySelector("header .numbers");
+    if (!answers || !this.box) return;
+    this.ofStep = new Map([...events.stepNumbers].map((number, step) => [number, answers.steps[step]]));
+    selection.listeners.push((what) => {
+      if (what === "event") this.show(events.stepNumber(selection.event));
+    });
+  }
+
+  show(step) {
+    if (step === this.step) return;
+    this.step = step;
+    const { names, meanings } = this.answers,
+      rows = (this.ofStep.get(step) || []).map(([name, value, note]) => [names[name], value, [meanings[name], note].filter(Boolean).join("; ")]),
+      inBadge = this.badge && rows.length > 0;
+    if (inBadge) this.badge.textContent = rows[0][1];
+    if (inBadge) this.badge.title = rows[0][2];
+    if (this.events.firstOfStep.length > 1) rows.unshift(["Step", digits(step), "time step that the figures and the view are about"]);
+    this.box.replaceChildren(
+      ...rows
+        .filter(([name]) => name !== "Relation" || !inBadge)
+        .map(([name, value, title]) => element("div", { title }, element("dt", {}, name), element("dd", {}, value))),
+    );
   }
 }
 
@@ -422,19 +452,13 @@ export class Panel {
       level = events.level(i),
       cause = events.find(events.cause[i]);
     byId("event-title").textContent = eventPlace(events, i);
-    const rows = [
-      ["kind", kind.name],
-      ["what", eventText(events, i)],
-    ];
+    const rows = [["kind", kind.name], ["what", eventText(events, i)]];
     if (outcomeText(events, i)) rows.push(["result", outcomeText(events, i)]);
     const attempt = events.attempts && events.attempts.ofEvent.get(i);
     if (attempt && i === attempt.cap) rows.push([attempt.rejected ? "rejected" : "accepted", events.attempts.reason(attempt)]);
     if (level >= 0 && !events.engine) rows.push(["level", level, "number of regions between it and the outside"]);
     if (cause >= 0)
-      rows.push([
-        "cause",
-        textButton(`event ${digits(events.id(cause))}`, () => this.selection.goTo(cause)),
-      ]);
+      rows.push(["cause", textButton(`event ${digits(events.id(cause))}`, () => this.selection.goTo(cause))]);
     if (this.wrappers && !events.engine)
       rows.push([
         events.passes ? "front" : "wrapper",
@@ -554,12 +578,6 @@ export class Panel {
 
 // ---- beside the view: why the two faces of an event, or two that were clicked, intersect or not; and for a
 // step without contact what separates the bodies
-/** Returns a number with four digits. */
-export const short = (x) => {
-  const text = Math.abs(x) >= 1e6 ? x.toExponential(2) : String(Number(x.toPrecision(4)));
-  return text.replace("e+", "e").replace("-", "\u2212");
-};
-
 /** Returns a positive number rounded down to four digits, for lower bounds. */
 const least = (x) => {
   const near = Number(x.toPrecision(4));
@@ -726,7 +744,7 @@ export class WhyPanel {
       ],
       ...(e.boxes ? [["nearest boxes", this.boxText(e.boxes)]] : []),
       ...(e.plane
-        ? [["plane", `across (${e.plane.normal.map(short).join(", ")}), gap >= ${least(e.plane.gap)}`]]
+        ? [["plane", `across (${e.plane.normal.map((x) => short(Number(x.toFixed(4)))).join(", ")}), gap \u2265 ${least(e.plane.gap)}`]]
         : []),
       ...(e.near ? [["nearest faces", this.nearButton(e.near)]] : []),
     ]);
@@ -735,7 +753,7 @@ export class WhyPanel {
   stepText(e) {
     const inside = e.relation !== "separate";
     if (e.plane)
-      return `Apart: a plane has all of A on one side and all of B on the other, gap >= ${least(e.plane.gap)}.`;
+      return `Apart: a plane has all of A on one side and all of B on the other, gap \u2265 ${least(e.plane.gap)}.`;
     const what = inside
       ? "No faces intersect; one body is inside the other"
       : "Apart, though no plane was found that has one body on each side";
@@ -767,10 +785,10 @@ export class WhyPanel {
         const button = textButton(row.nodes.map(digits).join(", "), null, "Show the two boxes");
         button.dataset.row = k;
         button.setAttribute("aria-pressed", false);
-        if (row.faces) cell("the faces\u2019 own");
+        if (row.faces) cell("faces");
         else cell(this.events.engine ? button.textContent : button); // see nodes()
         cell(short(row.gap), true);
-        cell(row.axis);
+        cell(row.axis.replace(/^(.*) of (.)'s box$/, "$2, $1"));
         return line;
       }),
     );
@@ -805,9 +823,9 @@ export class WhyPanel {
 // ---- the sorts of work, as the picture at the top and the icicle colour them
 export const WORK_SORTS = [
   { name: "boxes", of: /^boxes( of nodes)?$/, colour: "var(--work-boxes)" },
-  { name: "boxes and planes of faces", of: /planes|leaves/, colour: "var(--work-planes)" },
+  { name: "bounds of faces", of: /planes|leaves/, colour: "var(--work-planes)" },
   { name: "face tests", of: /^face tests/, colour: "var(--work-tests)" },
-  { name: "refinements", of: /^wrappers refined/, colour: "var(--work-refined)" },
+  { name: "refined", of: /^wrappers refined/, colour: "var(--work-refined)" },
   { name: "others", of: /./, colour: "var(--work-others)" },
 ];
 /** Returns the sort of a part of the work. */
@@ -926,7 +944,7 @@ export class WorkIcicle {
 
   /** Makes a rectangle that is a button for the filter, with its name if that fits. */
   part(part, all, { x, y, w, height, colour, depth }) {
-    const share = `${short((100 * part.value) / all)} %`,
+    const share = percent(part.value, all),
       events = part.parts.reduce((n, i) => n + this.outcomes[i].events, 0),
       micros = byId("work-measure").value === "micros",
       amount = micros ? `${short(part.value)} \u00b5s` : plural(part.value, "operation");

@@ -234,10 +234,7 @@ export class Events {
   about(i, sort) {
     const kind = this.kindOf(i),
       out = [];
-    for (const [r, number] of [
-      [kind.a, this.a[i]],
-      [kind.b, this.b[i]],
-    ])
+    for (const [r, number] of [[kind.a, this.a[i]], [kind.b, this.b[i]]])
       if (r.sort === sort && number !== NONE) out.push({ side: r.side >= 0 ? r.side : this.side[i], number });
     return out;
   }
@@ -277,6 +274,28 @@ export class Events {
     const cause = this.find(this.cause[i]);
     return cause >= 0 && this.about(cause, "simplex").length > 0 ? cause : -1;
   }
+}
+
+/** Returns the most telling event, with which the page opens: with another engine's wrong answers, the end of the first such
+    step; else the last contact of the step that has most; without contact, the end of the step with most events; of one
+    body, the change halfway. */
+export function tellingEvent(events) {
+  const { kind, firstOfStep, bodies, wrong, CONTACT } = events,
+    steps = [...firstOfStep.keys()],
+    all = [...kind.keys()],
+    end = (step) => events.endOfStep(step) - 1,
+    most = (count) => steps.reduce((p, q) => (count[q] > count[p] ? q : p), 0);
+  if (bodies.length === 1) {
+    const changes = all.filter((i) => events.changesWrapper(i));
+    return changes.length ? changes[changes.length >> 1] : 0;
+  }
+  const faulty = steps.find((step) => wrong[step].length);
+  if (faulty !== undefined) return end(faulty);
+  const contacts = new Uint32Array(steps.length);
+  for (const i of all) contacts[events.step(i)] += kind[i] === CONTACT;
+  const step = most(contacts);
+  if (!contacts[step]) return end(most(steps.map((s) => end(s) - firstOfStep[s])));
+  return kind.subarray(0, end(step) + 1).lastIndexOf(CONTACT);
 }
 
 /** Returns the meaning of a number of an event: {sort, side, words}; side -1: that of the event, if it has
@@ -476,10 +495,7 @@ export function eventText(events, i) {
     if (r.sort === "phase") return events.phases[n];
     return `${r.words} ${digits(n)}${r.sort === "vertex" ? side : ""}`;
   };
-  return [
-    [ra, a],
-    [rb, b],
-  ]
+  return [[ra, a], [rb, b]]
     .filter(([r, n]) => r.sort && n !== NONE)
     .map(([r, n]) => one(r, n))
     .join(", ");

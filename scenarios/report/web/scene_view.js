@@ -1,6 +1,6 @@
 import { byId, oncePerFrame } from "./dom.js";
 import { BodyView, Colours, COUNTERS, countsSoFar, sumsOfGroups } from "./scene_bodies.js";
-import { Legend, Marks, MeasuredMarks, WhyMarks } from "./scene_marks.js";
+import { ContactCurves, Legend, Marks, MeasuredMarks, WhyMarks } from "./scene_marks.js";
 import { NONE, unpack } from "./scene_run.js";
 
 // ---- the camera. The same as a scenario's: perspective over 0.6 radians, or orthographic.
@@ -51,7 +51,6 @@ class SceneCamera {
       { passive: true, capture: true },
     );
     this.controls.addEventListener("change", changed);
-    this.window = { left: 0, top: 0, bottom: 1 }; // part of the view whose centre is the picture's
     this.fitted = false; // true after fit(): the view is refitted to a resized window
     this.controls.addEventListener("start", () => {
       this.fitted = false;
@@ -70,7 +69,7 @@ class SceneCamera {
     this.perspective.aspect = this.aspect;
     this.flat.left = -this.aspect;
     this.flat.right = this.aspect;
-    this.shift(this.window);
+    this.perspective.updateProjectionMatrix();
   }
 
   /** Called before drawing: updates the range of depths to the distance. */
@@ -97,46 +96,19 @@ class SceneCamera {
   }
 
   /** Shows all points as large as possible, from the current or a given direction; as in
-      render/include/lrbscope/render/camera.hpp. `covered`: parts of the view, from its left, that hide what is
-      under them: {right, top, bottom}, in shares of its width and height. */
-  fit(points, from, covered = []) {
+      render/include/lrbscope/render/camera.hpp. */
+  fit(points, from) {
     this.fitted = true;
     const out = (
       from ? new THREE.Vector3(...from) : this.camera.position.clone().sub(this.controls.target)
     ).normalize();
     const right = this.up.clone().cross(out).normalize(),
-      up = out.clone().cross(right);
-    // The bodies fit beside, below or above a covered part: take a large and central picture that none of them covers.
-    let windows = [{ left: 0, top: 0, bottom: 1 }];
-    for (const c of covered)
-      windows = windows.flatMap((w) => [
-        w,
-        { ...w, left: Math.max(w.left, c.right) },
-        c.top + c.bottom < 1 ? { ...w, top: Math.max(w.top, c.bottom) } : { ...w, bottom: Math.min(w.bottom, c.top) },
-      ]);
-    const fits = windows
-      .map((window) => this.fitIn(window, points, right, up, out))
-      .sort((p, q) => p.depth * (1 + p.window.left / 2) - q.depth * (1 + q.window.left / 2));
-    const clear = (f) => covered.every((c) => f.left >= c.right || (c.top + c.bottom < 1 ? f.top >= c.bottom : f.bottom <= c.top));
-    const best = fits.find(clear) || fits[0];
-    this.shift(best.window);
-    this.controls.target.copy(best.centre).addScaledVector(out, best.midpoint);
-    this.camera.position.copy(best.centre).addScaledVector(out, best.depth);
-    this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));
-    this.controls.update();
-  }
-
-  /** Returns the centre, depth and midpoint in depth of the camera that shows all points in a window of the
-      view, and the left, top and bottom ends of their picture, in shares of the view. */
-  fitIn(window, points, right, up, out) {
-    const width = 1 - window.left,
-      height = window.bottom - window.top,
-      share = 0.92,
-      slopeY = Math.tan(FIELD / 2) * share * height,
-      slopeX = Math.tan(FIELD / 2) * share * width * this.aspect; // the other axis is free
-    const most = { right: -Infinity, left: -Infinity, top: -Infinity, bottom: -Infinity, near: -Infinity, far: Infinity };
-    const seen = points.map((p) => [p.dot(right), p.dot(up), p.dot(out)]);
-    for (const [x, y, z] of seen) {
+      up = out.clone().cross(right),
+      slopeY = 0.94 * Math.tan(FIELD / 2),
+      slopeX = slopeY * this.aspect, // the other axis is free
+      most = { right: -Infinity, left: -Infinity, top: -Infinity, bottom: -Infinity, near: -Infinity, far: Infinity };
+    for (const p of points) {
+      const [x, y, z] = [p.dot(right), p.dot(up), p.dot(out)];
       // moving towards the eye moves a point away from the centre
       most.right = Math.max(most.right, x + slopeX * z);
       most.left = Math.max(most.left, -x + slopeX * z);
@@ -145,30 +117,12 @@ class SceneCamera {
       most.near = Math.max(most.near, z);
       most.far = Math.min(most.far, z);
     }
-    const depth = Math.max(
-        (most.right + most.left) / 2 / slopeX,
-        (most.top + most.bottom) / 2 / slopeY,
-        most.near + 1e-6,
-      ),
-      x = (most.right - most.left) / 2,
-      y = (most.top - most.bottom) / 2,
-      ends = { left: Infinity, top: Infinity, bottom: -Infinity };
-    for (const p of seen) {
-      const scale = share / 2 / (depth - p[2]),
-        down = window.top + height / 2 - ((p[1] - y) * scale * height) / slopeY;
-      ends.left = Math.min(ends.left, window.left + width / 2 + ((p[0] - x) * scale * width) / slopeX);
-      ends.top = Math.min(ends.top, down);
-      ends.bottom = Math.max(ends.bottom, down);
-    }
-    const centre = right.clone().multiplyScalar(x).addScaledVector(up, y);
-    return { window, centre, depth, midpoint: (most.near + most.far) / 2, ...ends };
-  }
-
-  /** Moves the picture's centre to that of a window of the view. */
-  shift(window) {
-    const { left, top, bottom } = (this.window = window);
-    for (const camera of [this.perspective, this.flat])
-      camera.setViewOffset(this.aspect, 1, (-left / 2) * this.aspect, (1 - top - bottom) / 2, this.aspect, 1);
+    const centre = right.multiplyScalar((most.right - most.left) / 2).addScaledVector(up, (most.top - most.bottom) / 2),
+      depth = Math.max((most.right + most.left) / 2 / slopeX, (most.top + most.bottom) / 2 / slopeY, most.near + 1e-6);
+    this.controls.target.copy(centre).addScaledVector(out, (most.near + most.far) / 2);
+    this.camera.position.copy(centre).addScaledVector(out, depth);
+    this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));
+    this.controls.update();
   }
 
   /** Zooms by a factor; above 1: closer. */
@@ -321,17 +275,16 @@ export class BodiesCanvas {
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.size = new THREE.Vector2(1, 1);
+    /** For the shaders of lines: size of the picture in pixels; depth of the front of the bodies, and from there to their
+        back; size of a pixel in the world. */
+    this.lens = { size: this.size, depths: new THREE.Vector2(0, 1), pixel: { value: 1 } };
     this.stage = new THREE.Scene();
     this.camera = new SceneCamera(this.canvas, scene, () => this.redraw());
     this.stage.add(new THREE.AmbientLight(0xffffff, 0.54), this.camera.perspective, this.camera.flat);
-    this.views = this.makeViews(bodies);
+    this.views = bodies.map((b) => new BodyView(b, this.colours, this.lens));
     this.views.forEach((v) => this.stage.add(v.group));
-    this.marks = new Marks(this.views, this.colours, this.size);
+    this.marks = new Marks(this.views, this.colours, this.lens);
     this.legend = new Legend(this);
-  }
-
-  makeViews(bodies) {
-    return bodies.map((b) => new BodyView(b, this.colours));
   }
 
   /** Called by a subclass once it can draw. */
@@ -348,20 +301,20 @@ export class BodiesCanvas {
     this.size.set(width, height);
     this.renderer.setSize(width, height, false);
     this.camera.resize(width, height);
-    if (this.camera.fitted) this.camera.fit(this.extremes(), null, this.covered());
+    if (this.camera.fitted) this.camera.fit(this.extremes());
     this.redraw();
   }
 
   redraw = oncePerFrame(() => this.draw());
 
   render() {
-    if (this.camera.plane) {
-      const pixel = (2 * this.camera.halfHeight) / this.size.y;
-      for (const view of this.views) view.widen(pixel);
-      this.marks.widen(pixel);
-    }
-    this.camera.prepare(this.reach().radius);
-    this.renderer.render(this.stage, this.camera.camera);
+    const { camera, lens } = this,
+      { radius } = this.reach();
+    lens.pixel.value = (2 * camera.halfHeight) / this.size.y;
+    lens.depths.set(camera.distance - radius, 2 * radius);
+    if (camera.plane) for (const part of [...this.views, this.marks]) part.widen(lens.pixel.value);
+    camera.prepare(radius);
+    this.renderer.render(this.stage, camera.camera);
   }
 
   /** Returns points that span both bodies at their current poses. */
@@ -377,21 +330,8 @@ export class BodiesCanvas {
     return ball;
   }
 
-  /** Returns the parts of the view under the legend and the caption, where these are drawn over it. */
-  covered() {
-    const box = this.canvas.getBoundingClientRect();
-    return ["legend", "view-caption"]
-      .map((name) => byId(name)?.getBoundingClientRect())
-      .filter((r) => r?.width && r.bottom > box.top + 1 && r.top < box.bottom - 1)
-      .map((r) => ({
-        right: (r.right - box.left) / box.width,
-        top: (r.top - box.top) / box.height,
-        bottom: (r.bottom - box.top) / box.height,
-      }));
-  }
-
   frameAll(from) {
-    this.camera.fit(this.extremes(), from, this.covered());
+    this.camera.fit(this.extremes(), from);
     this.redraw();
   }
 
@@ -431,6 +371,7 @@ export class SceneView extends BodiesCanvas {
     this.opened = { ...this.now };
     this.whyMarks = new WhyMarks(this, why);
     this.measured = new MeasuredMarks(this, scene.measured);
+    this.curves = new ContactCurves(this, scene.curves);
     this.keys = {};
     selection.listeners.push(() => this.redraw());
     this.picker = new Picker(this);
@@ -452,15 +393,26 @@ export class SceneView extends BodiesCanvas {
 
   draw() {
     this.place();
+    this.once("step", this.events.step(this.selection.event), () => this.keepInView());
     this.paint();
     this.shape();
     this.paint(); // the objects made by shape()
     this.mark();
     this.whyMarks.draw();
     this.measured.draw();
+    this.curves.draw();
+    this.legend.write();
     this.render();
     this.circle();
     this.measured.write();
+  }
+
+  /** Fits the view again if a step has bodies outside of it, unless the user has moved it. */
+  keepInView() {
+    const { camera } = this,
+      ends = this.extremes();
+    const isOut = (p) => [p.x, p.y].some((x) => Math.abs(x) > 1);
+    if (camera.fitted && ends.some((p) => isOut(p.clone().project(camera.camera)))) camera.fit(ends);
   }
 
   /** Draws a ring around the faces that the event compares, if they are too small to be noticed. */
@@ -541,9 +493,9 @@ export class SceneView extends BodiesCanvas {
         const counts = counter ? this.countsOf(by, per, scope) : null,
           mode = this.colours.mode(this.bodies, by, counts, newest);
         // Mostly real faces are tested: they must be visible.
-        const veil = by === "kind" ? 0.49 : counter && per === "face" ? 0.2 : 0.69;
+        const veil = by === "kind" ? 0.6 : counter && per === "face" ? 0.2 : 0.69;
         this.views.forEach((view, side) => {
-          view.paint(mode, veil);
+          view.paint(mode, veil, by === "kind" ? 1 : 0);
           view.showCounted(
             counter
               ? [...counts[side].keys()].filter((f) => counts[side][f] > 0 && this.bodies[side].isReal(f))
@@ -551,7 +503,7 @@ export class SceneView extends BodiesCanvas {
             (f) => mode.of(side, f),
           );
         });
-        this.legend.show(mode.key);
+        this.legend.showScale(mode.key);
       },
     );
   }
@@ -575,14 +527,6 @@ export class SceneView extends BodiesCanvas {
       i = this.selection.event,
       kind = events.kind[i],
       compared = this.comparedFaces();
-    const contacts = this.contacts();
-    const counting = COUNTERS.includes(this.now.by); // the faces' own colours must then be visible
-    this.marks.set(
-      "contacts",
-      counting ? "" : `${events.step(i)} ${contacts.length}`,
-      counting ? [] : contacts,
-      { colour: colours.contact },
-    );
     const key = compared.map((f) => f.face);
     this.marks.set("tested", `${key} ${kind === events.CONTACT}`, compared, {
       colour: kind === events.CONTACT ? colours.contact : colours.underTest,
@@ -664,15 +608,6 @@ export class SceneView extends BodiesCanvas {
     return this.bodies.flatMap((body, side) =>
       [...new Set(pairs.map((p) => body.faceOfSimplex(p.simplices[side])))].map((face) => ({ side, face })),
     );
-  }
-
-  /** Returns the faces in contact so far in this step, each once: [{side, face}]. */
-  contacts() {
-    const { events } = this,
-      seen = this.bodies.map(() => new Set());
-    for (let i = events.firstOfStep[events.step(this.selection.event)]; i <= this.selection.event; i++)
-      if (events.kind[i] === events.CONTACT) for (const f of events.faces(i)) seen[f.side].add(f.face);
-    return seen.flatMap((faces, side) => [...faces].map((face) => ({ side, face })));
   }
 
   pickedFaces() {

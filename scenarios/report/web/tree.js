@@ -1,5 +1,5 @@
 // ---- the page of a tree: the volume and the triangles of one node, selected in the view, the icicle or a table
-import { byId, digits, linkRow, plural, textButton } from "./dom.js";
+import { byId, digits, linkRow, percent, plural, rounded, textButton } from "./dom.js";
 import { boxEdges, mixed, WHITE } from "./scene_bodies.js";
 import { Body, grouped, NONE, unpack } from "./scene_run.js";
 import { BodiesCanvas, onClick, webglWorks } from "./scene_view.js";
@@ -180,15 +180,14 @@ class TreePage {
       put = (id, text) => (byId(id).textContent = text),
       triangles = nodes.last[node] - nodes.first[node],
       faces = (n) => (json.dim === 2 ? plural(n, "segment") : plural(n, "triangle")),
-      rounded = (x) => String(Number(x.toPrecision(3))),
-      share = json.epo > 0 ? ` (${rounded((100 * nodes.epo[node]) / json.epo)} % of the tree's)` : "";
+      share = json.epo > 0 ? ` (${percent(nodes.epo[node], json.epo)} of the tree's)` : "";
     byId("node").value = nodes.ids[node];
     put("node-state", "");
     put("node-depth", digits(nodes.depth[node]));
     put("node-triangles", faces(triangles));
     put("node-others", faces(this.others));
-    put("node-area", rounded(nodes.area[node]));
-    put("node-epo", rounded(nodes.epo[node]) + share);
+    put("node-area", rounded(nodes.area[node], 3));
+    put("node-epo", rounded(nodes.epo[node], 3) + share);
     put("view-caption", `node ${nodes.ids[node]}, depth ${nodes.depth[node]}: ${faces(triangles)}, and ${faces(this.others)} of other nodes in its volume`);
     const link = (other, text) => {
       const title = `Depth ${nodes.depth[other]}, ${faces(nodes.last[other] - nodes.first[other])}`;
