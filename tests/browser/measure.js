@@ -107,7 +107,7 @@
     while (walker.nextNode()) {
       const element = walker.currentNode.parentElement, text = walker.currentNode.data.trim();
       if (!text || element.closest("script, style, noscript, template, option, title, desc") || !isShown(element)) continue;
-      if (element.closest("[inert], .visually-hidden")) continue;
+      if (element.closest("[inert], .visually-hidden") || styleOf(element).clipPath === "inset(50%)") continue;
       const range = document.createRange();
       range.selectNodeContents(walker.currentNode);
       for (const rect of range.getClientRects())

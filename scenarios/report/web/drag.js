@@ -450,12 +450,8 @@ class LivePage {
       way = step * this.radius;
     const toggle = (id) => byId(id).click();
     const arrows = {
-      ArrowLeft: [-1, 0, 0],
-      ArrowRight: [1, 0, 0],
-      ArrowUp: [0, 1, 0],
-      ArrowDown: [0, -1, 0],
-      PageUp: [0, 0, -1],
-      PageDown: [0, 0, 1],
+      ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0],
+      PageUp: [0, 0, -1], PageDown: [0, 0, 1],
     };
     const keys = {
       r: () => this.reset(),

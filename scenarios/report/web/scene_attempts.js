@@ -195,11 +195,8 @@ export class AttemptPanel {
       accepted = here.length - rejected,
       more = events.ids ? " among the events of this page" : "";
     byId("attempts-title").textContent = `Attempts here: ${rejected} rejected, ${accepted} accepted${more}`;
-    byId("attempts-note").textContent = here.length
-      ? ""
-      : picked.vertex !== NONE || picked.face !== NONE
-        ? "No patch with this part of the front inside was tried."
-        : "";
+    byId("attempts-note").textContent = here.length ? "" : picked.vertex !== NONE || picked.face !== NONE
+        ? "No patch with this part of the front inside was tried." : "";
     byId("attempts-table").hidden = !here.length;
     byId("attempt-rows").replaceChildren(...here.map((a) => this.row(a)));
   }
@@ -236,8 +233,7 @@ export class AttemptPanel {
     byId("attempt-before").setAttribute("aria-pressed", !after);
     byId("attempt-after").setAttribute("aria-pressed", Boolean(after));
     byId("attempt-after").disabled = !current.regions.length;
-    byId("attempt-kept").textContent = !current.rejected
-      ? ""
+    byId("attempt-kept").textContent = !current.rejected ? ""
       : "Rejected: the front stays as it is. The trace has the patch and the sizes of the cap, not its shape.";
   }
 }

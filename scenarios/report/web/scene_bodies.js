@@ -77,20 +77,15 @@ export class Colours {
       };
     if (by === "layer")
       return {
-        of: (side, face) =>
-          bodies[side].isReal(face)
-            ? pale(side)
+        of: (side, face) => bodies[side].isReal(face) ? pale(side)
             : this.onScale(layers > 1 ? bodies[side].layer[bodies[side].inner[face]] / (layers - 1) : 1),
         key: { most: layers - 1, title: "layer" },
       };
     if (by === "region")
       return {
-        of: (side, face) =>
-          bodies[side].isReal(face)
-            ? pale(side)
+        of: (side, face) => bodies[side].isReal(face) ? pale(side)
             : mixed(
-                this.categories[bodies[side].inner[face] % this.categories.length],
-                WHITE,
+                this.categories[bodies[side].inner[face] % this.categories.length], WHITE,
                 bodies[side].layer[bodies[side].inner[face]] < newest ? 0.68 : 0,
               ),
         key: null,
@@ -100,9 +95,7 @@ export class Colours {
       most = counted.length ? counted[Math.floor(0.99 * (counted.length - 1))] : 0,
       top = counted.length ? counted[counted.length - 1] : 0;
     return {
-      of: (side, face) =>
-        counts[side][face] > 0
-          ? this.onScale(counts[side][face] / most)
+      of: (side, face) => counts[side][face] > 0 ? this.onScale(counts[side][face] / most)
           : mixed(this.bodies[side], WHITE, this.shares.noValue),
       key: { most, top, title: "" },
     };
@@ -116,8 +109,7 @@ export class FaceMesh {
   constructor(body, faces, material, shifts) {
     this.body = body;
     this.flat = body.dim === 2 ? { faces, shifts, width: 0 } : null;
-    this.triangles = this.flat
-      ? 2 * faces.length
+    this.triangles = this.flat ? 2 * faces.length
       : faces.reduce((n, f) => n + Math.max(0, body.offsets[f + 1] - body.offsets[f] - 2), 0);
     this.faceOf = new Uint32Array(this.triangles); // of each triangle
     const positions = new Float32Array(9 * this.triangles),
@@ -317,12 +309,8 @@ export function thickLines(ends, material) {
 export function thickMaterial(colour, width, lens, { opacity = 1, dash = 0, hides = false } = {}) {
   return new THREE.ShaderMaterial({
     uniforms: {
-      colour: { value: new THREE.Color(...colour) },
-      opacity: { value: opacity },
-      width: { value: width },
-      dash: { value: dash },
-      size: { value: lens.size },
-      pixel: lens.pixel,
+      colour: { value: new THREE.Color(...colour) }, opacity: { value: opacity }, width: { value: width },
+      dash: { value: dash }, size: { value: lens.size }, pixel: lens.pixel,
     },
     vertexShader: `
       attribute vec3 other;
@@ -365,8 +353,7 @@ export function roundPoints(positions, colour, size, rim = WHITE) {
     geometry,
     new THREE.ShaderMaterial({
       uniforms: {
-        colour: { value: new THREE.Color(...colour) },
-        rim: { value: new THREE.Color(...rim) },
+        colour: { value: new THREE.Color(...colour) }, rim: { value: new THREE.Color(...rim) },
         size: { value: size },
       },
       vertexShader: `
@@ -417,14 +404,8 @@ export class FlatFill {
     this.body = body;
     const material = (stencil, more) =>
       new THREE.MeshBasicMaterial({
-        transparent: true,
-        depthWrite: false,
-        side: THREE.DoubleSide,
-        stencilWrite: true,
-        stencilFail: stencil,
-        stencilZFail: stencil,
-        stencilZPass: stencil,
-        ...more,
+        transparent: true, depthWrite: false, side: THREE.DoubleSide, stencilWrite: true,
+        stencilFail: stencil, stencilZFail: stencil, stencilZPass: stencil, ...more,
       });
     // Each triangle from one point to a segment toggles the stencil of the pixels that it covers; those left
     // set are inside. A quad over all of it then colours them, and clears the stencil for the next fill.
@@ -435,10 +416,7 @@ export class FlatFill {
     this.sheet = new THREE.Mesh(
       new THREE.BufferGeometry(),
       material(THREE.ZeroStencilOp, {
-        color: new THREE.Color(...colour),
-        opacity,
-        stencilFunc: THREE.NotEqualStencilFunc,
-        stencilRef: 0,
+        color: new THREE.Color(...colour), opacity, stencilFunc: THREE.NotEqualStencilFunc, stencilRef: 0,
       }),
     );
     this.fan.renderOrder = 2 * place - 100;
@@ -468,8 +446,7 @@ export class FlatFill {
       ...[2 * k, 2 * k + 1].flatMap((end) => [xs[end], ys[end], 0]),
     ]);
     const sheet = segments.length
-      ? [left, low, 0, right, low, 0, right, high, 0, left, low, 0, right, high, 0, left, high, 0]
-      : [];
+      ? [left, low, 0, right, low, 0, right, high, 0, left, low, 0, right, high, 0, left, high, 0] : [];
     this.fan.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(fan), 3));
     this.sheet.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(sheet), 3));
     this.filled = segments.length > 0;
@@ -569,12 +546,8 @@ export class BodyView {
   static materialsOf(dim) {
     const faces = (Material, before, more = {}) =>
         new Material({
-          vertexColors: THREE.VertexColors,
-          side: THREE.DoubleSide,
-          polygonOffset: true,
-          polygonOffsetFactor: before,
-          polygonOffsetUnits: before,
-          ...more,
+          vertexColors: THREE.VertexColors, side: THREE.DoubleSide, polygonOffset: true,
+          polygonOffsetFactor: before, polygonOffsetUnits: before, ...more,
         }),
       glass = { transparent: true, depthWrite: false };
     return {
@@ -687,17 +660,14 @@ export class BodyView {
     this.lids.show(onBoundary);
     for (let f = dim === 2 ? 0 : realCount; f < faceCount; f++) if (onBoundary(f)) shown.push(f);
     if (this.fills) this.fills.wrapper.show(shown);
-    else this.put("lidEdges", this.lines(edgesOf(this.body, shown), 0.35));
+    else this.put("lidEdges", this.lines(edgesOf(this.body, shown), 0.25));
     this.lidCount = shown.filter((f) => f >= realCount).length;
   }
 
   ghost(on) {
     const { real } = this.materials;
     Object.assign(real, {
-      transparent: on,
-      opacity: on ? 0.13 : 1,
-      depthWrite: !on,
-      side: on ? THREE.FrontSide : THREE.DoubleSide,
+      transparent: on, opacity: on ? 0.13 : 1, depthWrite: !on, side: on ? THREE.FrontSide : THREE.DoubleSide,
     });
     this.edges.material.uniforms.opacity.value = on ? 0.15 : 0.5;
     real.needsUpdate = true;

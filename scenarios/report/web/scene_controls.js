@@ -207,11 +207,8 @@ export class ViewControls {
     const { now, camera } = this.view,
       picked = this.selection.picked;
     for (const [id, on] of [
-      ["ghost", now.ghost],
-      ["lids", now.lids],
-      ["isolate", Boolean(now.isolate)],
-      ...(camera.plane ? [] : [["orthographic", camera.orthographic]]),
-      ["proof", now.why],
+      ["ghost", now.ghost], ["lids", now.lids], ["isolate", Boolean(now.isolate)],
+      ...(camera.plane ? [] : [["orthographic", camera.orthographic]]), ["proof", now.why],
     ])
       byId(id).setAttribute("aria-pressed", on);
     byId("isolate").disabled = !now.isolate && !(picked && picked.region !== NONE);
@@ -286,8 +283,7 @@ export class ViewControls {
   keys() {
     const { view } = this,
       turn = 0.09;
-    const ofSolids = view.camera.plane
-      ? {}
+    const ofSolids = view.camera.plane ? {}
       : {
           o: () => this.orthographic(),
           v: () => this.copyCamera(),

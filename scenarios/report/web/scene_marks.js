@@ -23,14 +23,8 @@ export class Marks {
     facesOf.forEach((own, side) => {
       const view = this.views[side];
       const material = new THREE.MeshLambertMaterial({
-        color: new THREE.Color(...colour),
-        side: THREE.DoubleSide,
-        transparent: opacity < 1 || over,
-        opacity,
-        depthWrite: opacity === 1 && !over,
-        depthTest: !over,
-        polygonOffset: true,
-        polygonOffsetFactor: 0,
+        color: new THREE.Color(...colour), side: THREE.DoubleSide, transparent: opacity < 1 || over, opacity,
+        depthWrite: opacity === 1 && !over, depthTest: !over, polygonOffset: true, polygonOffsetFactor: 0,
         polygonOffsetUnits: -2,
       });
       const strips = new FaceMesh(view.body, own, material),
@@ -83,8 +77,7 @@ export class Marks {
           .filter((i) => i >= 0);
       if (!own.length) return;
       const lines = thickLines(
-        boxEdges(places, own),
-        thickMaterial(mixed(colour, this.colours.ink, 0.35), 1.5, this.lens),
+        boxEdges(places, own), thickMaterial(mixed(colour, this.colours.ink, 0.35), 1.5, this.lens),
       );
       lines.renderOrder = 6;
       view.group.add(lines);
@@ -133,10 +126,8 @@ export class WhyMarks {
     this.view.legend.also(
       meet === 0
         ? [
-            [colours.ink, "between the nearest points", WHITE],
-            [PLANE, "plane that separates the faces"],
-          ]
-        : [],
+            [colours.ink, "between the nearest points", WHITE], [PLANE, "plane that separates the faces"],
+          ] : [],
       "why",
     );
   }
@@ -154,9 +145,7 @@ export class WhyMarks {
     this.view.legend.also(
       [
         ...(boxes ? [[mixed(colours.bodies[0], colours.ink, 0.3), "nearest disjoint boxes"]] : []),
-        ...(square.length
-          ? [[PLANE, plane ? "plane between the bodies" : "plane between these boxes"]]
-          : []),
+        ...(square.length ? [[PLANE, plane ? "plane between the bodies" : "plane between these boxes"]] : []),
       ],
       "why",
     );
@@ -184,10 +173,7 @@ export class WhyMarks {
     const square = new THREE.Mesh(
       geometry,
       new THREE.MeshBasicMaterial({
-        color: new THREE.Color(...colour),
-        transparent: true,
-        opacity: 0.35,
-        depthWrite: false,
+        color: new THREE.Color(...colour), transparent: true, opacity: 0.35, depthWrite: false,
         side: THREE.DoubleSide,
       }),
     );
@@ -367,10 +353,8 @@ export class ContactCurves {
 
 // ---- the meaning of the colours that the view shows now
 const MARKED = [
-  ["tested", "underTest", "pair under test"],
-  ["refined", "refining", "region being refined"],
-  ["attempt", "underTest", "patch of this attempt"],
-  ["picked", "selected", "selected"],
+  ["tested", "underTest", "pair under test"], ["refined", "refining", "region being refined"],
+  ["attempt", "underTest", "patch of this attempt"], ["picked", "selected", "selected"],
   ["wrong", "wrong", "pairs that the engine got wrong"],
 ];
 

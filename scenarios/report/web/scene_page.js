@@ -90,6 +90,7 @@ export class Tabs {
     this.shown = name;
     byId("scene").classList.toggle("open", name !== "");
     this.taller.hidden = this.body.hidden = name === "";
+    if (["Frames", "Proof"].includes(name) && !this.tall) this.toggleHeight(); // pictures
     for (const [other, button] of this.buttons) {
       const is = other === name;
       button.setAttribute("aria-selected", is);
@@ -165,8 +166,7 @@ export class CostStrip {
     const make = (name, parent, attributes) => parent.appendChild(svgElement(name, attributes));
     bars.forEach((bar, i) => {
       const group = make("g", svg, { class: "bar" });
-      make("title", group, {}).textContent =
-        `${bar.words}: ` +
+      make("title", group, {}).textContent = `${bar.words}: ` +
         sorts
           .map((s, k) => (bar.values[k] ? `${digits(bar.values[k])} ${s.name}` : ""))
           .filter(Boolean)
@@ -210,9 +210,7 @@ export class CostStrip {
 export function stripOfRun(scene, events, selection, ofStep) {
   const parts = scene.work && !events.passes ? barsOfSteps(ofStep) : barsOfFaces(events, selection),
     { bars } = parts,
-    at = () =>
-      bars[0].step === undefined
-        ? lastAtMost(bars.map((b) => b.event), selection.event)
+    at = () => bars[0].step === undefined ? lastAtMost(bars.map((b) => b.event), selection.event)
         : bars.findIndex((b) => b.step === events.stepNumber(selection.event));
   const strip = new CostStrip({
     ...parts,

@@ -289,8 +289,7 @@ export class EventTable {
   refilter() {
     this.rows = this.filter.apply(this.events);
     this.spacer.style.height = `${this.height}px`;
-    byId("event-count").textContent =
-      this.rows.length === this.events.count
+    byId("event-count").textContent = this.rows.length === this.events.count
         ? plural(this.rows.length, "event")
         : `${digits(this.rows.length)} of ${plural(this.events.count, "event")}`;
     this.follow();
@@ -338,13 +337,8 @@ export class EventTable {
     line.dataset.event = i;
     const cause = events.cause[i];
     const cells = [
-      digits(events.id(i)),
-      digits(events.stepNumber(i)),
-      events.kindOf(i).name,
-      eventText(events, i),
-      outcomeText(events, i),
-      level < 0 ? "" : level,
-      cause === NONE ? "" : digits(cause),
+      digits(events.id(i)), digits(events.stepNumber(i)), events.kindOf(i).name, eventText(events, i),
+      outcomeText(events, i), level < 0 ? "" : level, cause === NONE ? "" : digits(cause),
     ];
     cells.forEach((text, column) => {
       const cell = element("span", { role: "cell", title: text }, String(text)); // which may be too long
@@ -470,16 +464,14 @@ export class Panel {
     const parts = [
       ...events
         .faces(i)
-        .map((f) =>
-          textButton(this.bodies[f.side].faceText(f.face) + this.name(f.side), () =>
+        .map((f) => textButton(this.bodies[f.side].faceText(f.face) + this.name(f.side), () =>
             this.selection.pickFace(f.side, f.face),
           ),
         ),
       ...events
         .regions(i)
         .filter((r) => this.bodies[r.side].complete)
-        .map((r) =>
-          textButton(`region ${digits(r.region)}${this.name(r.side)}`, () =>
+        .map((r) => textButton(`region ${digits(r.region)}${this.name(r.side)}`, () =>
             this.selection.pickRegion(r.side, r.region),
           ),
         ),
@@ -536,8 +528,7 @@ export class Panel {
       ["sort", made ? "of pseudo faces alone" : "the body's own", "vertices of pseudo faces are made by caps"],
       [
         "covered by",
-        region === NONE
-          ? "no region: it is on the outermost wrapper"
+        region === NONE ? "no region: it is on the outermost wrapper"
           : textButton(`region ${digits(region)}`, () => this.selection.pickRegion(body.side, region)),
       ],
     ];
@@ -554,8 +545,7 @@ export class Panel {
       ["depth", body.depth(region), "number of steps to the outside, along parents"],
       [
         "parent",
-        parent === NONE
-          ? "the outside"
+        parent === NONE ? "the outside"
           : textButton(digits(parent), () => this.selection.pickRegion(side, parent)),
       ],
       ["lids", body.lids(region).length, "faces that hide the region"],
@@ -570,8 +560,7 @@ export class Panel {
     return [
       ["tests", sum("tests"), `exact comparisons ${of}`],
       ["hits", sum("hits"), `tests that found faces to meet, ${of}`],
-      ["misses", sum("misses"), `tests of disjoint faces, ${of}`],
-      ["contacts", sum("contacts"), of],
+      ["misses", sum("misses"), `tests of disjoint faces, ${of}`], ["contacts", sum("contacts"), of],
     ];
   }
 }
@@ -624,9 +613,7 @@ export class WhyPanel {
     this.row = -1;
     const found = simplices ? explanations.pair(step, simplices) : separation;
     this.now = found && {
-      kind: simplices ? "pair" : "step",
-      key: `${step} ${simplices || ""}`,
-      found,
+      kind: simplices ? "pair" : "step", key: `${step} ${simplices || ""}`, found,
     };
     byId("why").hidden = !simplices && !separation;
     if (simplices) this.showPair(simplices, found);
@@ -648,13 +635,11 @@ export class WhyPanel {
     const { events } = this;
     const names = simplices.map((s, side) => {
       const body = events.bodies[side];
-      return body.complete
-        ? `${body.faceText(body.faceOfSimplex(s))} of ${SIDES[side]}`
+      return body.complete ? `${body.faceText(body.faceOfSimplex(s))} of ${SIDES[side]}`
         : `simplex ${digits(s)} of ${SIDES[side]}`;
     });
     this.title(`Why: ${names.join(", ")}`);
-    byId("why-note").textContent = e
-      ? ""
+    byId("why-note").textContent = e ? ""
       : `${this.explanations.cut || "Not among the pairs that were compared one by one here."} ` +
         "The command below explains it.";
     byId("why-verdict").textContent = e
@@ -739,8 +724,7 @@ export class WhyPanel {
         "pairs of faces",
         e.facePairs > 0
           ? `${digits(e.facePairs)} with overlapping boxes; planes separate ${digits(e.facePairs - e.left)}, ` +
-            `${digits(e.left)} are compared`
-          : "none: the walk did not come so far",
+            `${digits(e.left)} are compared` : "none: the walk did not come so far",
       ],
       ...(e.boxes ? [["nearest boxes", this.boxText(e.boxes)]] : []),
       ...(e.plane
@@ -754,15 +738,10 @@ export class WhyPanel {
     const inside = e.relation !== "separate";
     if (e.plane)
       return `Apart: a plane has all of A on one side and all of B on the other, gap \u2265 ${least(e.plane.gap)}.`;
-    const what = inside
-      ? "No faces intersect; one body is inside the other"
+    const what = inside ? "No faces intersect; one body is inside the other"
       : "Apart, though no plane was found that has one body on each side";
-    const last =
-      e.left > 0
-        ? ", or in faces that planes and tests part"
-        : e.facePairs > 0
-          ? ", or in faces separated by planes"
-          : "";
+    const last = e.left > 0 ? ", or in faces that planes and tests part" : e.facePairs > 0
+          ? ", or in faces separated by planes" : "";
     return `${what}: the traversal ended in pairs of disjoint boxes${last}.`;
   }
 
@@ -907,8 +886,7 @@ export class WorkIcicle {
       row(() => "query"),
       row((o) => o.phase),
       row((o) => (o.outcome ? `${o.phase}: ${o.outcome}` : null)).map((p) => ({
-        ...p,
-        name: outcomes[p.parts[0]].outcome,
+        ...p, name: outcomes[p.parts[0]].outcome,
       })),
     ];
   }
@@ -923,8 +901,7 @@ export class WorkIcicle {
       rows = this.rows((o) => (zoom === null || o.phase === zoom ? o[measure] : 0)),
       shown = rows[0].length ? rows[0][0].value : 0,
       svg = svgElement("svg", {
-        viewBox: `0 0 ${width} ${rows.length * (height + gap)}`,
-        role: "group",
+        viewBox: `0 0 ${width} ${rows.length * (height + gap)}`, role: "group",
         "aria-label": "Parts of the query by their work",
       });
     const all = this.outcomes.reduce((n, o) => n + o[measure], 0);

@@ -93,8 +93,7 @@ export class Body {
   trianglesOf(face) {
     const corners = this.face(face),
       first = this.firstSimplex[face];
-    return Array.from({ length: Math.max(0, corners.length - 2) }, (_, i) =>
-      this.triangles
+    return Array.from({ length: Math.max(0, corners.length - 2) }, (_, i) => this.triangles
         ? this.triangles.subarray(3 * (first + i), 3 * (first + i + 1))
         : [corners[0], corners[i + 1], corners[i + 2]],
     );
@@ -345,8 +344,7 @@ export class Explanations {
     const i = this.none ? undefined : this.numbers.get(Explanations.key(step, simplices));
     if (i === undefined) return null;
     const c = this.columns,
-      part = (ends, values, size = 1) =>
-        values.subarray(size * (i > 0 ? ends[i - 1] : 0), size * ends[i]);
+      part = (ends, values, size = 1) => values.subarray(size * (i > 0 ? ends[i - 1] : 0), size * ends[i]);
     const rows = [...part(c.wayEnd, c.gap)].map((gap, k) => {
       const at = (i > 0 ? c.wayEnd[i - 1] : 0) + k;
       return { nodes: [c.nodeA[at], c.nodeB[at]], gap, axis: this.axes[c.axis[at]], faces: false };
@@ -365,9 +363,7 @@ export class Explanations {
         [0, 1, 2].map((k) => {
           const sign = c.signs[6 * i + first + k];
           return {
-            distance: c.corner[6 * i + first + k],
-            exact: Math.floor(sign / 3) - 1,
-            inDouble: (sign % 3) - 1,
+            distance: c.corner[6 * i + first + k], exact: Math.floor(sign / 3) - 1, inDouble: (sign % 3) - 1,
           };
         }),
       ),
@@ -547,8 +543,7 @@ export const outcomeText = (events, i) => events.outcomes[events.outcome[i]] || 
 /** Returns the position of an event in the run. */
 export function eventPlace(events, i) {
   const event = `event ${digits(events.id(i))}`;
-  return events.firstOfStep.length > 1
-    ? `Step ${digits(events.stepNumber(i))}, ${event}`
+  return events.firstOfStep.length > 1 ? `Step ${digits(events.stepNumber(i))}, ${event}`
     : `E${event.slice(1)}`;
 }
 

@@ -37,24 +37,16 @@ class SceneCamera {
       this.setOrthographic(true);
     }
     this.controls.enableZoom = false; // until the view has the focus: the wheel scrolls the page
-    canvas.addEventListener("focus", () => {
-      this.controls.enableZoom = true;
-    });
-    canvas.addEventListener("blur", () => {
-      this.controls.enableZoom = false;
-    });
+    canvas.addEventListener("focus", () => { this.controls.enableZoom = true; });
+    canvas.addEventListener("blur", () => { this.controls.enableZoom = false; });
     canvas.addEventListener(
       "touchstart",
-      () => {
-        this.controls.enableZoom = true;
-      },
+      () => { this.controls.enableZoom = true; },
       { passive: true, capture: true },
     );
     this.controls.addEventListener("change", changed);
     this.fitted = false; // true after fit(): the view is refitted to a resized window
-    this.controls.addEventListener("start", () => {
-      this.fitted = false;
-    });
+    this.controls.addEventListener("start", () => { this.fitted = false; });
   }
 
   get orthographic() {
@@ -196,11 +188,8 @@ class SceneCamera {
     );
     const world = (v) => v.toArray().map((x, i) => Number((origin[i] + unit * x).toPrecision(9)));
     return {
-      camera: "fixed",
-      projection: this.orthographic ? "orthographic" : "perspective",
-      eye: world(eye),
-      target: world(target),
-      up: this.up.toArray(),
+      camera: "fixed", projection: this.orthographic ? "orthographic" : "perspective", eye: world(eye),
+      target: world(target), up: this.up.toArray(),
     };
   }
 }
@@ -257,8 +246,7 @@ class Picker {
     const real = views.map((v) => v.real);
     if (now.isolate) return view.nearest(x, y, pieces) || view.nearest(x, y, real);
     // A ghost's real faces are picked only if no lids are visible.
-    return now.ghost && lids.length
-      ? view.nearest(x, y, lids)
+    return now.ghost && lids.length ? view.nearest(x, y, lids)
       : view.nearest(x, y, [...pieces, ...lids, ...real]);
   }
 }
@@ -461,11 +449,8 @@ export class SceneView extends BodiesCanvas {
       this.once(`boxes${side}`, boxes, () => view.showBoxes(boxes));
       this.once(
         `pieces${side}`,
-        isolate
-          ? `isolate ${isolate.side} ${isolate.region}`
-          : exploded
-            ? `explode ${explode} ${this.wrappers.version}`
-            : "",
+        isolate ? `isolate ${isolate.side} ${isolate.region}` : exploded
+            ? `explode ${explode} ${this.wrappers.version}` : "",
         () => {
           if (exploded) view.showRegions(this.includedRegions(side), explode, false);
           else if (isolate && isolate.side === side) view.showRegions([isolate.region], 0, true);
@@ -533,30 +518,22 @@ export class SceneView extends BodiesCanvas {
       opacity: 0.85,
       over: true,
     });
-    const refined = events.passes
-      ? events.builtIn(i)
-      : kind === events.REFINE || kind === events.COARSEN
-        ? events.regions(i)
-        : [];
+    const refined = events.passes ? events.builtIn(i) : kind === events.REFINE || kind === events.COARSEN
+        ? events.regions(i) : [];
     const lastly = refined.length ? refined[refined.length - 1].region : -1;
     this.marks.set(
       "refined",
       refined.length ? (events.passes ? `built ${refined.length} ${lastly} ${this.now.by}` : i) : -1,
       refined.flatMap((r) => [...this.bodies[r.side].lids(r.region)].map((face) => ({ side: r.side, face }))),
       {
-        colour: colours.refining,
-        opacity: events.passes && this.now.by === "region" ? 0.25 : 0.5,
-        width: events.passes ? 4 : 2,
-        through: !events.passes,
+        colour: colours.refining, opacity: events.passes && this.now.by === "region" ? 0.25 : 0.5,
+        width: events.passes ? 4 : 2, through: !events.passes,
       },
     );
     if (events.attempts) this.markAttempt();
     const wrong = events.wrong[events.step(i)];
     this.marks.set("wrong", wrong.length ? events.step(i) : -1, this.facesOfPairs(wrong), {
-      colour: colours.wrong,
-      opacity: 0.7,
-      width: 3,
-      over: true,
+      colour: colours.wrong, opacity: 0.7, width: 3, over: true,
     });
     const nodes = events.about(i, "node");
     this.marks.setBoxes("nodes", nodes.length ? i : -1, nodes, colours.underTest);
@@ -564,10 +541,7 @@ export class SceneView extends BodiesCanvas {
     if (events.attempts) this.marks.setPoint("vertex", p && p.vertex !== NONE ? { side: p.side, vertex: p.vertex } : null, colours.selected);
     const picked = this.pickedFaces();
     this.marks.set("picked", p ? `${p.side} ${p.face} ${p.region} ${events.attempts ? picked.map((f) => f.face) : ""}` : "", picked, {
-      colour: colours.selected,
-      opacity: 0.65,
-      width: 2.5,
-      over: p && p.face !== NONE,
+      colour: colours.selected, opacity: 0.65, width: 2.5, over: p && p.face !== NONE,
     });
   }
 
@@ -579,10 +553,7 @@ export class SceneView extends BodiesCanvas {
       covers = attempt && events.kind[i] === events.REGION,
       faces = this.attemptFaces(attempt);
     this.marks.set("attempt", attempt ? `${i} ${faces.length}` : "", faces, {
-      colour: covers ? colours.refining : colours.underTest,
-      opacity: 0.45,
-      width: 3,
-      over: true,
+      colour: covers ? colours.refining : colours.underTest, opacity: 0.45, width: 3, over: true,
     });
     this.marks.setPoint("start", attempt && !covers && !attempt.whole ? { side: 0, vertex: attempt.vertex } : null, colours.underTest);
   }
@@ -615,11 +586,9 @@ export class SceneView extends BodiesCanvas {
     if (!p || this.now.isolate || p.vertex !== NONE) return [];
     // In a construction: its faces on the front now.
     if (this.events.attempts && p.face === NONE && !this.wrappers.included(p.side, p.region, false))
-      return this.events.attempts.ofEvent.has(this.selection.event)
-        ? []
+      return this.events.attempts.ofEvent.has(this.selection.event) ? []
         : [...this.bodies[p.side].floor(p.region)].map((face) => ({ side: p.side, face })).filter((f) => this.wrappers.onBoundary(f.side, f.face));
-    return p.face !== NONE
-      ? [{ side: p.side, face: p.face }]
+    return p.face !== NONE ? [{ side: p.side, face: p.face }]
       : [...this.bodies[p.side].lids(p.region)].map((face) => ({ side: p.side, face }));
   }
 
@@ -644,16 +613,9 @@ export class SceneView extends BodiesCanvas {
       compared = this.comparedFaces();
     const { attempts } = this.events,
       tried = attempts ? this.attemptFaces(attempts.ofEvent.get(event)) : [];
-    const faces = picked
-      ? picked.face !== NONE
-        ? [picked]
-        : picked.vertex !== NONE
+    const faces = picked ? picked.face !== NONE ? [picked] : picked.vertex !== NONE
           ? [...attempts.around(picked.vertex).map((face) => ({ side: picked.side, face })), ...tried]
-          : this.collector(picked)
-      : compared.length
-        ? compared
-        : tried.length
-          ? tried
+          : this.collector(picked) : compared.length ? compared : tried.length ? tried
           : this.events.regions(event).flatMap((r) => this.collector(r));
     this.frame(faces);
   }
@@ -668,8 +630,7 @@ export class SceneView extends BodiesCanvas {
 
   collector({ side, region }) {
     return [...this.bodies[side].lids(region), ...this.bodies[side].floor(region)].map((face) => ({
-      side,
-      face,
+      side, face,
     }));
   }
 }

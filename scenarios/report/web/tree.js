@@ -226,10 +226,8 @@ class TreePage {
       siblings = parent === NONE ? [node] : [...nodes.children(parent)],
       at = siblings.indexOf(node);
     const next = {
-      ArrowUp: parent === NONE ? undefined : parent,
-      ArrowDown: nodes.children(node)[0],
-      ArrowLeft: siblings[at - 1],
-      ArrowRight: siblings[at + 1],
+      ArrowUp: parent === NONE ? undefined : parent, ArrowDown: nodes.children(node)[0],
+      ArrowLeft: siblings[at - 1], ArrowRight: siblings[at + 1],
     }[key];
     if (next !== undefined) this.select(next);
   }
