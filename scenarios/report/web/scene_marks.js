@@ -401,7 +401,7 @@ export class Legend {
     const pale = coloured ? colours.shares.ground : counting ? colours.shares.noValue : 0,
       items = bodies.map((b, side) => [
         mixed(b.dim === 2 ? colours.solid(side) : colours.bodies[side], WHITE, pale),
-        `${bodies.length > 1 ? `${SIDES[side]}: ` : ""}${b.name}${counting ? `, faces without ${now.by}` : ""}`,
+        `${bodies.length > 1 ? `${SIDES[side]}: ` : ""}${b.name}${counting ? ` without ${now.by}` : ""}`,
         pale ? colours.edge(side) : null,
       ]),
       withLids = bodies.filter((_, side) => views[side].lids.mesh.visible && views[side].lidCount);
