@@ -44,8 +44,7 @@ class TraceLoader {
 
   /** Replaces the page's events by those in a trace. Throws if the trace is of another run. */
   take(trace) {
-    const { scene, events } = this,
-      metadata = trace.metadata;
+    const { scene, events } = this, metadata = trace.metadata;
     if (!metadata || metadata.format !== "lrbscope trace") throw new Error("this is no trace of lrbscope's");
     const slices = trace.traceEvents.filter((e) => e.ph === "X" && e.args && e.args.event !== undefined),
       same = metadata.bodies.every((b, i) => scene.bodies[i] && scene.bodies[i].hash === b.hash);
@@ -84,8 +83,7 @@ class TraceReader {
       out = Object.fromEntries(names.map((name) => [name, new Uint32Array(slices.length)])),
       steps = [];
     for (const slice of slices) {
-      const i = slice.args.event,
-        event = this.event(slice);
+      const i = slice.args.event, event = this.event(slice);
       for (const name of names) out[name][i] = event[name];
       if (slice.args["time step"] !== undefined) steps.push([slice.args["time step"], i]);
     }
@@ -106,9 +104,7 @@ class TraceReader {
   }
 
   event(slice) {
-    const { args } = slice,
-      kind = this.kindOf(slice),
-      { a, b } = this.kinds[kind],
+    const { args } = slice, kind = this.kindOf(slice), { a, b } = this.kinds[kind],
       orNone = (n) => (n === undefined ? NONE : n);
     return {
       kind,
@@ -264,10 +260,8 @@ function startScene() {
     selection.listeners.push((what) => {
       if (what === "event") wrappers.seek(selection.event);
     }); // before the listeners that display them
-  const timeline = new Timeline(events, selection),
-    panel = new Panel(events, selection, wrappers);
-  const filter = new EventFilter(),
-    table = new EventTable(events, selection, filter),
+  const timeline = new Timeline(events, selection), panel = new Panel(events, selection, wrappers);
+  const filter = new EventFilter(), table = new EventTable(events, selection, filter),
     form = new FilterForm(events, filter, table);
   const work = new WorkIcicle(scene.work, events, filter, form, selection);
   const why = new WhyPanel(new Explanations(scene.why, events.stepNumbers.slice()), events, selection);
@@ -356,8 +350,7 @@ function openView(scene, selection, wrappers, why) {
 
 /** Marks the events of the selected face or region on the charts. */
 function markAbout(events, selection) {
-  const { picked } = selection,
-    about = [];
+  const { picked } = selection, about = [];
   for (let i = 0; picked && i < events.count; i++) if (concernsPicked(events, i, picked)) about.push(i);
   moment.about = { event: about.map((i) => events.id(i)), step: [...new Set(about.map((i) => events.stepNumber(i)))] };
   tell();

@@ -15,17 +15,14 @@ export class Attempts {
 
   /** Takes the vertices of the patches among the events: {counts: of each patch, vertices}. */
   take({ counts, vertices }) {
-    const { events } = this,
-      vertexCount = this.body.complete ? this.body.vertices.length / 3 : 0;
+    const { events } = this, vertexCount = this.body.complete ? this.body.vertices.length / 3 : 0;
     this.list = []; // {patch, cap, regions: [{event, region}], vertex, vertices, rejected}, events by index
     this.ofEvent = new Map(); // by index of a patch, a cap or a region
     this.made = new Map(); // by region: the event that made it
     const ofPatch = new Map();
-    let patch = 0,
-      first = 0;
+    let patch = 0, first = 0;
     for (let i = 0; i < events.count; i++) {
-      const kind = events.kind[i],
-        cause = events.find(events.cause[i]);
+      const kind = events.kind[i], cause = events.find(events.cause[i]);
       if (kind === events.PATCH) {
         ofPatch.set(i, vertices.subarray(first, first + counts[patch]).filter((v) => v < vertexCount));
         first += counts[patch++];
@@ -135,8 +132,7 @@ export class Attempts {
 
   /** Returns why an attempt was rejected, or that it was not, in plain words. */
   reason(attempt) {
-    const verdict = outcomeText(this.events, attempt.cap),
-      pass = this.events.pass(attempt.cap),
+    const verdict = outcomeText(this.events, attempt.cap), pass = this.events.pass(attempt.cap),
       limit = verdict === "too thick" && pass && pass.limit > 0 ? ` (${short(pass.limit)})` : "";
     return `${this.verdicts[verdict] || ""}${limit}`;
   }
@@ -187,8 +183,7 @@ export class AttemptPanel {
   }
 
   list() {
-    const { picked } = this.selection,
-      { events, here } = this;
+    const { picked } = this.selection, { events, here } = this;
     byId("attempts").hidden = !picked || !this.attempts.body.complete;
     if (byId("attempts").hidden) return;
     const rejected = here.filter((a) => a.rejected).length,
@@ -202,9 +197,7 @@ export class AttemptPanel {
   }
 
   row(attempt) {
-    const { events, attempts } = this,
-      row = element("tr"),
-      pass = events.pass(attempt.cap),
+    const { events, attempts } = this, row = element("tr"), pass = events.pass(attempt.cap),
       cell = (content, numeric, title) => {
         const td = element("td", { class: numeric ? "n" : "", title }, content);
         row.append(td);

@@ -112,8 +112,7 @@ export class FaceMesh {
     this.triangles = this.flat ? 2 * faces.length
       : faces.reduce((n, f) => n + Math.max(0, body.offsets[f + 1] - body.offsets[f] - 2), 0);
     this.faceOf = new Uint32Array(this.triangles); // of each triangle
-    const positions = new Float32Array(9 * this.triangles),
-      normals = new Float32Array(9 * this.triangles);
+    const positions = new Float32Array(9 * this.triangles), normals = new Float32Array(9 * this.triangles);
     let t = 0;
     if (this.flat) faces.forEach((face, k) => this.faceOf.fill(face, 2 * k, 2 * k + 2));
     faces.forEach((face, k) => {
@@ -149,11 +148,9 @@ export class FaceMesh {
   widen(width) {
     if (!this.flat || Math.abs(this.flat.width - width) < 0.1 * width) return;
     this.flat.width = width;
-    const { position, normal } = this.mesh.geometry.attributes,
-      v = this.body.vertices;
+    const { position, normal } = this.mesh.geometry.attributes, v = this.body.vertices;
     this.flat.faces.forEach((face, k) => {
-      const [p, q] = this.body.face(face),
-        shift = this.flat.shifts ? this.flat.shifts[k] : [0, 0, 0],
+      const [p, q] = this.body.face(face), shift = this.flat.shifts ? this.flat.shifts[k] : [0, 0, 0],
         at = (c) => [v[3 * c] + shift[0], v[3 * c + 1] + shift[1]],
         [a, b] = [at(p), at(q)],
         length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1,
@@ -190,8 +187,7 @@ export class FaceMesh {
 
   /** Returns the face and the simplex that a ray hits. */
   at(hit) {
-    const triangle = (hit.face.a / 3) | 0,
-      face = this.faceOf[triangle];
+    const triangle = (hit.face.a / 3) | 0, face = this.faceOf[triangle];
     if (this.flat) return { face, simplex: this.body.firstSimplex[face] };
     let first = triangle;
     while (first > 0 && this.faceOf[first - 1] === face) first--;
@@ -204,18 +200,15 @@ export class FaceMesh {
 
 /** Returns the edges of faces, each once, as pairs of corners; `rim`: only those with a single face. */
 export function edgesOf(body, faces, rim = false) {
-  const vertices = body.vertices.length / 3,
-    keys = [];
+  const vertices = body.vertices.length / 3, keys = [];
   for (const face of faces) {
     const corners = body.face(face);
     for (let i = 0; i < corners.length; i++) {
-      const a = corners[i],
-        b = corners[(i + 1) % corners.length];
+      const a = corners[i], b = corners[(i + 1) % corners.length];
       keys.push(Math.min(a, b) * vertices + Math.max(a, b));
     }
   }
-  const sorted = Float64Array.from(keys).sort(),
-    out = [];
+  const sorted = Float64Array.from(keys).sort(), out = [];
   for (let first = 0, end = 0; first < sorted.length; first = end) {
     while (end < sorted.length && sorted[end] === sorted[first]) end++;
     if (!rim || end - first === 1 || body.dim === 2) out.push(Math.floor(sorted[first] / vertices), sorted[first] % vertices);
@@ -233,8 +226,7 @@ export function discard(group, object) {
 // ---- lines
 /** Returns the geometry of lines, six numbers each, with their lengths, by which they fade. */
 function lineGeometry(ends) {
-  const geometry = new THREE.BufferGeometry(),
-    at = Float32Array.from(ends),
+  const geometry = new THREE.BufferGeometry(), at = Float32Array.from(ends),
     span = new Float32Array(at.length / 3);
   for (let i = 0; i < span.length; i += 2)
     span[i] = span[i + 1] = Math.hypot(at[3 * i] - at[3 * i + 3], at[3 * i + 1] - at[3 * i + 4], at[3 * i + 2] - at[3 * i + 5]);
@@ -274,16 +266,13 @@ function fadingLines(ends, colour, opacity, lens, depthWrite = false) {
 /** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers for each line.
     A line that starts where the one before it ends continues its dashes. */
 export function thickLines(ends, material) {
-  const count = ends.length / 6,
-    at = new Float32Array(12 * count),
-    other = new Float32Array(12 * count),
+  const count = ends.length / 6, at = new Float32Array(12 * count), other = new Float32Array(12 * count),
     side = new Float32Array(4 * count),
     along = new Float32Array(4 * count),
     index = new Uint32Array(6 * count);
   let length = 0;
   for (let l = 0; l < count; l++) {
-    const a = ends.slice(6 * l, 6 * l + 3),
-      b = ends.slice(6 * l + 3, 6 * l + 6);
+    const a = ends.slice(6 * l, 6 * l + 3), b = ends.slice(6 * l + 3, 6 * l + 6);
     if (l === 0 || a.some((x, i) => x !== ends[6 * l - 3 + i])) length = 0;
     const until = length + Math.hypot(...a.map((x, i) => x - b[i]));
     [[a, b, 1], [a, b, -1], [b, a, -1], [b, a, 1]].forEach(([here, there, s], k) => {
@@ -430,8 +419,7 @@ export class FlatFill {
 
   /** Fills the area that these faces bound, provided that they form closed loops. */
   show(faces) {
-    const { vertices } = this.body,
-      closed = this.areLoops(faces),
+    const { vertices } = this.body, closed = this.areLoops(faces),
       segments = closed ? faces.map((f) => this.body.face(f)) : [],
       ends = segments.flatMap(([p, q]) => [p, q]),
       xs = ends.map((v) => vertices[3 * v]),
@@ -503,8 +491,7 @@ export class BodyView {
 
   /** Returns thin lines along edges, pairs of corners. */
   lines(edges, opacity) {
-    const { vertices } = this.body,
-      ends = new Float32Array(3 * edges.length);
+    const { vertices } = this.body, ends = new Float32Array(3 * edges.length);
     edges.forEach((v, i) => ends.set(vertices.subarray(3 * v, 3 * v + 3), 3 * i));
     return this.thin(ends, opacity);
   }
@@ -516,8 +503,7 @@ export class BodyView {
 
   /** Returns the fills of a 2D body: of the solid, and under it, paler, of the wrapper. */
   makeFills() {
-    const { realCount, side } = this.body,
-      colour = this.colours.bodies[side],
+    const { realCount, side } = this.body, colour = this.colours.bodies[side],
       fill = (shade, opacity, place) =>
         new FlatFill(this.body, shade, opacity, 2 * side + place, (0.02 - 0.005 * place) * this.radius);
     const fills = { wrapper: fill(this.colours.lid(side), 0.8, 0), solid: fill(this.colours.solid(side), 0.85, 1) };
@@ -655,8 +641,7 @@ export class BodyView {
 
   /** Shows the lids of the wrapper: its pseudo faces. */
   showLids(onBoundary) {
-    const { realCount, faceCount, dim } = this.body,
-      shown = [];
+    const { realCount, faceCount, dim } = this.body, shown = [];
     this.lids.show(onBoundary);
     for (let f = dim === 2 ? 0 : realCount; f < faceCount; f++) if (onBoundary(f)) shown.push(f);
     if (this.fills) this.fills.wrapper.show(shown);
@@ -687,9 +672,7 @@ export class BodyView {
   /** Shows regions separately, moved outward by a share of their offset; `open`: lids are translucent. */
   showRegions(regions, share, open) {
     this.clearPieces();
-    const solid = { faces: [], shifts: [] },
-      glass = { faces: [], shifts: [] },
-      ends = [];
+    const solid = { faces: [], shifts: [] }, glass = { faces: [], shifts: [] }, ends = [];
     for (const r of regions) {
       const shift = share > 0 ? this.explodeShift(r, share) : [0, 0, 0];
       for (const [list, faces] of [[open ? glass : solid, this.body.lids(r)], [solid, this.body.floor(r)]])

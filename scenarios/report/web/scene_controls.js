@@ -119,8 +119,7 @@ export class Timeline {
   }
   /** Returns the function that moves on by one; null at the end. */
   next() {
-    const what = byId("play-what").value,
-      end = this.lastHere;
+    const what = byId("play-what").value, end = this.lastHere;
     if (what === "step") return this.step + 1 < this.events.firstOfStep.length ? () => this.byStep(1) : null;
     const stops = (i) =>
       what === "pass" ? this.events.kind[i] === this.events.PASS_END : this.events.changesWrapper(i);
@@ -142,8 +141,7 @@ export function toggleHelp() {
 /** `actions`: by KeyboardEvent.key; letters are in lower case, shift is passed on. */
 export function listenToKeys(actions) {
   document.addEventListener("keydown", (e) => {
-    const key = e.key.length === 1 ? e.key.toLowerCase() : e.key,
-      target = e.target;
+    const key = e.key.length === 1 ? e.key.toLowerCase() : e.key, target = e.target;
     if (!actions[key] || e.ctrlKey || e.metaKey || e.altKey) return;
     if (target.tagName === "SELECT" || target.tagName === "TEXTAREA" || target.isContentEditable) return;
     if (
@@ -204,8 +202,7 @@ export class ViewControls {
 
   /** Updates the buttons to the current state. */
   show() {
-    const { now, camera } = this.view,
-      picked = this.selection.picked;
+    const { now, camera } = this.view, picked = this.selection.picked;
     for (const [id, on] of [
       ["ghost", now.ghost], ["lids", now.lids], ["isolate", Boolean(now.isolate)],
       ...(camera.plane ? [] : [["orthographic", camera.orthographic]]), ["proof", now.why],
@@ -231,21 +228,18 @@ export class ViewControls {
   /** Most tested faces lie inside: with counters the bodies become ghosts, until the user makes them
       opaque. */
   colourBy(by) {
-    const was = COUNTERS.includes(this.view.now.by),
-      is = COUNTERS.includes(by);
+    const was = COUNTERS.includes(this.view.now.by), is = COUNTERS.includes(by);
     this.change(was === is ? { by } : { by, ghost: is });
   }
   explode(share) {
-    const { view } = this,
-      { fitted } = view.camera;
+    const { view } = this, { fitted } = view.camera;
     this.change({ explode: Math.max(0, Math.min(1, Number(share.toFixed(2)))), isolate: null });
     view.draw(); // the framed objects must exist
     if (fitted) view.frameAll();
   }
   /** Shows a region alone and fills the view with it; null: everything again, from where it was seen before. */
   isolate(region) {
-    const { view } = this,
-      { now, camera } = view;
+    const { view } = this, { now, camera } = view;
     if (region && !now.isolate) this.seenFrom = { camera: camera.json(), fitted: camera.fitted };
     const ends = !region && now.isolate;
     this.change({ isolate: region });
@@ -281,8 +275,7 @@ export class ViewControls {
   }
 
   keys() {
-    const { view } = this,
-      turn = 0.09;
+    const { view } = this, turn = 0.09;
     const ofSolids = view.camera.plane ? {}
       : {
           o: () => this.orthographic(),

@@ -17,8 +17,7 @@ export class Marks {
     const before = this.shown.get(name);
     if (before && before.key === key) return;
     this.clear(name);
-    const parts = [],
-      facesOf = new Map();
+    const parts = [], facesOf = new Map();
     for (const { side, face } of faces) facesOf.set(side, [...(facesOf.get(side) || []), face]);
     facesOf.forEach((own, side) => {
       const view = this.views[side];
@@ -27,8 +26,7 @@ export class Marks {
         depthWrite: opacity === 1 && !over, depthTest: !over, polygonOffset: true, polygonOffsetFactor: 0,
         polygonOffsetUnits: -2,
       });
-      const strips = new FaceMesh(view.body, own, material),
-        mesh = strips.mesh;
+      const strips = new FaceMesh(view.body, own, material), mesh = strips.mesh;
       mesh.renderOrder = over ? 5 : opacity < 1 ? 3 : 0;
       const rim = thickLines(
         edgesOf(view.body, own, true).flatMap((v) => view.point(v)),
@@ -45,8 +43,7 @@ export class Marks {
 
   /** Shows a vertex, {side, vertex}, as a disc of a colour; null: none. */
   setPoint(name, at, colour) {
-    const key = at ? `${at.side} ${at.vertex}` : "",
-      before = this.shown.get(name);
+    const key = at ? `${at.side} ${at.vertex}` : "", before = this.shown.get(name);
     if (before ? before.key === key : !key) return;
     this.clear(name);
     if (!at) return;
@@ -103,8 +100,7 @@ export class WhyMarks {
   }
 
   draw() {
-    const { view, why } = this,
-      nodes = why.nodes();
+    const { view, why } = this, nodes = why.nodes();
     view.marks.setBoxes("way", nodes.map((n) => n.number).join(" "), nodes, view.colours.selected);
     const key = why.now && view.now.why ? why.now.key : "";
     if (key === this.key) return;
@@ -166,8 +162,7 @@ export class WhyMarks {
   }
 
   addSquare(corners) {
-    const colour = PLANE,
-      geometry = new THREE.BufferGeometry();
+    const colour = PLANE, geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(corners.flat()), 3));
     geometry.setIndex([0, 1, 2, 0, 2, 3]);
     const square = new THREE.Mesh(
@@ -192,9 +187,7 @@ export class WhyMarks {
 /** Returns a square perpendicular to the line between two points, at its midpoint. `half`: from there to
     its corners. */
 function squareBetween(p, q, half) {
-  const a = new THREE.Vector3(...p),
-    b = new THREE.Vector3(...q),
-    n = b.clone().sub(a);
+  const a = new THREE.Vector3(...p), b = new THREE.Vector3(...q), n = b.clone().sub(a);
   if (n.length() === 0) return [p, p, p, p];
   n.normalize();
   const u = new THREE.Vector3(Math.abs(n.x) < 0.6 ? 1 : 0, Math.abs(n.x) < 0.6 ? 0 : 1, 0)
@@ -222,8 +215,7 @@ export class MeasuredMarks {
     Object.assign(this, { view, group: new THREE.Group(), shown: null });
     this.ofStep = new Map(); // by number: a list of {kind, from, to, words}, the first of which has the text
     if (measured) {
-      const ends = unpack(measured.ends),
-        kinds = unpack(measured.kind),
+      const ends = unpack(measured.ends), kinds = unpack(measured.kind),
         at = (i) => new THREE.Vector3(...ends.subarray(i, i + 3));
       unpack(measured.step).forEach((step, i) => {
         if (!this.ofStep.has(step)) this.ofStep.set(step, []);
@@ -263,8 +255,7 @@ export class MeasuredMarks {
 
   /** Writes the length beside the bodies, with a line that leads to the midpoint of the segment. */
   write() {
-    const [label, leader] = ["measured", "leader"].map(byId),
-      { shown, view } = this,
+    const [label, leader] = ["measured", "leader"].map(byId), { shown, view } = this,
       { x: width, y: height } = view.size,
       onScreen = (p) => {
         const at = p.project(view.camera.camera);
@@ -292,9 +283,7 @@ export class MeasuredMarks {
 
 /** Returns the ends of an arrow's lines. */
 function arrowOf(from, to, dim) {
-  const along = to.clone().sub(from),
-    length = along.length(),
-    n = along.clone().normalize(),
+  const along = to.clone().sub(from), length = along.length(), n = along.clone().normalize(),
     across = dim === 2 ? new THREE.Vector3(0, 0, 1).cross(n) : new THREE.Vector3(Math.abs(n.x) < 0.6 ? 1 : 0, Math.abs(n.x) < 0.6 ? 0 : 1, 0).cross(n);
   across.setLength(0.11 * length);
   const sides = [across, across.clone().negate()];
@@ -323,14 +312,12 @@ export class ContactCurves {
   }
 
   draw() {
-    const { view, group } = this,
-      step = view.events.stepNumber(view.selection.event);
+    const { view, group } = this, step = view.events.stepNumber(view.selection.event);
     group.visible = !view.now.isolate && view.now.explode === 0;
     if (step === this.shown) return;
     this.shown = step;
     for (const object of group.children.slice()) discard(group, object);
-    const curves = this.ofStep.get(step) || [],
-      { contact } = view.colours,
+    const curves = this.ofStep.get(step) || [], { contact } = view.colours,
       ends = curves.flatMap((points) => points.slice(1).flatMap((p, i) => [...points[i], ...p])),
       hidden = view.events.dim === 3 ? [[WHITE, 5, 0.5, 0], [contact, 2.2, 0.85, 9]] : [];
     this.count = curves.length;
@@ -377,8 +364,7 @@ export class Legend {
   }
 
   write() {
-    const { css } = Legend,
-      items = [...this.items(), ...Object.values(this.more).flat()],
+    const { css } = Legend, items = [...this.items(), ...Object.values(this.more).flat()],
       text = JSON.stringify(items);
     if (text === this.shown) return;
     this.shown = text;

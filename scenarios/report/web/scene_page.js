@@ -32,8 +32,7 @@ export class Tabs {
       groups.set(tab, [...(groups.get(tab) || []), part]);
     }
     const place = (name) => {
-      const first = TAB_ORDER.indexOf(name),
-        last = LAST_TABS.indexOf(name);
+      const first = TAB_ORDER.indexOf(name), last = LAST_TABS.indexOf(name);
       return first >= 0 ? first : last >= 0 ? 1000 + last : TAB_ORDER.length;
     };
     this.names = [...groups.keys()]
@@ -98,8 +97,7 @@ export class Tabs {
       this.panels.get(other).hidden = !is;
     }
     this.body.scrollTop = this.body.scrollLeft = 0;
-    const { bar } = this,
-      button = this.buttons.get(name || this.names[0]);
+    const { bar } = this, button = this.buttons.get(name || this.names[0]);
     if (button.offsetLeft < bar.scrollLeft || button.offsetLeft + button.offsetWidth > bar.scrollLeft + bar.clientWidth)
       bar.scrollLeft = button.offsetLeft - 24;
     for (const mark of this.marks || []) mark();
@@ -122,8 +120,7 @@ export function explainCells() {
   document.addEventListener("pointerover", (e) => {
     const cell = e.target.closest && e.target.closest("td");
     if (!cell || cell.title || cell.closest(".why")) return;
-    const row = cell.parentElement,
-      head = row.closest("table").tHead?.rows[0].cells[cell.cellIndex];
+    const row = cell.parentElement, head = row.closest("table").tHead?.rows[0].cells[cell.cellIndex];
     if (!head) return;
     const meaning = head.title ? `: ${head.title}` : "",
       first = cell.cellIndex > 0 ? `, ${row.closest("table").tHead.rows[0].cells[0].textContent} ${row.cells[0].textContent}` : "";
@@ -267,8 +264,7 @@ export class PageAddress {
   }
 
   text() {
-    const { events, selection, view, tabs } = this,
-      parts = [`e${events.id(selection.event)}`],
+    const { events, selection, view, tabs } = this, parts = [`e${events.id(selection.event)}`],
       { picked, chosen } = selection;
     if (tabs.shown) parts.push(`tab=${encodeURIComponent(tabs.shown)}`);
     if (picked)
@@ -286,8 +282,7 @@ export class PageAddress {
 
   /** Returns what differs from the view as it opens. */
   layers() {
-    const { now, opened, camera } = this.view,
-      out = [];
+    const { now, opened, camera } = this.view, out = [];
     for (const name of Object.keys(opened)) {
       if (now[name] === opened[name]) continue;
       if (name === "isolate") out.push(`isolate:${SIDES[now.isolate.side]}.${now.isolate.region}`);
@@ -334,8 +329,7 @@ export class PageAddress {
   show(words, controls) {
     const change = { ...this.view.opened };
     for (const word of words) {
-      const [name, text] = word.split(":"),
-        plain = name.replace(/^no-/, "");
+      const [name, text] = word.split(":"), plain = name.replace(/^no-/, "");
       const isolate = /^([AB])\.(\d+)$/.exec(text || "");
       if (name === "isolate" && isolate) change.isolate = { side: SIDES.indexOf(isolate[1]), region: Number(isolate[2]) };
       else if (typeof change[plain] === "boolean") change[plain] = plain === name;

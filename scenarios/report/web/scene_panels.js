@@ -79,8 +79,7 @@ export class Selection {
 
   /** `simplex`: the selected one of the face; by default the first. */
   pickFace(side, face, simplex) {
-    const body = this.events.bodies[side],
-      meant = simplex === undefined ? body.firstSimplex[face] : simplex;
+    const body = this.events.bodies[side], meant = simplex === undefined ? body.firstSimplex[face] : simplex;
     this.chosen = this.chosen.map((s, i) => (i !== side ? s : body.isReal(face) ? meant : NONE));
     this.pickOnly({ side, face, region: body.regionOf(face) });
   }
@@ -172,16 +171,14 @@ export class EventFilter {
 
   /** Returns the indices of the events that pass. */
   apply(events) {
-    const out = new Uint32Array(events.count),
-      tests = this.tests(events);
+    const out = new Uint32Array(events.count), tests = this.tests(events);
     let n = 0;
     for (let i = 0; i < events.count; i++) if (tests.every((test) => test(i))) out[n++] = i;
     return out.subarray(0, n);
   }
 
   tests(events) {
-    const out = [],
-      { side, region, leastLevel, mostLevel, pair } = this;
+    const out = [], { side, region, leastLevel, mostLevel, pair } = this;
     if (this.kind >= 0) out.push((i) => events.kind[i] === this.kind);
     if (this.work) out.push((i) => this.work.parts.has(events.work[i]));
     if (this.place) out.push((i) => this.place.events.has(i));
@@ -328,9 +325,7 @@ export class EventTable {
   }
 
   line(row) {
-    const i = this.rows[row],
-      events = this.events,
-      level = events.level(i),
+    const i = this.rows[row], events = this.events, level = events.level(i),
       selected = i === this.selection.event,
       line = element("div", { class: "row", role: "row", "aria-rowindex": row + 1, "aria-selected": selected });
     line.classList.toggle("concerned", concernsPicked(events, i, this.selection.picked));
@@ -365,9 +360,7 @@ export class FilterForm {
 
   /** Lists the kinds of events of the run. */
   listKinds() {
-    const kind = byId("filter-kind"),
-      present = new Set(this.events.kind),
-      chosen = kind.value;
+    const kind = byId("filter-kind"), present = new Set(this.events.kind), chosen = kind.value;
     kind.replaceChildren(new Option("all", -1));
     this.events.kinds.forEach((k, i) => {
       if (present.has(i)) kind.append(new Option(k.name, i));
@@ -440,10 +433,7 @@ export class Panel {
   }
 
   showEvent() {
-    const i = this.selection.event,
-      events = this.events,
-      kind = events.kindOf(i),
-      level = events.level(i),
+    const i = this.selection.event, events = this.events, kind = events.kindOf(i), level = events.level(i),
       cause = events.find(events.cause[i]);
     byId("event-title").textContent = eventPlace(events, i);
     const rows = [["kind", kind.name], ["what", eventText(events, i)]];
@@ -499,8 +489,7 @@ export class Panel {
     byId("picked").hidden = !picked;
     if (!picked) return;
     document.querySelector(".panel").scrollTop = 0;
-    const body = this.bodies[picked.side],
-      hasFace = picked.face !== NONE;
+    const body = this.bodies[picked.side], hasFace = picked.face !== NONE;
     const name = placeText(body, picked);
     byId("picked-title").textContent = name[0].toUpperCase() + name.slice(1) + this.name(picked.side);
     fillList(byId("picked-facts"), [
@@ -537,8 +526,7 @@ export class Panel {
   regionRows(body, region) {
     if (this.events.engine) return [];
     if (region === NONE) return [["region", "none hides it"]];
-    const parent = body.parent[region],
-      side = body.side;
+    const parent = body.parent[region], side = body.side;
     return [
       ["region", textButton(digits(region), () => this.selection.pickRegion(side, region))],
       ["layer", body.layer[region], "pass of the builder that made the region; 0 lies on the solid"],
@@ -595,8 +583,7 @@ export class WhyPanel {
 
   /** Returns the two simplices to be explained; null: none. */
   requested() {
-    const { events, selection } = this,
-      chosen = selection.chosen;
+    const { events, selection } = this, chosen = selection.chosen;
     if (chosen.every((s) => s !== NONE)) return chosen;
     const test = events.test(selection.event);
     if (test < 0) return null;
@@ -606,8 +593,7 @@ export class WhyPanel {
   }
 
   show() {
-    const { events, selection, explanations } = this,
-      step = events.stepNumber(selection.event),
+    const { events, selection, explanations } = this, step = events.stepNumber(selection.event),
       simplices = this.requested(),
       separation = simplices ? null : explanations.step(step);
     this.row = -1;
@@ -687,8 +673,7 @@ export class WhyPanel {
   /** The regions that hide the faces, from the outside inward. */
   showRegions(simplices) {
     const lines = simplices.map((s, side) => {
-      const body = this.events.bodies[side],
-        line = element("p");
+      const body = this.events.bodies[side], line = element("p");
       if (!body.complete) return line;
       const regions = [];
       for (let r = body.outer[body.faceOfSimplex(s)]; r !== NONE; r = body.parent[r]) regions.unshift(r);
@@ -872,8 +857,7 @@ export class WorkIcicle {
       const out = [];
       let from = 0;
       outcomes.forEach((o, i) => {
-        const name = nameOf(o),
-          last = out.at(-1);
+        const name = nameOf(o), last = out.at(-1);
         if (last && last.key === name) {
           last.value += wide(o);
           last.parts.push(i);
@@ -893,11 +877,8 @@ export class WorkIcicle {
 
   draw() {
     this.shownStep = this.events.stepNumber(this.selection.event);
-    const width = Math.max(240, this.box.clientWidth),
-      height = 30,
-      gap = 2;
-    const measure = byId("work-measure").value,
-      { zoom } = this,
+    const width = Math.max(240, this.box.clientWidth), height = 30, gap = 2;
+    const measure = byId("work-measure").value, { zoom } = this,
       rows = this.rows((o) => (zoom === null || o.phase === zoom ? o[measure] : 0)),
       shown = rows[0].length ? rows[0][0].value : 0,
       svg = svgElement("svg", {
@@ -908,8 +889,7 @@ export class WorkIcicle {
     rows.forEach((row, depth) => {
       for (const part of row) {
         if (!(part.value > 0)) continue;
-        const x = (part.from / shown) * width,
-          w = Math.max(1.5, (part.value / shown) * width - gap);
+        const x = (part.from / shown) * width, w = Math.max(1.5, (part.value / shown) * width - gap);
         const first = this.outcomes[part.parts[0]],
           colour = depth === 2 || (depth === 1 && !first.outcome) ? workSort(first).colour : "";
         svg.append(this.part(depth === 0 ? { ...part, value: all } : part, all, { x, y: depth * (height + gap), w, height, colour, depth }));
@@ -981,8 +961,7 @@ export class RowLinks {
   }
 
   take(row) {
-    const [sort, ...numbers] = row.dataset.to.split(" "),
-      link = { row, sort, numbers: numbers.map(Number) };
+    const [sort, ...numbers] = row.dataset.to.split(" "), link = { row, sort, numbers: numbers.map(Number) };
     if (sort === "region" && !this.events.bodies[link.numbers[0]].complete) return;
     if (sort === "boxes" && !this.controls) return;
     linkRow(row, () => this.follow(link));

@@ -5,19 +5,15 @@ export const NONE = 0xffffffff;
 
 /** Returns a Float32Array, or a Uint32Array in which NONE encodes kNull. */
 export function unpack(text) {
-  const raw = atob(text.slice(3)),
-    size = Number(text[1]),
-    count = raw.length / size;
+  const raw = atob(text.slice(3)), size = Number(text[1]), count = raw.length / size;
   if (text[0] === "f") {
     const bytes = new Uint8Array(raw.length);
     for (let i = 0; i < raw.length; i++) bytes[i] = raw.charCodeAt(i);
-    const view = new DataView(bytes.buffer),
-      out = new Float32Array(count);
+    const view = new DataView(bytes.buffer), out = new Float32Array(count);
     for (let i = 0; i < count; i++) out[i] = view.getFloat32(4 * i, true);
     return out;
   }
-  const out = new Uint32Array(count),
-    none = size === 4 ? NONE : 256 ** size - 1;
+  const out = new Uint32Array(count), none = size === 4 ? NONE : 256 ** size - 1;
   for (let i = 0; i < count; i++) {
     let n = 0;
     for (let k = size; k-- > 0;) n = n * 256 + raw.charCodeAt(i * size + k);
@@ -28,8 +24,7 @@ export function unpack(text) {
 
 /** Returns the largest index whose value is at most `value`, in an ascending array; -1: none. */
 export function lastAtMost(ascending, value) {
-  let low = 0,
-    high = ascending.length;
+  let low = 0, high = ascending.length;
   while (low < high) {
     const midpoint = (low + high) >> 1;
     if (ascending[midpoint] <= value) low = midpoint + 1;
@@ -91,8 +86,7 @@ export class Body {
   }
   /** Returns the corners of the triangles of a face (not 2D). */
   trianglesOf(face) {
-    const corners = this.face(face),
-      first = this.firstSimplex[face];
+    const corners = this.face(face), first = this.firstSimplex[face];
     return Array.from({ length: Math.max(0, corners.length - 2) }, (_, i) => this.triangles
         ? this.triangles.subarray(3 * (first + i), 3 * (first + i + 1))
         : [corners[0], corners[i + 1], corners[i + 2]],
@@ -128,8 +122,7 @@ export function grouped(values, groups) {
   const offsets = new Uint32Array(groups + 1);
   for (const v of values) if (v !== NONE) offsets[v + 1]++;
   for (let g = 0; g < groups; g++) offsets[g + 1] += offsets[g];
-  const members = new Uint32Array(offsets[groups]),
-    next = offsets.slice();
+  const members = new Uint32Array(offsets[groups]), next = offsets.slice();
   values.forEach((v, i) => {
     if (v !== NONE) members[next[v]++] = i;
   });
@@ -231,8 +224,7 @@ export class Events {
 
   /** Returns the elements of one sort that an event concerns: [{side, number}]. */
   about(i, sort) {
-    const kind = this.kindOf(i),
-      out = [];
+    const kind = this.kindOf(i), out = [];
     for (const [r, number] of [[kind.a, this.a[i]], [kind.b, this.b[i]]])
       if (r.sort === sort && number !== NONE) out.push({ side: r.side >= 0 ? r.side : this.side[i], number });
     return out;
@@ -261,8 +253,7 @@ export class Events {
   }
   /** Returns the regions that a construction has made so far in the pass of an event: [{side, region}]. */
   builtIn(i) {
-    const pass = this.pass(i),
-      out = [];
+    const pass = this.pass(i), out = [];
     for (let k = pass ? this.from(pass.first) : i + 1; k <= i; k++)
       if (this.kind[k] === this.REGION) out.push({ side: 0, region: this.a[k] });
     return out;
@@ -279,8 +270,7 @@ export class Events {
     step; else the last contact of the step that has most; without contact, the end of the step with most events; of one
     body, the change halfway. */
 export function tellingEvent(events) {
-  const { kind, firstOfStep, bodies, wrong, CONTACT } = events,
-    steps = [...firstOfStep.keys()],
+  const { kind, firstOfStep, bodies, wrong, CONTACT } = events, steps = [...firstOfStep.keys()],
     all = [...kind.keys()],
     end = (step) => events.endOfStep(step) - 1,
     most = (count) => steps.reduce((p, q) => (count[q] > count[p] ? q : p), 0);
@@ -410,8 +400,7 @@ export class Wrappers {
     return cell === NONE ? solid : !this.excluded[side][cell];
   }
   onBoundary(side, face) {
-    const body = this.bodies[side],
-      inFront = this.included(side, body.outer[face], false);
+    const body = this.bodies[side], inFront = this.included(side, body.outer[face], false);
     if (this.byFace) return !inFront && (body.isReal(face) || !this.discarded[side][face]);
     return this.included(side, body.inner[face], true) !== inFront;
   }
@@ -427,8 +416,7 @@ export class Wrappers {
   }
 
   apply(event) {
-    const side = this.events.side[event],
-      region = this.events.a[event];
+    const side = this.events.side[event], region = this.events.a[event];
     const before = this.visibleOf(side, region);
     if (this.events.kind[event] !== this.events.REFINE) this.coarsen(side, region);
     else this.refine(side, region, this.byFace ? this.refinedFace(event, side, region) : -1);
@@ -472,10 +460,7 @@ const relationText = (name) =>
 
 /** Describes the elements that an event concerns. */
 export function eventText(events, i) {
-  const two = events.bodies.length > 1,
-    kind = events.kind[i],
-    a = events.a[i],
-    b = events.b[i];
+  const two = events.bodies.length > 1, kind = events.kind[i], a = events.a[i], b = events.b[i];
   const side = two ? ` of ${SIDES[events.side[i]]}` : "";
   if (events.passes) return builtText(events, i);
   if (kind === events.STEP) return firstWrapperText(events.bodies);
@@ -517,8 +502,7 @@ export function sizeText(bodies, sizes) {
 
 /** Describes an event of a construction. */
 function builtText(events, i) {
-  const a = events.a[i],
-    b = events.b[i];
+  const a = events.a[i], b = events.b[i];
   switch (events.kind[i]) {
     case events.STEP:
       return "the body";

@@ -78,8 +78,7 @@ class SceneCamera {
   lookAt(centre, radius) {
     this.fitted = false;
     const way = this.camera.position.clone().sub(this.controls.target);
-    const least = Math.min(1, this.aspect),
-      half = FIELD / 2;
+    const least = Math.min(1, this.aspect), half = FIELD / 2;
     const d = radius / Math.sin(Math.atan(Math.tan(half) * least));
     this.controls.target.copy(centre);
     this.camera.position.copy(centre).addScaledVector(way.normalize(), d);
@@ -94,8 +93,7 @@ class SceneCamera {
     const out = (
       from ? new THREE.Vector3(...from) : this.camera.position.clone().sub(this.controls.target)
     ).normalize();
-    const right = this.up.clone().cross(out).normalize(),
-      up = out.clone().cross(right),
+    const right = this.up.clone().cross(out).normalize(), up = out.clone().cross(right),
       slopeY = 0.94 * Math.tan(FIELD / 2),
       slopeX = slopeY * this.aspect, // the other axis is free
       most = { right: -Infinity, left: -Infinity, top: -Infinity, bottom: -Infinity, near: -Infinity, far: Infinity };
@@ -148,8 +146,7 @@ class SceneCamera {
   }
 
   setOrthographic(on) {
-    const half = this.halfHeight,
-      next = on ? this.flat : this.perspective;
+    const half = this.halfHeight, next = on ? this.flat : this.perspective;
     next.position.copy(this.camera.position);
     if (!on)
       next.position
@@ -177,8 +174,7 @@ class SceneCamera {
 
   /** Returns the camera as a view of a scenario's frames ("views", scenario.schema.json). */
   json() {
-    const { origin, unit } = this.frame,
-      target = this.controls.target;
+    const { origin, unit } = this.frame, target = this.controls.target;
     // An orthographic camera of a scenario shows as much as a perspective one would at its target.
     const eye = target.clone().add(
       this.camera.position
@@ -223,9 +219,7 @@ class Picker {
 
   /** Returns the corner of a face next to a point of the screen, at most a third of an edge away; NONE: none. */
   vertexNear({ side, face }, x, y) {
-    const { view } = this,
-      body = view.bodies[side],
-      box = view.canvas.getBoundingClientRect(),
+    const { view } = this, body = view.bodies[side], box = view.canvas.getBoundingClientRect(),
       most = 9; // pixels
     const corners = [...body.face(face)].map((vertex) => {
       const at = view.views[side].toWorld(view.views[side].point(vertex)).project(view.camera.camera);
@@ -239,8 +233,7 @@ class Picker {
 
   /** Returns the face under a point of the screen, {side, face, simplex}; `through`: lids are ignored. */
   under(x, y, through = false) {
-    const { view } = this,
-      { views, now } = view;
+    const { view } = this, { views, now } = view;
     const pieces = views.flatMap((v) => v.pieces);
     const lids = through ? [] : views.filter((v) => v.lids.mesh.visible).map((v) => v.lids);
     const real = views.map((v) => v.real);
@@ -296,8 +289,7 @@ export class BodiesCanvas {
   redraw = oncePerFrame(() => this.draw());
 
   render() {
-    const { camera, lens } = this,
-      { radius } = this.reach();
+    const { camera, lens } = this, { radius } = this.reach();
     lens.pixel.value = (2 * camera.halfHeight) / this.size.y;
     lens.depths.set(camera.distance - radius, 2 * radius);
     if (camera.plane) for (const part of [...this.views, this.marks]) part.widen(lens.pixel.value);
@@ -397,17 +389,14 @@ export class SceneView extends BodiesCanvas {
 
   /** Fits the view again if a step has bodies outside of it, unless the user has moved it. */
   keepInView() {
-    const { camera } = this,
-      ends = this.extremes();
+    const { camera } = this, ends = this.extremes();
     const isOut = (p) => [p.x, p.y].some((x) => Math.abs(x) > 1);
     if (camera.fitted && ends.some((p) => isOut(p.clone().project(camera.camera)))) camera.fit(ends);
   }
 
   /** Draws a ring around the faces that the event compares, if they are too small to be noticed. */
   circle() {
-    const faces = this.comparedFaces(),
-      ring = byId("ring"),
-      ball = this.ballOfFaces(faces);
+    const faces = this.comparedFaces(), ring = byId("ring"), ball = this.ballOfFaces(faces);
     const radius = (ball.radius * this.size.y) / (2 * this.camera.halfHeight),
       at = ball.centre.project(this.camera.camera);
     ring.hidden = !faces.length || radius > 18 || Math.abs(at.x) > 1 || Math.abs(at.y) > 1 || at.z > 1;
@@ -433,8 +422,7 @@ export class SceneView extends BodiesCanvas {
 
   /** Shows or hides parts of the bodies. */
   shape() {
-    const { ghost, explode, isolate, lids, boxes, by, per } = this.now,
-      exploded = explode > 0 && !isolate;
+    const { ghost, explode, isolate, lids, boxes, by, per } = this.now, exploded = explode > 0 && !isolate;
     // The faces that were tested, which lids would hide.
     const insideOnly = ghost && per === "face" && COUNTERS.includes(by);
     this.views.forEach((view, side) => {
@@ -468,8 +456,7 @@ export class SceneView extends BodiesCanvas {
   }
 
   paint() {
-    const { by, per, scope } = this.now,
-      counter = COUNTERS.includes(by),
+    const { by, per, scope } = this.now, counter = COUNTERS.includes(by),
       newest = by === "region" ? this.newestLayer() : 0;
     this.once(
       "paint",
@@ -508,9 +495,7 @@ export class SceneView extends BodiesCanvas {
 
   // -- highlights
   mark() {
-    const { events, colours } = this,
-      i = this.selection.event,
-      kind = events.kind[i],
+    const { events, colours } = this, i = this.selection.event, kind = events.kind[i],
       compared = this.comparedFaces();
     const key = compared.map((f) => f.face);
     this.marks.set("tested", `${key} ${kind === events.CONTACT}`, compared, {
@@ -547,9 +532,7 @@ export class SceneView extends BodiesCanvas {
 
   /** Shows the attempt of the event: its patch on the front with the start vertex, or the lids that cover it. */
   markAttempt() {
-    const { events, colours } = this,
-      i = this.selection.event,
-      attempt = events.attempts.ofEvent.get(i),
+    const { events, colours } = this, i = this.selection.event, attempt = events.attempts.ofEvent.get(i),
       covers = attempt && events.kind[i] === events.REGION,
       faces = this.attemptFaces(attempt);
     this.marks.set("attempt", attempt ? `${i} ${faces.length}` : "", faces, {
@@ -609,10 +592,8 @@ export class SceneView extends BodiesCanvas {
 
   /** Frames the selection, else the elements of the event, else everything. */
   frameSelection() {
-    const { picked, event } = this.selection,
-      compared = this.comparedFaces();
-    const { attempts } = this.events,
-      tried = attempts ? this.attemptFaces(attempts.ofEvent.get(event)) : [];
+    const { picked, event } = this.selection, compared = this.comparedFaces();
+    const { attempts } = this.events, tried = attempts ? this.attemptFaces(attempts.ofEvent.get(event)) : [];
     const faces = picked ? picked.face !== NONE ? [picked] : picked.vertex !== NONE
           ? [...attempts.around(picked.vertex).map((face) => ({ side: picked.side, face })), ...tried]
           : this.collector(picked) : compared.length ? compared : tried.length ? tried

@@ -37,8 +37,7 @@ function clipped(polygon, w, offset) {
   const out = [],
     height = (p) => w[0] * p[0] + w[1] * p[1] + w[2] * p[2] - offset;
   polygon.forEach((p, i) => {
-    const q = polygon[(i + 1) % polygon.length],
-      [a, b] = [height(p), height(q)];
+    const q = polygon[(i + 1) % polygon.length], [a, b] = [height(p), height(q)];
     if (a <= 0) out.push(p);
     if (a < 0 !== b < 0 && a !== b) out.push(mixed(p, q, a / (a - b)));
   });
@@ -90,8 +89,7 @@ class TreeView extends BodiesCanvas {
       `others`: the nodes whose volumes are shown, too. */
   show(node, kinds, others, alone) {
     this.node = node;
-    const { colours } = this,
-      [view] = this.views,
+    const { colours } = this, [view] = this.views,
       shades = [mixed(colours.bodies[0], WHITE, colours.shares.ground), colours.bodies[1], colours.bodies[0]];
     view.paint({ of: (_, face) => shades[kinds[face]] }, 0);
     view.real.show((face) => !alone || kinds[face] > 0);
@@ -163,8 +161,7 @@ class TreePage {
   }
 
   selectId(id) {
-    const node = this.nodes.indexOf.get(String(id).trim()),
-      known = node !== undefined;
+    const node = this.nodes.indexOf.get(String(id).trim()), known = node !== undefined;
     byId("node-state").textContent = known ? "" : this.nodes.all ? "no such node below the root" : "not on this page, which has the nodes nearest to the root";
     if (known) this.select(node);
   }
@@ -193,9 +190,7 @@ class TreePage {
       const title = `Depth ${nodes.depth[other]}, ${faces(nodes.last[other] - nodes.first[other])}`;
       return textButton(text, () => this.select(other), title);
     };
-    const parent = nodes.parent[node],
-      children = [...nodes.children(node)],
-      most = 12;
+    const parent = nodes.parent[node], children = [...nodes.children(node)], most = 12;
     byId("node-near").replaceChildren(
       ...(parent === NONE ? [] : [link(parent, `↑ ${nodes.ids[parent]}`)]),
       ...children.slice(0, most).map((child) => link(child, `↓ ${nodes.ids[child]}`)),
@@ -221,8 +216,7 @@ class TreePage {
 
   /** Goes to the parent, the first child, or a sibling. */
   go(key) {
-    const { nodes, node } = this,
-      parent = nodes.parent[node],
+    const { nodes, node } = this, parent = nodes.parent[node],
       siblings = parent === NONE ? [node] : [...nodes.children(parent)],
       at = siblings.indexOf(node);
     const next = {
