@@ -89,7 +89,6 @@ export class Tabs {
     this.shown = name;
     byId("scene").classList.toggle("open", name !== "");
     this.taller.hidden = this.body.hidden = name === "";
-    if (["Frames", "Proof"].includes(name) && !this.tall) this.toggleHeight(); // pictures
     for (const [other, button] of this.buttons) {
       const is = other === name;
       button.setAttribute("aria-selected", is);
