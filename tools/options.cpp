@@ -30,7 +30,7 @@ void add_recursion(App& app, Target& recursion, const std::string& usual) {
   add_choice<Recursion>(
       app, option_of(&CollideRequest::recursion), recursion,
       "complete: never misses a contact; paper, paper_strict, paper_wrapper: the paper's algorithm, which "
-      "can miss contacts [" +
+      "can miss contacts; paper_boxes, paper_wrapper_boxes: the same with boxes, in fewer tests [" +
           usual + "]");
 }
 

@@ -13,15 +13,21 @@
 ///   The floor of a refined region is tested again when another region of the other body intersects its lids.
 /// - Recursion::paper_strict: the floor of a region is tested only when the region is first refined, against
 ///   the new faces (or the real face) of the other body, and never again.
-/// - Recursion::paper_wrapper: the new faces are tested against the whole current wrapper of the other body.
-/// A
-///   pair is tested if both faces are still part of their wrappers.
+/// - Recursion::paper_wrapper: the new faces are tested against the whole current wrapper of the other
+///   body. A pair is tested if both faces are still part of their wrappers.
+///
+/// Two forms with a box around each floor, in which only the larger of two regions is refined, serve as
+/// queries on LRB-reps with small regions (BuildOptions::max_lids); see test_floors():
+/// - Recursion::paper_boxes: its floor is tested against one list of faces of the other body.
+/// - Recursion::paper_wrapper_boxes: against the whole current wrapper of the other body.
 
+#include <array>
 #include <deque>
 #include <set>
 #include <span>
 #include <vector>
 
+#include "engine/collide/boxed_floors.hpp"
 #include "engine/collide/query_context.hpp"
 
 namespace lrb {
@@ -36,7 +42,15 @@ class PaperQuery {
 
   void run() {
     const Faces as = ctx_[Side::a].rep().outermost_faces(), bs = ctx_[Side::b].rep().outermost_faces();
-    request_.recursion == Recursion::paper_wrapper ? test_wrappers(as, bs) : test_all(as, bs);
+    switch (request_.recursion) {
+      case Recursion::paper_boxes:
+      case Recursion::paper_wrapper_boxes:
+        return test_floors();
+      case Recursion::paper_wrapper:
+        return test_wrappers(as, bs);
+      default:
+        return test_all(as, bs);
+    }
   }
 
  private:
@@ -120,6 +134,67 @@ class PaperQuery {
           add(Side::a, new_a, new_b);
           wrapper[0].insert(new_a.begin(), new_a.end());
           wrapper[1].insert(new_b.begin(), new_b.end());
+        }
+    }
+  }
+
+  /// Tests floors against floors; number 0 is the outermost wrapper. Of each, only the faces that may reach
+  /// the other's box are tested. Of the regions behind two lids that intersect, the larger one is refined.
+  /// - paper_boxes: its floor is tested against the floor with the other lid (or real face). The tests depend
+  ///   on no wrapper, only on the two faces.
+  /// - paper_wrapper_boxes: its floor is tested against all floors of the other wrapper, and lids of refined
+  ///   regions are skipped.
+  void test_floors() {
+    const bool whole = request_.recursion == Recursion::paper_wrapper_boxes;
+    const UnitCube cube = cube_around(ctx_);
+    BoxedFloors floors[2] = {{ctx_[Side::a], cube}, {ctx_[Side::b], cube}};
+    std::vector<std::uint32_t> shown[2] = {{0}, {0}};  // the floors of refined regions, in order
+    std::deque<std::array<std::uint32_t, 2>> pairs = {{0, 0}};
+    first_visit(kRegionRegion, 0, 0);
+    const auto add = [&](std::uint32_t a, std::uint32_t b) {
+      if (first_visit(kRegionRegion, a, b)) pairs.push_back({a, b});
+    };
+    const auto is_used = [&](Side side, FaceId f) { return !whole || ctx_[side].wrapper->on_boundary(f); };
+    // The number of the floor that would replace a lid; 0 for a real face.
+    const auto beneath = [&](Side side, FaceId f) {
+      const LrbRep& rep = ctx_[side].rep();
+      return rep.is_real(f) ? 0 : floors[static_cast<int>(side)].number_of(rep.inner_cell(f).as_region());
+    };
+    const auto resolve_pair = [&](std::array<std::uint32_t, 2> pair, FaceId fa, FaceId fb) {
+      const std::uint32_t under[2] = {beneath(Side::a, fa), beneath(Side::b, fb)};
+      if (under[0] == 0 && under[1] == 0) {
+        record(fa, fb);
+        done_ = request_.mode != Mode::all_pairs;
+        return;
+      }
+      const bool of_a =
+          under[0] != 0 && (under[1] == 0 || floors[0].size(under[0]) >= floors[1].size(under[1]));
+      const int side = of_a ? 0 : 1;
+      const bool is_new = refine(of_a ? Side::a : Side::b, of_a ? fa : fb);
+      if (!whole) {
+        pair[static_cast<std::size_t>(side)] = under[side];
+        add(pair[0], pair[1]);
+      } else if (is_new) {
+        for (const std::uint32_t other : shown[1 - side]) of_a ? add(under[0], other) : add(other, under[1]);
+        shown[side].push_back(under[side]);
+      }
+    };
+    std::uint64_t& tests = result_.counters.box_tests;
+    for (; !pairs.empty(); pairs.pop_front()) {
+      const auto [a, b] = pairs.front();
+      ++tests;
+      const OrientedBox box_a = floors[0][a].box, box_b = floors[1][b].box;
+      if (proven_disjoint(box_a, box_b)) continue;
+      const auto as = floors[0].reaching(
+          a, box_b, [&](FaceId f) { return is_used(Side::a, f); }, tests);
+      if (as.empty()) continue;
+      const auto bs = floors[1].reaching(
+          b, box_a, [&](FaceId f) { return is_used(Side::b, f); }, tests);
+      for (const FaceId fa : as)
+        for (const FaceId fb : bs) {
+          if (!is_used(Side::a, fa) || !is_used(Side::b, fb) || !faces_meet(fa, fb)) continue;
+          resolve_pair({a, b}, fa, fb);
+          if (done_) return;
         }
     }
   }

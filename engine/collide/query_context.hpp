@@ -266,7 +266,8 @@ class QueryContext {
   AffineTerms affine;  ///< of the current kernel, if its map is not rigid
   PairOrder pair_order;
   ContactBuffers contact;
-  std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region, face x region, region x face
+  std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region (boxes: floor x floor), face x
+                                                 ///< region, region x face
 
   QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
   bool has_threads() const { return workers != nullptr && workers->count() > 1; }

@@ -494,7 +494,8 @@ TEST_CASE(
   const LrbRep a = strips(0), b = strips(1);
   const auto at = [](double x) { return Pose::translation({x, 0, 0.125}); };
   for (const Recursion recursion :
-       {Recursion::complete, Recursion::paper, Recursion::paper_strict, Recursion::paper_wrapper}) {
+       {Recursion::complete, Recursion::paper, Recursion::paper_strict, Recursion::paper_wrapper,
+        Recursion::paper_boxes, Recursion::paper_wrapper_boxes}) {
     CHECK(collide(a, {}, b, at(0), {.recursion = recursion, .max_pairs = kPairs}).pairs.size() == kPairs);
     CHECK_THROWS_WITH_AS(collide(a, {}, b, at(0), {.recursion = recursion, .max_pairs = kPairs - 1}),
                          doctest::Contains("max_pairs; raise it (--max-pairs)"), InputError);

@@ -52,7 +52,8 @@ TEST_CASE(
   const CollideResult complete = ask(a, pebble, Pose{}, Recursion::complete);
   CHECK(complete.relation == Relation::crossing);
   CHECK(complete.opened[0] == std::vector<RegionId>{0});
-  for (const Recursion recursion : {Recursion::paper, Recursion::paper_strict, Recursion::paper_wrapper}) {
+  for (const Recursion recursion : {Recursion::paper, Recursion::paper_strict, Recursion::paper_wrapper,
+                                    Recursion::paper_boxes, Recursion::paper_wrapper_boxes}) {
     const CollideResult paper = ask(a, pebble, Pose{}, recursion);
     CHECK(paper.pairs.empty());
     CHECK(paper.counters.refinements == 0);
@@ -63,13 +64,18 @@ TEST_CASE(
     "the readings of the paper find more, the more faces they test new ones against, and no false pair") {
   shapes::RandomEngine random(4);
   const LrbRep a = shapes::dented_box();
-  std::size_t strict_total = 0, paper_total = 0, wrapper_total = 0, complete_total = 0;
+  std::size_t strict_total = 0, paper_total = 0, wrapper_total = 0, boxes_total = 0, complete_total = 0;
   for (int i = 0; i < 200; ++i) {
     const Pose p = shapes::random_pose(random, a, a, shapes::uniform(random, 0.3, 0.9));
     const auto complete = ask(a, a, p, Recursion::complete).pairs;
     const auto paper = ask(a, a, p, Recursion::paper).pairs;
     const auto strict = ask(a, a, p, Recursion::paper_strict).pairs;
     const auto wrapper = ask(a, a, p, Recursion::paper_wrapper).pairs;
+    const auto boxes = ask(a, a, p, Recursion::paper_boxes).pairs;
+    const auto wrapper_boxes = ask(a, a, p, Recursion::paper_wrapper_boxes).pairs;
+    CHECK(std::includes(complete.begin(), complete.end(), wrapper_boxes.begin(), wrapper_boxes.end()));
+    CHECK(std::includes(complete.begin(), complete.end(), boxes.begin(), boxes.end()));
+    boxes_total += boxes.size();
     CHECK(std::includes(complete.begin(), complete.end(), paper.begin(), paper.end()));
     CHECK(std::includes(complete.begin(), complete.end(), wrapper.begin(), wrapper.end()));
     CHECK(std::includes(paper.begin(), paper.end(), strict.begin(), strict.end()));
@@ -91,4 +97,20 @@ TEST_CASE("2D bodies use the same query") {
   CHECK(complete.pairs == paper.pairs);
   CHECK(paper.opened[0] == std::vector<RegionId>{1});
   CHECK(paper.relation == Relation::crossing);
+}
+
+TEST_CASE("without regions, the recursions with boxes find all pairs") {
+  const LrbRep a = LrbRep::without_regions(shapes::icosphere(2), true, false);
+  const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
+  shapes::RandomEngine random(3);
+  for (int i = 0; i < 20; ++i) {
+    // Far from the origin, coordinates have fewer digits, and boxes must not lose faces by that.
+    Pose p = shapes::random_pose(random, a, b, 0.4), q;
+    if (i % 2 == 1) p.t.x() += 0x1p30, q.t.x() = 0x1p30;
+    for (const Recursion recursion : {Recursion::paper_boxes, Recursion::paper_wrapper_boxes}) {
+      const CollideResult boxed = collide(a, q, b, p, {.recursion = recursion});
+      CHECK(boxed.pairs == collide(a, q, b, p).pairs);
+      CHECK(boxed.counters.face_tests < std::uint64_t{a.face_count()} * b.face_count());
+    }
+  }
 }

@@ -74,7 +74,8 @@ bool same(const CollideResult& x, const CollideResult& y) {
 
 TEST_CASE("a query that runs out of memory leaves its context usable") {
   for (const Recursion recursion :
-       {Recursion::complete, Recursion::paper, Recursion::paper_strict, Recursion::paper_wrapper}) {
+       {Recursion::complete, Recursion::paper, Recursion::paper_strict, Recursion::paper_wrapper,
+        Recursion::paper_boxes, Recursion::paper_wrapper_boxes}) {
     CAPTURE(to_string(recursion));
     Query q;
     q.request.recursion = recursion;

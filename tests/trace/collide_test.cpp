@@ -34,7 +34,8 @@ std::vector<Bodies> all_bodies() {
 std::vector<CollideRequest> all_requests() {
   std::vector<CollideRequest> out;
   for (const Recursion recursion :
-       {Recursion::complete, Recursion::paper, Recursion::paper_strict, Recursion::paper_wrapper})
+       {Recursion::complete, Recursion::paper, Recursion::paper_strict, Recursion::paper_wrapper,
+        Recursion::paper_boxes, Recursion::paper_wrapper_boxes})
     for (const WrapperMode wrapper : {WrapperMode::regularised, WrapperMode::unregularised})
       for (const Mode mode : {Mode::all_pairs, Mode::first_pair})
         out.push_back({.mode = mode, .recursion = recursion, .wrapper = wrapper});

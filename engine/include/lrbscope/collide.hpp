@@ -41,13 +41,18 @@ enum class Recursion : std::uint8_t {
   paper_strict,   ///< each region is refined once; its new faces are tested only against the new faces of the
                   ///< regions it hit
   paper_wrapper,  ///< new faces are tested against the whole current wrapper of the other body
+  // With boxes, as queries on LRB-reps of small regions; they can miss contacts as well:
+  paper_boxes,          ///< only the larger region is refined; its floor is tested against one list of faces
+  paper_wrapper_boxes,  ///< the same against the whole current wrapper of the other body
 };
 
 constexpr auto enum_names(Recursion) {
   return std::to_array<EnumName<Recursion>>({{Recursion::complete, "complete"},
                                              {Recursion::paper, "paper"},
                                              {Recursion::paper_strict, "paper_strict"},
-                                             {Recursion::paper_wrapper, "paper_wrapper"}});
+                                             {Recursion::paper_wrapper, "paper_wrapper"},
+                                             {Recursion::paper_boxes, "paper_boxes"},
+                                             {Recursion::paper_wrapper_boxes, "paper_wrapper_boxes"}});
 }
 const char* to_string(Recursion r);
 
@@ -164,7 +169,7 @@ struct Counters {
   std::uint64_t real_tests = 0;  ///< exact tests of two real simplices
   std::uint64_t exact_fallbacks = 0;  ///< predicates that the floating-point filter could not decide
   std::uint64_t node_pairs = 0;       ///< complete: pairs of tree nodes visited
-  std::uint64_t box_tests = 0;        ///< complete: tests of two boxes
+  std::uint64_t box_tests = 0;        ///< tests of two boxes; paper_boxes: also of a face and a box
   /// complete: pairs of simplices that reached the box and plane tests of a pair of leaves
   std::uint64_t prefilter_tests = 0;
   std::uint64_t refinements = 0;     ///< paper: refine operations; complete: equal to regions_opened
