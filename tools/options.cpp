@@ -125,6 +125,9 @@ void add_build_options(App& app, BuildOptions& options) {
                  "Target number of faces of the outermost wrapper")
       ->in_range(4, 1000)
       ->capture_default_str();
+  app.add_option("--max-lids", options.max_lids, "N",
+                 "Maximum number of lids of a region; 12 for --recursion paper_boxes [any number]")
+      ->in_range(1, 1000);
   app.add_flag("--lean", options.lean,
                "Build fewer pseudo faces (about 1.4 faces in total per real face instead of 2); wrappers fit "
                "less tightly");

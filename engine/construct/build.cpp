@@ -205,6 +205,11 @@ std::vector<FaceId> find_buried(const FrontMesh& front, const std::vector<FaceId
   return buried;
 }
 
+/// kFrontSwell where regions have few lids (BuildOptions::max_lids). Larger: fewer and smaller last regions,
+/// and a looser outermost wrapper (measured on one body: 1.43 times the convex hull's volume at 0.02, 1.48 at
+/// 0.05, 1.67 at 0.1).
+constexpr double kFewLidsSwell = 0.05;
+
 /// Builds the regions of a 3D body, level by level:
 /// 1. Find the surfaces that bound voids, and the faces that must never be covered.
 /// 2. Fitted levels of limited deviation (unless lean), then levels without a limit, until there are few
@@ -218,7 +223,7 @@ class CollapseBuilder {
         front_(mesh),
         complex_(mesh),
         home_(find_nesting(mesh, front_)),
-        bounds_(mesh.vertices, kFrontSwell),
+        bounds_(mesh.vertices, options.max_lids > 0 ? kFewLidsSwell : kFrontSwell),
         frozen_(mesh.face_count(), false),
         component_boxes_(front_.component_count()),
         passes_(options) {
@@ -266,9 +271,10 @@ class CollapseBuilder {
     return {front_, complex_, frozen_, component_boxes_, bounds_, options_, passes_};
   }
 
-  /// Plans the outermost wrapper as soon as the front is simple enough: from now on it stays inside.
+  /// Plans the outermost wrapper as soon as the front is simple enough: from now on it stays inside. Not
+  /// where lids are limited: the front could no longer be simplified in small regions.
   void plan_polytope_from(std::uint32_t triangles) {
-    if (front_.triangle_count() <= triangles) plan_polytope();
+    if (options_.max_lids == 0 && front_.triangle_count() <= triangles) plan_polytope();
   }
 
   bool bridge() {
@@ -286,7 +292,7 @@ class CollapseBuilder {
       if (front_.alive(s) && front_.is_crowded(s)) return report_whole_cap(0, CapVerdict::too_crowded);
     std::vector<bool> joined(front_.component_count());
     for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
-    plan_polytope();
+    if (options_.max_lids == 0) plan_polytope();
     return bridge_concavities(front_, complex_, joined, passes_.layer(), options_.probe) ==
            CapVerdict::accepted;
   }

@@ -31,12 +31,20 @@ using Index = OpenFront::Index;
 /// faces.
 constexpr std::uint32_t kFloorPerInterior = 7;
 constexpr std::uint32_t kMinFloor = 12;
+/// The same for each lid that a region may have (BuildOptions::max_lids), where lids are limited: a patch of
+/// two rings has 24 faces and 10 lids.
+constexpr std::uint32_t kFloorPerLid = 3;
 /// A round that leaves more than this share of the committed front is the last at its deviation limit.
 constexpr double kGain = 0.9;
 /// Number of vertices whose edges are worked off together.
 constexpr std::size_t kChunk = 1000;
 /// Price of a region's lid, as kFitBudget; lower, because nearly all components reach it.
 constexpr double kBudget = 0.67;
+/// The same for regions of few lids, which save fewer faces each. It rises by kRise after each level that
+/// leaves nearly the whole mesh (kStuck) though its limit on the deviation, relative to the body's size, is
+/// no longer small: the body offers no cheaper lids. (A knotted tube would have no wrapper within 2 % of its
+/// size.)
+constexpr double kFewLidsBudget = 0.9, kRise = 1.15, kStuck = 0.97, kNotSmall = 0.002;
 /// Depth of the target below the star's centre, in radii: see OutwardCollapse::place().
 constexpr double kDepth = 10;
 /// See OutwardCollapse::needle_cost(). Smaller: needles, at which later collapses are refused.
@@ -60,6 +68,12 @@ constexpr double kFreeGain = 0.85;
 /// A component of such a level has at most one in this many faces of the front beneath it, so that there are
 /// several components.
 constexpr std::uint32_t kParts = 12;
+/// Without a limit on the deviation, where lids are limited: the number of such components, of levels that
+/// may gain too little, and the maximum ratio of a lid's faces to its floor. The front becomes simple enough
+/// to be closed by one small region.
+constexpr std::uint32_t kFewLidsParts = 3;
+constexpr int kStalled = 2, kFewLidsStalled = 6;
+constexpr double kFewLidsWorth = 0.9;
 
 double cube(double x) {
   return x * x * x;
@@ -153,12 +167,15 @@ FrontSimplifier::FrontSimplifier(FrontMesh& front, ComplexBuilder& complex, cons
       open_(front, frozen),
       geometry_(open_, bounds, kDepth, kNeedleWeight),
       proof_(open_, front, component_boxes),
+      floor_limit_(options.max_lids > 0 ? kFloorPerLid * options.max_lids
+                                        : std::max(kMinFloor, kFloorPerInterior * options.patch_interior)),
       queue_(cube(open_.size() / open_.unit())),
       random_(options.seed) {}
 
 void FrontSimplifier::fit(std::uint32_t least, const std::function<void()>& before_level) {
   const std::size_t real = complex_.face_count();
-  max_floor_ = std::max(kMinFloor, kFloorPerInterior * options_.patch_interior);
+  max_floor_ = floor_limit_;
+  double budget = options_.max_lids > 0 ? kFewLidsBudget : kBudget;
   body_.emplace(front_, tree_, open_.unit());
   fit_fronts(
       open_.size(), least, kGain, [&] { return front_.triangle_count(); },
@@ -168,7 +185,10 @@ void FrontSimplifier::fit(std::uint32_t least, const std::function<void()>& befo
         before_level();
         // A higher price is paid while fewer pseudo faces were made than planned.
         const double correction = fitting_correction(before, real, complex_.face_count() - real);
-        level(BuildStage::fit, limit, fitting_worth(before, real, kBudget, correction));
+        level(BuildStage::fit, limit, fitting_worth(before, real, budget, correction));
+        if (options_.max_lids > 0 && limit > kNotSmall * open_.size() &&
+            front_.triangle_count() > kStuck * static_cast<double>(real))
+          budget *= kRise;
       });
   body_.reset();
 }
@@ -177,13 +197,14 @@ void FrontSimplifier::simplify(const std::function<void()>& before_level) {
   limit_ = kUnlimited;
   new_hints_.clear();
   new_off_ = 0;
+  const bool few_lids = options_.max_lids > 0;
   // A level that gains too little is followed by another one, which proves each collapse where lids failed.
-  for (int stalled = 0; stalled < 2 && front_.triangle_count() > options_.max_outer_faces;) {
+  for (int stalled = 0; stalled < (few_lids ? kFewLidsStalled : kStalled) &&
+                        front_.triangle_count() > options_.max_outer_faces;) {
     const std::uint32_t before = front_.triangle_count();
     before_level();
-    max_floor_ = std::clamp(before / kParts, kMinFloor,
-                            std::max(kMinFloor, kFloorPerInterior * options_.patch_interior));
-    level(BuildStage::simplify, 0, kLastCapWorth);
+    max_floor_ = std::clamp(before / (few_lids ? kFewLidsParts : kParts), kMinFloor, floor_limit_);
+    level(BuildStage::simplify, 0, few_lids ? kFewLidsWorth : kLastCapWorth);
     stalled = front_.triangle_count() > kFreeGain * before ? stalled + 1 : 0;
   }
 }
@@ -244,8 +265,7 @@ bool FrontSimplifier::load_hub(Index w) {
   hub_.outward.setZero();
   hub_.rim_sum.setZero();
   hub_.offset = hub_.area = 0;
-  hub_.united.components.clear(), hub_.united.polygons.clear();
-  hub_.united.floor = 0, hub_.united.excluded = false;
+  hub_.united.clear();
   const Index first = open_.any_face(w);
   Index f = first;
   do {
@@ -319,11 +339,9 @@ void FrontSimplifier::propose(std::size_t k) {
   // A new vertex costs a placement: only where nothing simpler can be done.
   if (proposed) return;
   // Step 2: the cap, which blocks most edges at the end of a level.
-  scratch_union_.components.assign(hub_.united.components.begin(), hub_.united.components.end());
-  scratch_union_.polygons.assign(hub_.united.polygons.begin(), hub_.united.polygons.end());
-  scratch_union_.floor = hub_.united.floor, scratch_union_.excluded = hub_.united.excluded;
+  scratch_union_ = hub_.united;
   for (const Index o : others_) open_.unite(o, limit_, scratch_union_);
-  if (scratch_union_.excluded || scratch_union_.floor > max_floor_) return;
+  if (!may_unite(scratch_union_)) return;
   // Step 3: the rough cost of a new vertex: the volume under the lowest point in front of all planes that is
   // over the star's centre along its mean normal. The edge's state is kept from its smaller vertex.
   const Index low = std::min(w, r), holder = w < r ? left : right;
@@ -353,8 +371,7 @@ void FrontSimplifier::propose(std::size_t k) {
 bool FrontSimplifier::propose_onto(Index u, Index v) {
   if (!open_.find_star(u, v, true, scratch_) || !geometry_.is_in_front(scratch_)) return false;
   unite(scratch_, scratch_union_);
-  if (scratch_union_.excluded || scratch_union_.floor > max_floor_ || !geometry_.clears_neighbours(scratch_))
-    return false;
+  if (!may_unite(scratch_union_) || !geometry_.clears_neighbours(scratch_)) return false;
   double area = 0;
   const double volume = geometry_.volume_under(scratch_, open_.x(v), area);
   const auto cost = static_cast<float>(volume + geometry_.needle_cost(scratch_, open_.x(v), area));
@@ -366,9 +383,14 @@ bool FrontSimplifier::propose_onto(Index u, Index v) {
 // Evaluation.
 
 void FrontSimplifier::unite(const Star& star, Union& united) const {
-  united.components.clear(), united.polygons.clear();
-  united.floor = 0, united.excluded = false;
+  united.clear();
   for (const Index f : star.faces) open_.unite(f, limit_, united);
+}
+
+/// Returns true if one more collapse may unite these.
+bool FrontSimplifier::may_unite(const Union& united) const {
+  if (united.excluded || united.floor > max_floor_) return false;
+  return options_.max_lids == 0 || united.floor <= options_.max_lids + 2 * (united.collapses + 1);
 }
 
 /// Returns the number of steps between sample points from a to b: more where these are far from each other,
@@ -447,7 +469,7 @@ void FrontSimplifier::evaluate(const QueuedCollapse& c) {
   // Step 1: the star may have changed since the collapse was proposed.
   if (!open_.is_used(c.u) || !open_.is_used(c.v) || !open_.find_star(c.u, c.v, c.onto_v, star_)) return;
   unite(star_, united_);
-  if (united_.excluded || united_.floor > max_floor_) return;
+  if (!may_unite(united_)) return;
   if (!open_.leaves_surface(star_)) return refuse(CapVerdict::no_surface, kNever);
   // Step 2: the position.
   Vector3 w;

@@ -168,6 +168,7 @@ class FrontSimplifier {
   float excess(const Star& star, const Vector3& w);
   int steps_along(const SurfaceWalk::Point& a, const SurfaceWalk::Point& b) const;
   void unite(const Star& star, Union& united) const;
+  bool may_unite(const Union& united) const;
   void refuse(CapVerdict verdict, float wake);
   void work_off();
   void evaluate(const QueuedCollapse& c);
@@ -187,7 +188,8 @@ class FrontSimplifier {
   OutwardCollapse geometry_;
   std::optional<SurfaceWalk> body_;  ///< while fitting
   LidProof proof_;
-  std::uint32_t max_floor_ = 0;  ///< maximum number of faces beneath a component
+  const std::uint32_t floor_limit_;  ///< maximum number of faces beneath a component
+  std::uint32_t max_floor_ = 0;      ///< the same at the current level
   CollapseQueue queue_;
   Random random_;
   float limit_ = 0;  ///< on the deviation; OpenFront::unit()

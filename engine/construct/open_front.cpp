@@ -184,6 +184,7 @@ void OpenFront::unite(Index f, float limit, Union& with) const {
   if (std::find(with.components.begin(), with.components.end(), c) != with.components.end()) return;
   with.components.push_back(c);
   with.floor += components_[c].size;
+  with.collapses += components_[c].collapses;
 }
 
 /// Returns the component of a collapse that unites these.
@@ -207,6 +208,7 @@ Index OpenFront::merge(const Star& star, const Union& united) {
     }
   }
   components_[c].size = united.floor;
+  components_[c].collapses = united.collapses + 1;
   for (const Slot s : united.polygons) polygon_component_[s] = c;
   if (was_restored_)
     for (const Index f : star.faces) components_[c].careful |= states_[f].careful;

@@ -91,9 +91,15 @@ class OpenFront {
   /// The components and polygons that a collapse would unite.
   struct Union {
     std::vector<Index> components;
-    std::vector<Slot> polygons;  ///< first slots of those that it is the first to touch
-    std::uint32_t floor = 0;     ///< number of faces in the united floor
-    bool excluded = false;       ///< a face must not be covered at this deviation limit
+    std::vector<Slot> polygons;   ///< first slots of those that it is the first to touch
+    std::uint32_t floor = 0;      ///< number of faces in the united floor
+    std::uint32_t collapses = 0;  ///< those made in the components; each leaves two faces fewer
+    bool excluded = false;        ///< a face must not be covered at this deviation limit
+
+    void clear() {  // keeps the memory
+      components.clear(), polygons.clear();
+      floor = collapses = 0, excluded = false;
+    }
   };
 
   /// `frozen` (real faces): those that are never covered.
@@ -171,6 +177,7 @@ class OpenFront {
   struct Component {
     std::vector<Index> floor;
     std::uint32_t size = 0;  ///< faces of the floor, with all triangles of its polygons
+    std::uint32_t collapses = 0;
     CapVerdict held_by = CapVerdict::too_many_faces;
     bool careful = false;
   };

@@ -49,9 +49,9 @@ std::string cache_entry(const Mesh& mesh, const BuildOptions& options) {
   h.add_value(hash_of_array(mesh.face_vertices));
   char name[160];
   std::snprintf(name, sizeof name,
-                "%016" PRIx64 "-v" LRB_VERSION ".%u.%u-patch%u-outer%u-seed%" PRIu64 "%s.lrb", h.value(),
-                kBuilderVersion, kLrbFileVersion, options.patch_interior, options.max_outer_faces,
-                options.seed, options.lean ? "-lean" : "");
+                "%016" PRIx64 "-v" LRB_VERSION ".%u.%u-patch%u-outer%u-lids%u-seed%" PRIu64 "%s.lrb",
+                h.value(), kBuilderVersion, kLrbFileVersion, options.patch_interior, options.max_outer_faces,
+                options.max_lids, options.seed, options.lean ? "-lean" : "");
   return name;
 }
 

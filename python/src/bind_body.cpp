@@ -24,11 +24,14 @@ std::size_t used_vertices(const LrbRep& rep) {
 }
 
 /// `progress` must outlive the options.
-BuildOptions build_options(py::handle lean, py::handle seed, py::handle threads, const py::object& cache,
-                           const Progress& progress) {
+BuildOptions build_options(py::handle lean, py::handle max_lids, py::handle seed, py::handle threads,
+                           const py::object& cache, const Progress& progress) {
   BuildOptions options;
   if (!cache.is_none()) options.cache = path(cache, "cache");
   options.lean = flag(lean, "lean");
+  const std::uint64_t lids = count(max_lids, "max_lids");
+  if (lids > 1000) throw InputError("max_lids: expected at most 1000, got " + std::to_string(lids));
+  options.max_lids = static_cast<std::uint32_t>(lids);
   options.seed = count(seed, "seed", options.seed);
   options.threads = threads_of(count(threads, "threads"));
   options.progress = [&progress](std::uint32_t pass, std::uint32_t front_faces) {
@@ -38,11 +41,11 @@ BuildOptions build_options(py::handle lean, py::handle seed, py::handle threads,
 }
 
 BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions, py::handle lean,
-                       py::handle seed, py::handle threads, py::handle name, const py::object& progress,
-                       const py::object& cache) {
+                       py::handle max_lids, py::handle seed, py::handle threads, py::handle name,
+                       const py::object& progress, const py::object& cache) {
   Mesh mesh = mesh_of_arrays(vertices, faces, text(name, "name", "body"));
   const Progress report(progress);
-  const BuildOptions options = build_options(lean, seed, threads, cache, report);
+  const BuildOptions options = build_options(lean, max_lids, seed, threads, cache, report);
   const bool with_regions = flag(regions, "regions", true);
   const std::size_t n = mesh.vertices.size();
   const py::gil_scoped_release unlocked;
@@ -51,11 +54,11 @@ BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions
                                 n);
 }
 
-BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle seed, py::handle threads,
-             const py::object& progress, const py::object& cache) {
+BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle max_lids, py::handle seed,
+             py::handle threads, const py::object& progress, const py::object& cache) {
   const std::string name = path(file, "path");
   const Progress report(progress);
-  const BuildOptions options = build_options(lean, seed, threads, cache, report);
+  const BuildOptions options = build_options(lean, max_lids, seed, threads, cache, report);
   const bool with_regions = flag(regions, "regions", true);
   const py::gil_scoped_release unlocked;
   return std::make_shared<Body>(with_regions
@@ -228,7 +231,7 @@ void bind_making(BodyClass& c) {
   c.def(
       py::init(&body_of_arrays),
       Signature(
-          R"(Body(vertices, faces, *, regions=True, lean=False, seed=1, threads=0, name='body', progress=None, cache=None)
+          R"(Body(vertices, faces, *, regions=True, lean=False, max_lids=0, seed=1, threads=0, name='body', progress=None, cache=None)
 
 Makes a body from arrays.
 
@@ -237,6 +240,7 @@ faces: (m, 3) int, corners counter-clockwise seen from outside; (m, k) or a list
     polygons; (m, 2) segments in 2D. Inward-oriented surfaces are flipped, and `notes` lists this.
 regions: build an LRB-rep with wrappers. Without regions, answers are the same and the body is made faster.
 lean: build a smaller LRB-rep whose wrappers fit less tightly.
+max_lids: at most so many lids a region, 0: any number; 12 for queries with recursion='paper_boxes'.
 seed, threads: of the build. The result depends only on the seed. threads 0: all cores.
 progress: called with (what, done, total) after each pass of the build, total 0 for an unknown one; True: a
     bar, where tqdm is installed.
@@ -247,7 +251,8 @@ Raises InputError, which names the element, for a mesh that cannot be queried at
 have regions (open, not manifold) gives a body without them.)"));
   c.def_static(
       "load", &load,
-      Signature(R"(load(path, *, regions=True, lean=False, seed=1, threads=0, progress=None, cache=None)
+      Signature(
+          R"(load(path, *, regions=True, lean=False, max_lids=0, seed=1, threads=0, progress=None, cache=None)
 
 Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)"));
   define(c,

@@ -126,6 +126,35 @@ TEST_CASE("every patch size works; larger patches make lean LRB-reps smaller") {
   }
 }
 
+TEST_CASE(
+    "few lids: valid bodies of every kind, and small regions but for those that bridge, fill and close") {
+  const Mesh all[] = {bumpy_sphere(4, 5),
+                      torus(24, 12),
+                      quad_torus(20, 10),
+                      bowl(24, 10, 0.1),
+                      box_with_void(),
+                      comb(5),
+                      several({icosphere(3), translated(icosphere(3), {1, 0.1, 0})}),
+                      folded_sphere(3)};
+  for (const Mesh& mesh : all)
+    for (const std::uint32_t most : {4u, 12u}) {
+      CAPTURE(mesh.name);
+      CAPTURE(most);
+      BuildOptions options;
+      options.max_lids = most;
+      const LrbRep rep = build_lrb(mesh, options);
+      check_valid(rep);
+      check_keeps_mesh(rep, mesh);
+      std::uint32_t large = 0;
+      for (RegionId r = 0; r < rep.region_count(); ++r)
+        large += rep.lids(r).size() > most || rep.floor(r).size() > 3 * most;
+      CHECK(large <= 2);  // they bridge or close
+    }
+  BuildOptions few;
+  few.max_lids = 12;
+  CHECK(build_lrb(all[0], few).region_count() > 2 * build_lrb(all[0]).region_count());
+}
+
 TEST_CASE("voids have their own regions, and a solid in a void has its own wrapper") {
   const Mesh mesh = several(
       {icosphere(3, 3), turned_inside_out(icosphere(3, 2)), translated(icosphere(2, 0.5), {0.7, 0, 0})});

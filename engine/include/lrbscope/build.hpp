@@ -162,6 +162,10 @@ struct BuildOptions {
   std::uint32_t max_outer_faces = 20;  ///< target number of faces of the outermost wrapper
   /// Builds a small structure (about 1.4 faces per real face) instead of tightly fitting wrappers (about 2).
   bool lean = false;
+  /// Maximum number of lids of a region in 3D; 0: any. Its floor then has at most three times as many faces,
+  /// and patch_interior has no effect. 12: fewest tests by recursions with boxes (Recursion::paper_boxes),
+  /// 1.9 to 2.2 faces per real face. A few regions are larger: those that bridge, fill or close.
+  std::uint32_t max_lids = 0;
   std::uint64_t seed = 1;  ///< seed of the random choices of the builder
   unsigned threads = 1;    ///< 0: number of hardware threads. The result does not depend on it
   /// Called after each pass with its number and the number of faces of the front. May be empty.
