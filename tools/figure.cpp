@@ -59,8 +59,9 @@ Source refine_body(const std::string& path, const run::ProgressReport& progress)
   return {s.name, {}, run::record(s, progress), {}, true};
 }
 
-Source run_of_scenario(const std::string& name, const run::ProgressReport& progress) {
-  const spec::Scenario s = spec::open_scenario(name);
+Source run_of_scenario(const std::string& name, EventLevel events, const run::ProgressReport& progress) {
+  spec::Scenario s = spec::open_scenario(name);
+  s.events = std::max(s.events, events);
   return {s.name, s.purpose, run::record(s, progress), s.frames, false};
 }
 
@@ -98,7 +99,8 @@ Source open_source(const FigureOptions& o, const Globals& globals) {
     return open_trace(run::trace_of(o.source), o.bodies);
   if (!o.bodies.empty())
     throw InputError("--bodies: expected a trace, but " + printable_name(o.source) + " is not one");
-  return is_mesh_name(o.source) ? refine_body(o.source, progress) : run_of_scenario(o.source, progress);
+  if (is_mesh_name(o.source)) return refine_body(o.source, progress);
+  return run_of_scenario(o.source, o.figure.proof_map ? EventLevel::all : EventLevel::faces, progress);
 }
 
 /// Returns the selected panels. At most one of --faces, --events, --steps and --layers is given.
@@ -203,11 +205,30 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
   return frames;
 }
 
+/// Writes a figure and its caption.
+void write_figure(const figure::Figure& drawn, const std::string& file) {
+  std::filesystem::path caption(file);
+  caption.replace_extension(".caption.txt");
+  io::write_text(file, drawn.bytes);
+  io::write_text(caption.string(), drawn.caption + "\n");
+  print(file + "\n");
+}
+
+int run_proof_map(const FigureOptions& o, const Source& source, const std::string& file) {
+  render::Look look;
+  look.style = o.picture.style.value_or(render::StyleName::print);
+  look.transparent = o.picture.transparent;
+  const run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
+  write_figure(figure::draw_proof_map(recorded, look, figure_spec(o, file)), file);
+  return kOk;
+}
+
 int run_figure(const FigureOptions& o, const Globals& globals) {
   const run::ProgressReport progress = progress_report(globals.quiet);
   if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // check the file before an expensive run
   const Source source = open_source(o, globals);
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
+  if (o.figure.proof_map) return run_proof_map(o, source, file);
   figure::FigureSpec spec = figure_spec(o, file);
   render::FrameSpec frames = frame_spec(o, source, globals);
   if (o.try_views && source.recording.trace.events.size() > 0)
@@ -228,11 +249,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   const figure::Figure drawn = figure::draw_figure(recorded, frames, spec, progress);
   note(globals, source.recording.notes);
   note(globals, drawn.notes);
-  std::filesystem::path caption(file);
-  caption.replace_extension(".caption.txt");
-  io::write_text(file, drawn.bytes);
-  io::write_text(caption.string(), drawn.caption + "\n");
-  print(file + "\n");
+  write_figure(drawn, file);
   return kOk;
 }
 
@@ -253,6 +270,13 @@ void add_panel_options(App& app, FigureOptions& o) {
   faces->excludes(events)->excludes(steps)->excludes(layers);
   events->excludes(steps)->excludes(layers);
   steps->excludes(layers);
+  app.add_flag(
+         "--proof-map", o.figure.proof_map,
+         "Draw a map of all pairs of faces instead: what each test rejected in a step, the one of --steps or the last")
+      ->excludes(panels)
+      ->excludes(faces)
+      ->excludes(events)
+      ->excludes(layers);
 }
 
 void add_callout_options(App& app, FigureOptions& o) {

@@ -81,29 +81,10 @@ class FigureJob {
     if (!chosen_.left_out.empty()) out.notes.push_back(chosen_.left_out);
     if (!flat() && figure_.format != FigureSpec::Format::png) find_vector_faces(out.notes, progress);
     out.caption = caption();
-    const auto paint = [&](render::Canvas& canvas) { paint_all(canvas, progress); };
-    const std::optional<render::Rgba> background = frames_.paper();
     const std::string program = "lrbscope " + recorded_.trace->header.lrbscope;
-    const render::PaperPage page{figure_.width, layout_.height, background, recorded_.title, program};
-    switch (figure_.format) {
-      case FigureSpec::Format::pdf:
-        out.bytes = render::paint_pdf(page, paint);
-        break;
-      case FigureSpec::Format::svg: {
-        render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
-        paint(canvas);
-        out.bytes = render::svg_file(
-            canvas, {page.width, page.height, kPointsPerScreenPixel, page.title, background, true});
-        break;
-      }
-      case FigureSpec::Format::png: {
-        const auto png =
-            render::encode_png(render::paint_pixels(page, dpi_, paint),
-                               {{{"Software", program}, {"lrbscope:scenario", recorded_.title}}, dpi_});
-        out.bytes.assign(png.begin(), png.end());
-        break;
-      }
-    }
+    out.bytes = figure_file(figure_.format, dpi_,
+                            {figure_.width, layout_.height, frames_.paper(), recorded_.title, program},
+                            [&](render::Canvas& canvas) { paint_all(canvas, progress); });
     if (constexpr double kPage = 240 * kPointsPerMm; layout_.height > kPage)
       out.notes.push_back("the figure is " + length_text(layout_.height) +
                           " high, more than a page; use fewer panels or --views, or more --columns");
@@ -118,8 +99,6 @@ class FigureJob {
   }
 
  private:
-  static constexpr double kPointsPerScreenPixel = 0.75;
-
   const render::Style& style() const { return style_of(frames_.style); }
   bool flat() const { return framing_.dim == 2; }
   std::size_t moments() const { return chosen_.events.size(); }
@@ -769,6 +748,26 @@ FigureSpec::Format format_of(const std::string& path) {
 
 double default_dpi(FigureSpec::Format format) {
   return format == FigureSpec::Format::png ? 300 : 600;
+}
+
+std::string figure_file(FigureSpec::Format format, double dpi, const render::PaperPage& page,
+                        const std::function<void(render::Canvas&)>& paint) {
+  constexpr double kPointsPerScreenPixel = 0.75;
+  switch (format) {
+    case FigureSpec::Format::pdf:
+      return render::paint_pdf(page, paint);
+    case FigureSpec::Format::svg: {
+      render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
+      paint(canvas);
+      return render::svg_file(
+          canvas, {page.width, page.height, kPointsPerScreenPixel, page.title, page.background, true});
+    }
+    case FigureSpec::Format::png:
+      break;
+  }
+  const auto png = render::encode_png(render::paint_pixels(page, dpi, paint),
+                                      {{{"Software", page.creator}, {"lrbscope:scenario", page.title}}, dpi});
+  return {png.begin(), png.end()};
 }
 
 Figure draw_figure(const run::RecordedRun& recorded, const render::FrameSpec& frames,

@@ -1,6 +1,7 @@
 #pragma once
 /// A figure for print: panels of one run, cropped to their content and at one scale, for a width on paper.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct FigureSpec {
   bool caption = false;        ///< below the figure
   bool occlusion = false;      ///< 3D: darkens creases and gaps (ambient occlusion)
   bool contact_sheet = false;  ///< all views in one block of panels, for comparison; each has its own scale
+  bool proof_map = false;      ///< a proof map instead of panels: draw_proof_map()
   std::vector<Callout> callouts;
   std::vector<Inset> insets;
 };
@@ -47,5 +49,13 @@ struct Figure {
 /// InputError for requests that a figure cannot show.
 Figure draw_figure(const run::RecordedRun& recorded, const render::FrameSpec& frames,
                    const FigureSpec& figure, const run::ProgressReport& progress);
+
+/// Draws the proof map of a step (proof_map.hpp): of the one in `figure.choice`, or of the last with a
+/// traversal. Throws InputError if its traversal was not recorded.
+Figure draw_proof_map(const run::RecordedRun& recorded, const render::Look& look, const FigureSpec& figure);
+
+/// Returns the file of a page that `paint` paints, in points.
+std::string figure_file(FigureSpec::Format format, double dpi, const render::PaperPage& page,
+                        const std::function<void(render::Canvas&)>& paint);
 
 }  // namespace lrb::figure
