@@ -622,6 +622,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
                     {"measured", measured_json(p, frame)},
                     {"answers", answers_json(p, steps)},
                     {"curves", curves_json(p, steps, frame)},
+                    {"map", map_json(p)},
                     {"kinds", kinds_json()},
                     {"phases", words_json<Phase>()},
                     {"engine", trace.header.engine},

@@ -25,6 +25,10 @@ Eigen::Vector3d body_centre(const LrbRep& rep);
 void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& centre,
               const SceneFrame& frame);
 
+/// Returns the trees of a run's traversals, for the page's proof map (proof_map.js); null without pairs of
+/// nodes.
+nlohmann::json map_json(const RecordedRun& p);
+
 /// Returns the colours of a page's 3D view.
 nlohmann::json scene_colours();
 

@@ -190,6 +190,31 @@
     check(view.whyMarks.group.children.length > 0, "also in the view");
   }
 
+  /** The proof map fills with the events: in the end every pair is decided, and contacts are those of the step. */
+  async function mapsAllPairs() {
+    const { map } = run,
+      step = events.step(firstContact()),
+      first = events.firstOfStep[step],
+      last = events.endOfStep(step) - 1;
+    const undecided = async (event) => {
+      selection.goTo(event);
+      await frame();
+      map.draw();
+      return map.cells.pairs - map.painted.sums.subarray(0, 9).reduce((n, x) => n + x, 0);
+    };
+    tabs.show("Proof map");
+    equal(await undecided(first), run.scene.bodies.reduce((n, b) => n * b.realFaces, 1), "at first the map is one undecided square");
+    const halfway = await undecided((first + last) >> 1);
+    check(halfway > 0 && halfway < map.cells.pairs / 2, "it fills", halfway);
+    equal(await undecided(last), 0, "in the end each pair is decided");
+    const inStep = indices().filter((i) => events.kind[i] === events.CONTACT && events.step(i) === step).length;
+    equal(map.painted.sums[7], inStep, "it has the contacts of the step");
+    map.point([0.5, 0.5]);
+    check(map.text(map.pointed).startsWith("Event "), "and says what decided a place", map.text(map.pointed));
+    map.go([0.5, 0.5]);
+    equal(selection.event, map.pointed.event, "a click goes there");
+  }
+
   /** A row of a table of each kind selects what it is about, and is marked. */
   async function rowsLead() {
     const rowOf = (what) => document.querySelectorAll(`tr.leads[data-to^="${what} "]`)[0];
@@ -416,7 +441,7 @@
     reload: [opensAtItsAddress],
     screen: [fitsOneScreen],
     all: [
-      ...[opensAtLargestContact, showsOneStep, replaysAsRecorded, selectsEverywhere, clicks, filters, explains],
+      ...[opensAtLargestContact, showsOneStep, replaysAsRecorded, selectsEverywhere, clicks, filters, explains, mapsAllPairs],
       ...[rowsLead, keepsItsState, loadsTheTrace],
     ],
     flat: [opensAtLargestContact, withoutWebgl],

@@ -3,6 +3,7 @@ import { data, listeners, moment, seek, seekBy, tell } from "./page.js";
 import { AttemptPanel, Attempts } from "./scene_attempts.js";
 import { listenToKeys, Timeline, toggleHelp, ViewControls } from "./scene_controls.js";
 import { explainCells, PageAddress, printView, showMore, stripOfRun, Tabs } from "./scene_page.js";
+import { ProofMap } from "./proof_map.js";
 import { AnswerLine, concernsPicked, EventFilter, EventTable, FilterForm, Panel, RowLinks, Selection, WhyPanel, WorkIcicle } from "./scene_panels.js";
 import { Body, Events, eventSentence, Explanations, lastAtMost, NONE, SIDES, tellingEvent, Wrappers } from "./scene_run.js";
 import { SceneView, webglWorks } from "./scene_view.js";
@@ -276,6 +277,7 @@ function startScene() {
   new RowLinks(events, selection, controls);
   new AnswerLine(scene.answers, events, selection);
   const strip = stripOfRun(scene, events, selection, work.ofStep || new Map());
+  const map = scene.map ? new ProofMap(scene, events, selection, view) : null;
   const tabs = new Tabs();
   explainCells();
   if (view) printView(view);
@@ -320,7 +322,7 @@ function startScene() {
   const address = new PageAddress({ events, selection, view, controls, tabs });
   if (location.hash.length > 1) address.read();
   if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events);
-  return { scene, events, selection, wrappers, timeline, table, filter, form, panel, why, work, attempts, view, controls, loader, strip, tabs, address };
+  return { scene, events, map, selection, wrappers, timeline, table, filter, form, panel, why, work, attempts, view, controls, loader, strip, tabs, address };
 }
 
 /** Removes the elements about queries if a construction is shown, and vice versa. */

@@ -4,7 +4,7 @@ import { seek } from "./page.js";
 import { WORK_SORTS, workSort } from "./scene_panels.js";
 import { eventText, lastAtMost, NONE, SIDES } from "./scene_run.js";
 
-const TAB_ORDER = ["Not as expected", "This step", "Events", "Work", "Steps", "Queries", "Charts"], // then all others
+const TAB_ORDER = ["Not as expected", "This step", "Events", "Work", "Proof map", "Steps", "Queries", "Charts"], // then all others
   LAST_TABS = ["Frames", "Words", "Run"];
 
 /** Fades the edges of a box beyond which it can be scrolled. */
