@@ -41,7 +41,8 @@ std::string title_of(std::string caption) {
     caption.resize(caption.size() - pairs.size());
     caption.replace(caption.rfind(": "), 2, ", ");
     constexpr std::string_view kUsual = "crossing, ";
-    if (const std::size_t at = caption.find(kUsual); at != std::string::npos) caption.erase(at, kUsual.size());
+    if (const std::size_t at = caption.find(kUsual); at != std::string::npos)
+      caption.erase(at, kUsual.size());
     caption += pairs.find("pairs") == std::string_view::npos ? " pair" : " pairs";
   }
   return caption;
