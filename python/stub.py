@@ -51,7 +51,7 @@ PARAMETERS = {  # the type: its parameters, some of one function only
     "Sequence[_Shape]": "bodies_a bodies_b",
     "npt.ArrayLike": "vertices points boxes pose pose_a pose_b poses_a poses_b motion_a along",
     "npt.ArrayLike | Sequence[Sequence[int]]": "faces",
-    "int": "seed threads step nearest max_tests max_pairs max_steps max_events key region face",
+    "int": "seed threads max_lids step nearest max_tests max_pairs max_steps max_events key region face",
     "_Indices": "pair",
     "int | _Indices": "Scene.move.key",
     "float": "tolerance relative_tolerance max_time within margin clearance zoom",

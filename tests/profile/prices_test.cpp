@@ -162,7 +162,7 @@ TEST_CASE("The prices of random descents are those of their definition, and of a
   CHECK(with_volumes > 20);
 }
 
-TEST_CASE("What a price could save is what other engines with the same trees save") {
+TEST_CASE("The savings of a price are those of other engines with the same trees") {
   std::mt19937_64 random(5);
   std::uint64_t by_test = 0, by_order = 0;
   for (int round = 0; round < 60; ++round) {
