@@ -153,7 +153,7 @@ std::pair<spec::Scenario, run::Recording> record_meshes(const TwoMeshes& meshes,
   spec::Scenario scenario = make_scenario(meshes, bodies, std::move(poses), picture);
   run::Recording recording = run::record(scenario, std::move(bodies), progress_report(globals.quiet));
   choose_views(picture.camera, scenario, recording);
-  if (!up_note.empty()) note(globals, {up_note});
+  if (!up_note.empty()) recording.notes.insert(recording.notes.begin(), up_note);
   return {std::move(scenario), std::move(recording)};
 }
 

@@ -385,7 +385,7 @@ TEST_CASE("Trees too deep to search are not split") {
       if (leaf || i + 2 == n) chain.triangle.push_back(i);
       chain.first_child.push_back(static_cast<std::uint32_t>(chain.child.size()));
       chain.first_triangle.push_back(static_cast<std::uint32_t>(chain.triangle.size()));
-      chain.volumes.insert(chain.volumes.end(), {0, 0, 0, 1, 1, 0});
+      chain.volumes.insert(chain.volumes.end(), {0, 0, 0, 3, 1, 0});
     }
   }
   engine.capture.trees.push_back(chain);

@@ -1,7 +1,6 @@
 // ---- the proof map: a square of all pairs of faces, A's down and B's across, in the order of their trees.
 // The pairs that a test rejected are a rectangle: with the slider the square fills, down to specks.
-import { byId, digits, element, oncePerFrame, plural, style, textButton } from "./dom.js";
-import { short } from "./scene_panels.js";
+import { byId, digits, element, oncePerFrame, plural, short, style, textButton } from "./dom.js";
 import { grouped, NONE, SIDES, unpack } from "./scene_run.js";
 
 // The order of Argument in proof_map.hpp.
