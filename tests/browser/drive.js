@@ -238,8 +238,8 @@
     run.controls.change({ boxes: -1 });
     press("Escape");
     const untitled = [...document.querySelectorAll(".tab td.n")]
-      .map((cell) => cell.closest("table").tHead.rows[0].cells[cell.cellIndex])
-      .find((head) => !head.title);
+      .map((cell) => cell.closest("table").tHead?.rows[0].cells[cell.cellIndex])
+      .find((head) => head && !head.title);
     check(!untitled, "every column of numbers says what it counts", untitled && untitled.textContent);
   }
 

@@ -36,11 +36,11 @@ def read(path):
 
 
 def found_by(command, program):
-    """Runs a command. Returns its output in the form of a transcript."""
+    """Runs a command. Returns its output in the form of a transcript, without progress, which slow days add."""
     line = "\n".join(part[2:] for part in command)
     tree = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
     code, out, err = shell.run(line, program, shell.HELPERS, environment={"TREE": os.path.normpath(tree)})
-    errors = err.splitlines()
+    errors = [e for e in err.splitlines() if not e.startswith("progress: ")]
     lines = [o or "(empty line)" for o in out.splitlines()] + ["! " + e for e in errors]
     if code != (2 if errors and errors[-1].startswith("lrbscope: ") else 0):
         lines.append("[%d]" % code)

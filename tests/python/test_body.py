@@ -201,7 +201,7 @@ def test_the_build_does_not_depend_on_threads():
     assert len({Body(*arrays, threads=n).hash for n in (0, 1, 3)}) == 1
     assert Body(*arrays, seed=2).hash != Body(*arrays, seed=1).hash
     assert Body(*arrays, lean=True).face_count < Body(*arrays).face_count
-    assert Body(*arrays, max_lids=6).region_count > Body(*arrays).region_count
+    assert Body(*arrays, max_lids=12).region_count > Body(*arrays).region_count
     with pytest.raises(InputError, match="max_lids: expected at most 1000, got 2000"):
         Body(*arrays, max_lids=2000)
 
