@@ -20,7 +20,7 @@ InstructionSet best_instruction_set();
 template <class Kernel, class... Newer>
 Kernel* best_kernel(Kernel* baseline, Newer*... newer) {
   Kernel* const versions[] = {baseline, newer...};
-  return versions[sizeof...(newer) > 0 ? static_cast<int>(best_instruction_set()) : 0];
+  return versions[static_cast<int>(best_instruction_set())];
 }
 
 }  // namespace lrb

@@ -36,15 +36,13 @@ std::string shortened(std::string text) {
 
 /// Returns a caption for the narrow space below a panel: "step 12: 54 pairs", "step 12: touching, 2 pairs".
 std::string title_of(std::string caption) {
-  for (const std::string_view pairs : {" intersecting pair of faces", " intersecting pairs of faces"}) {
-    if (!caption.ends_with(pairs)) continue;
-    caption.resize(caption.size() - pairs.size());
-    caption.replace(caption.rfind(": "), 2, ", ");
-    constexpr std::string_view kUsual = "crossing, ";
-    if (const std::size_t at = caption.find(kUsual); at != std::string::npos)
-      caption.erase(at, kUsual.size());
-    caption += pairs.find("pairs") == std::string_view::npos ? " pair" : " pairs";
-  }
+  constexpr std::string_view kLong = " intersecting", kFaces = " of faces", kUsual = "crossing, ";
+  const std::size_t number_end = caption.find(kLong);
+  if (number_end == std::string::npos) return caption;
+  caption.resize(caption.size() - kFaces.size());
+  caption.erase(number_end, kLong.size());
+  caption.replace(caption.rfind(": "), 2, ", ");
+  if (const std::size_t at = caption.find(kUsual); at != std::string::npos) caption.erase(at, kUsual.size());
   return caption;
 }
 

@@ -305,7 +305,8 @@ void PriceBook::price_distance(const QueryWalk& walk, std::span<const TrianglePa
   if (!goal) return price_visits(walk, {}, false, std::nullopt, out);
   const bool touching = distance == 0, with_distance = split && !touching;
   price_visits(walk, {&*goal, 1}, touching, with_distance ? std::optional(distance) : std::nullopt, out);
-  if (touching) out.order = std::exchange(out.unsplit, 0);
+  if (touching)
+    out.order = std::exchange(out.unsplit, 0), out.triangles_by_order = out.triangle_tests_for_nothing;
   if (with_distance) out.volumes = std::exchange(out.unsplit, 0);
 }
 
@@ -324,7 +325,7 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
   std::vector<std::uint32_t> depth(events.size(), 0);
   std::vector<char> attached(events.size(), 0), wasted(events.size(), 0);
   // With a distance: at this visit, or above it, the volumes are no closer. Without: they are disjoint, and
-  // the engine went on beneath.
+  // the engine went on beneath. Unused if one pair is enough: then all waste is of order.
   std::vector<char> ends(events.size(), 0);
   std::uint64_t known = 0;
   for (const std::uint32_t i : walk.from_root()) {
@@ -345,14 +346,14 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     const bool below_needed = up == kNone || needed[up];
     owner[i] = below_needed ? first : owner[up];
     const bool ended_above = !below_needed && ends[up];
-    if (!distance)
-      ends[i] = ended_above || !((e.met == 0 && !walk.wide()) ||
-                                 overlap(bodies_.volumes(walk.trees()[0]), e.a, walk.query().poses[0],
-                                         bodies_.volumes(walk.trees()[1]), e.b, walk.query().poses[1]));
-    else
+    if (distance)
       ends[i] = ended_above || gap(bodies_.volumes(walk.trees()[0]), e.a, walk.query().poses[0],
                                    bodies_.volumes(walk.trees()[1]), e.b,
                                    walk.query().poses[1]) >= *distance * (1 - kRounding);
+    else if (!one_is_enough)
+      ends[i] = ended_above || !((e.met == 0 && !walk.wide()) ||
+                                 overlap(bodies_.volumes(walk.trees()[0]), e.a, walk.query().poses[0],
+                                         bodies_.volumes(walk.trees()[1]), e.b, walk.query().poses[1]));
     if (below_needed && !repeated && !one_is_enough) {
       ++out.proof;
       ++by_depth_[depth[i]].proof;
@@ -362,7 +363,7 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     // A visit of wide nodes follows a comparison of their own volumes.
     const bool ended = ended_above || (walk.wide() && ends[i]);
     const bool by_order = distance && (repeated || ended);
-    const bool by_test = !distance && !one_is_enough && !repeated && ended;
+    const bool by_test = !distance && !repeated && ended;
     ++(by_order ? out.order : by_test ? out.test : out.unsplit);
     ++by_depth_[depth[i]].wasted;
     const std::uint32_t nodes[] = {e.a, e.b};
