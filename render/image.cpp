@@ -89,7 +89,7 @@ std::string ImageDifference::text(const ImageTolerance& tolerance) const {
   char line[256];
   std::snprintf(
       line, sizeof line,
-      "%s: %.4f %% of pixels differ by more than %d (allowed %.4f %%), %.2f %% by less (allowed %.2f %%), "
+      "%s: %.3g %% of pixels differ by more than %d (allowed %.3g %%), %.3g %% by less (allowed %.3g %%), "
       "largest %d",
       verdict, 100 * large_share, tolerance.large, 100 * tolerance.large_share, 100 * small_share,
       100 * tolerance.small_share, largest);

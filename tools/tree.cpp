@@ -277,35 +277,33 @@ Json tree_json(const Trees& all, const capture::Tree& tree, const profile::TreeR
 
 // Pages.
 
-/// Writes the page of a single tree, or a page for each and one that lists them.
+/// Writes a page for each tree: of the one with most faults to the folder itself, of others to tree_N in it.
 void write_pages(const std::string& folder, const Trees& all, const std::vector<profile::TreeReport>& reports,
                  const std::string& command) {
   compare::reject_folder_of_run(folder);
-  const auto page = [&](std::size_t i, const std::string& in) {
-    const capture::Tree& tree = all.trees[i];
-    profile::write_tree_page(in, tree, all.meshes[tree.mesh], reports[i], all.engine, command);
-  };
-  if (all.trees.size() == 1) return page(0, folder);
-  report::Document doc("Trees of " + all.engine);
-  report::Table table{"Trees", {"tree", "mesh", "volume", "nodes", "depth", "SAH", "EPO", "faults"}};
-  std::uint64_t faults = 0;
-  for (std::size_t i = 0; i < all.trees.size(); ++i) {
-    const capture::Tree& tree = all.trees[i];
-    const profile::TreeFigures& f = reports[i].figures;
-    const auto sah = f.sah();
-    faults += reports[i].faults.total();
-    table.rows.push_back(
-        {std::to_string(tree.id), mesh_name(all, tree), std::string(profile::volume_name(tree.volume)),
-         render::group_digits(f.nodes), std::to_string(f.depth), sah ? render::short_number(*sah) : "",
-         f.epo ? render::short_number(f.epo->value) : "", render::group_digits(reports[i].faults.total())});
-    const std::string part = "tree_" + std::to_string(tree.id);
-    page(i, folder + "/" + part);
-    doc.link({part + "/index.html", mesh_name(all, tree), "tree " + std::to_string(tree.id)});
+  const std::size_t count = all.trees.size();
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < count; ++i)
+    if (reports[i].faults.total() > reports[first].faults.total()) first = i;
+  const auto part = [&](std::size_t i) { return "tree_" + std::to_string(all.trees[i].id); };
+  for (std::size_t page = 0; page < count; ++page) {
+    report::Table table{"Trees", {"tree", "mesh", "volume", "nodes", "depth", "SAH", "EPO", "faults"}};
+    for (std::size_t i = 0; i < count && count > 1; ++i) {
+      const capture::Tree& tree = all.trees[i];
+      const profile::TreeFigures& f = reports[i].figures;
+      const auto sah = f.sah();
+      table.rows.push_back({std::to_string(tree.id) + (i == page ? ", above" : ""), mesh_name(all, tree),
+                            std::string(profile::volume_name(tree.volume)), render::group_digits(f.nodes),
+                            std::to_string(f.depth), sah ? render::short_number(*sah) : "",
+                            f.epo ? render::short_number(f.epo->value) : "",
+                            render::group_digits(reports[i].faults.total())});
+      const std::string from = page == first ? "" : "../";
+      table.targets.push_back(i == page ? "" : from + (i == first ? "" : part(i) + "/") + "index.html");
+    }
+    const capture::Tree& tree = all.trees[page];
+    profile::write_tree_page(page == first ? folder : folder + "/" + part(page), tree, all.meshes[tree.mesh],
+                             reports[page], all.engine, command, table);
   }
-  doc.verdict(faults == 0 ? "no faults" : render::counted(faults, "fault", "faults"), faults == 0)
-      .command(command)
-      .table(table)
-      .write(folder);
 }
 
 int run_tree(const TreeCommandOptions& o, const Globals& globals) {

@@ -36,6 +36,8 @@ constexpr const char* kFrontier =
     "through the best of them, and the table lists them. Methods that are wrong in every case are no points; those that answer "
     "only yes or no, or that know earlier poses, are points, but not on the frontier. Each panel names what it leaves out.";
 
+constexpr const char* kAllSets = "all bodies";
+
 /// Purpose, definition of the error, and proof for one quantity.
 struct NumberText {
   const char *name, *purpose, *error, *judged, *proved;
@@ -160,9 +162,11 @@ std::string frontier_text(const Point& p) {
 
 /// Returns the tooltip of a point, with its line breaks.
 std::string note_of(const Point& p) {
-  std::string out = name_of(p.method, p.setting) + "\nmedian " + span_text(p.median, p.least, p.most) +
-                    " \u00b5s, p95 " + render::short_number(p.p95) + ", p99 " + render::short_number(p.p99) +
-                    "\ncold " + span_text(p.cold, p.cold_least, p.cold_most) + " \u00b5s";
+  std::string out =
+      name_of(p.method, p.setting) + "\nmedian " + span_text(p.median, p.least, p.most) + " \u00b5s";
+  if (p.set == kAllSets) return out + ", largest error " + render::short_number(p.error());
+  out += ", p95 " + render::short_number(p.p95) + ", p99 " + render::short_number(p.p99) + "\ncold " +
+         span_text(p.cold, p.cold_least, p.cold_most) + " \u00b5s";
   for (std::size_t m = 0; m < kMetrics; ++m)
     if (p.errors[m] && *p.errors[m] > 0)
       out += std::string("\n") + metric_info(static_cast<Metric>(m)).name + " " +
@@ -484,6 +488,45 @@ report::Table table_of_settings(const std::vector<DataSet>& sets, const std::vec
   return t;
 }
 
+namespace {
+
+/// Returns the chart over all bodies and poses, of the methods that answer everywhere.
+report::Chart summary_chart(const std::vector<DataSet>& sets, const std::vector<Point>& points,
+                            const std::vector<methods::MethodInfo>& methods) {
+  DataSet all;
+  all.name = kAllSets;
+  all.quantity = sets.front().quantity;
+  const std::span<const PoseClass> classes = classes_of(all.quantity);
+  std::map<std::string, std::vector<const Point*>> by_name;
+  for (const Point& p : points) by_name[name_of(p.method, p.setting)].push_back(&p);
+  std::vector<Point> means;
+  for (const Point& like : points) {  // in the order of the methods
+    std::vector<const Point*>& of = by_name[name_of(like.method, like.setting)];
+    if (of.size() == sets.size() * classes.size() &&
+        std::all_of(of.begin(), of.end(), [](const Point* p) { return p->median > 0; })) {
+      Point& mean = means.emplace_back(**std::max_element(
+          of.begin(), of.end(), [](const Point* p, const Point* q) { return p->error() < q->error(); }));
+      mean.set = kAllSets;
+      mean.pose_class = classes.front();
+      for (double Point::*time : {&Point::median, &Point::least, &Point::most}) {
+        std::vector<double> times;
+        for (const Point* p : of) times.push_back(p->*time);
+        mean.*time = geometric_mean(times);
+      }
+      mean.ties.clear();
+      for (const Point* p : of) mean.always_wrong |= p->always_wrong;
+    }
+    of.clear();
+  }
+  mark_frontiers(means, methods);
+  report::Chart chart =
+      chart_of(all, classes.front(), means, methods, [](const Point&) { return std::string(); });
+  chart.title = "All bodies and poses: geometric mean of the times, largest error";
+  return chart;
+}
+
+}  // namespace
+
 std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, const std::vector<Point>& points,
                                            const std::vector<methods::MethodInfo>& methods,
                                            const std::function<std::string(const Point&)>& scene_of) {
@@ -501,8 +544,12 @@ report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& se
   const ChartText words = chart_text(quantity);
   report::Document doc(words.title, words.purpose);
   if (!unfinished.empty()) doc.verdict("unfinished", false).purpose(unfinished);
-  doc.each(words.texts, &report::Document::text).each(charts, &report::Document::chart);
-  doc.table(table_of_settings(sets, points, methods));
+  if (!sets.empty()) doc.chart(summary_chart(sets, points, methods));
+  doc.table(table_of_settings(sets, points, methods)).each(charts, &report::Document::chart);
+  for (report::Text text : words.texts) {
+    text.folded = true;
+    doc.text(text);
+  }
   return doc.table(table_of_metrics(points)).table(table_of_methods(methods)).table(table_of_points(points));
 }
 

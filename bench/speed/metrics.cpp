@@ -362,7 +362,8 @@ bool is_faster(const Point& p, const Point& other) {
   return p.most < other.least;
 }
 
-/// Marks the Pareto frontiers, and points that measured times cannot tell from them.
+}  // namespace
+
 void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods) {
   for (Point& p : points) p.left_out = why_left_out(p, methods);
   for (Point& p : points) {
@@ -382,7 +383,7 @@ void mark_frontiers(std::vector<Point>& points, const std::vector<methods::Metho
   }
 }
 
-}  // namespace
+namespace {}  // namespace
 
 double Point::error() const {
   if (const auto& list = errors[static_cast<std::size_t>(Metric::list)])

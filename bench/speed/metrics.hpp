@@ -53,6 +53,10 @@ std::vector<Point> measure_points(const std::vector<DataSet>& sets,
                                   const std::vector<methods::MethodInfo>& methods,
                                   const std::vector<Record>& records);
 
+/// Marks the Pareto frontiers of each data set and class, and points that measured times cannot tell from
+/// them.
+void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods);
+
 /// Returns the errors of an answer with all pairs to a query of a data set of pairs; `a` and `b` are its
 /// bodies.
 Errors errors_of_answer(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,

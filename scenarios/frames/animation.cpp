@@ -27,6 +27,8 @@ namespace lrb::run {
 namespace {
 
 constexpr std::uint32_t kFramesPerSecond = 12;
+// How long the first and the last frame are held, in addition, so that an eye finds them when it repeats.
+constexpr std::uint32_t kHoldFirst = kFramesPerSecond / 2, kHoldLast = kFramesPerSecond;
 
 std::string ending_of(const std::string& file) {
   return std::filesystem::path(file).extension().string();
@@ -40,10 +42,14 @@ std::string program() {
 std::vector<std::string> codec(const std::string& ending) {
   // GIF: a separate palette, because it has 256 colours. H.264: even sizes, and a pixel format that every
   // player supports.
-  if (ending == ".gif") return {"-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse"};
-  if (ending == ".webp") return {"-c:v", "libwebp", "-lossless", "1", "-loop", "0"};
-  return {"-vf",    "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-c:v", "libx264", "-crf", "16", "-pix_fmt",
-          "yuv420p"};
+  const std::string hold = "tpad=start_mode=clone:start=" + std::to_string(kHoldFirst) +
+                           ":stop_mode=clone:stop=" + std::to_string(kHoldLast);
+  if (ending == ".gif") return {"-filter_complex", hold + ",split[a][b];[a]palettegen[p];[b][p]paletteuse"};
+  if (ending == ".webp") return {"-vf", hold, "-c:v", "libwebp", "-lossless", "1", "-loop", "0"};
+  return {"-vf",      hold + ",pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
+          "-c:v",     "libx264",
+          "-crf",     "16",
+          "-pix_fmt", "yuv420p"};
 }
 
 /// Returns true if a program exists, given by path or by name in one of the folders of PATH.
@@ -160,6 +166,10 @@ std::string animated_png(const std::vector<std::string>& frames) {
       ++runs.back().second;
     else
       runs.emplace_back(&frame, 1);
+  }
+  if (runs.size() > 1) {
+    runs.front().second += kHoldFirst;
+    runs.back().second += kHoldLast;
   }
   const std::vector<PngChunk> first = chunks_of(frames[0]);
   std::string out = frames[0].substr(0, kSignature);

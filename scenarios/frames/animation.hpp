@@ -12,12 +12,13 @@ bool has_ffmpeg();
 /// format needs ffmpeg and it is missing.
 void check_animation(const std::string& file);
 
-/// Returns an animated PNG, 12 frames per second, of frames that are PNG files. Frames equal to the one
-/// before extend it. Throws InputError if there are none, or if they differ in size or kind.
+/// Returns an animated PNG of frames that are PNG files, 12 per second; the first and the last are held for
+/// half a second and a second more. Frames equal to the one before extend it. Throws InputError if there are
+/// none, or if they differ in size or kind.
 std::string animated_png(const std::vector<std::string>& frames);
 
-/// Makes an animation of the frames in folder/frames, 12 per second. Throws EnvironmentError if ffmpeg fails;
-/// an existing file is then unchanged.
+/// Makes an animation of the frames in folder/frames, as animated_png() does. Throws EnvironmentError if
+/// ffmpeg fails; an existing file is then unchanged.
 void animate(const std::string& folder, const std::string& file);
 
 }  // namespace lrb::run

@@ -1,8 +1,10 @@
 #include "scenarios/golden/check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <span>
 #include <unordered_map>
 
@@ -57,8 +59,22 @@ std::string pose_cause(const trace::Trace& x, const trace::Trace& y) {
     for (const auto& [name, pose] : {std::pair{"A", &trace::Step::pose_a}, {"B", &trace::Step::pose_b}}) {
       const Pose &p = x.steps[i].*pose, &q = y.steps[i].*pose;
       if (trace::equal(p, q)) continue;
-      return "step " + std::to_string(y.steps[i].index) + ": body " + name +
-             " moved: its origin is displaced by " + render::short_number((q.t - p.t).norm());
+      // The linear part: a rotation by this angle, or another change.
+      std::string how;
+      if (p.r != q.r) {
+        const Eigen::Matrix3d turn = q.r * p.r.inverse();
+        const bool rotation = (turn * turn.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-9;
+        const double half_chord = (turn - Eigen::Matrix3d::Identity()).norm() / std::sqrt(8.0);
+        how = !rotation ? "its matrix changed"
+                        : "it is rotated by " +
+                              render::short_number(2 * std::asin(std::min(half_chord, 1.0)) * 180 /
+                                                   std::numbers::pi) +
+                              " degrees";
+      }
+      if (p.t != q.t)
+        how += (how.empty() ? "" : ", ") + std::string("its origin is displaced by ") +
+               render::short_number((q.t - p.t).norm());
+      return "step " + std::to_string(y.steps[i].index) + ": body " + name + " moved: " + how;
     }
   return {};
 }
@@ -280,7 +296,7 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::Pa
         const double mean = render::mean_flip(expected, found) * pixels /
                             std::max<double>(1, pixels - static_cast<double>(ignored));
         passed = mean <= spec.flip;
-        flip = "; mean FLIP " + io::fixed_text(mean, 4) +
+        flip = "; mean FLIP " + render::short_number(mean) +
                (spec.flip > 0 ? " (allowed " + render::short_number(spec.flip) + ")" : "");
       }
     }

@@ -154,9 +154,43 @@ namespace {
 constexpr const char* kKinds[] = {"expected", "actual", "difference"};
 constexpr const char* kTitle = "Golden images and traces";
 constexpr const char* kDivergence = "divergence";
+constexpr render::Rgba kDiffers{200, 0, 160, 255};  // the colour of a frame around what differs
 
 report::PngBytes png_of(const render::Image& image) {
   return image.empty() ? report::PngBytes() : render::encode_png(image);
+}
+
+/// Returns a picture of a quarter of a page's width with a frame around the pixels that differ strongly.
+render::Image thumbnail(const render::Image& expected, const render::Image& actual) {
+  constexpr int kLarge = render::ImageTolerance{}.large, kThumbnail = 240, kMargin = 6;
+  render::Image marked = actual;
+  if (expected.width() == actual.width() && expected.height() == actual.height()) {
+    int left = actual.width(), top = actual.height(), right = -1, bottom = -1;
+    for (int y = 0; y < actual.height(); ++y)
+      for (int x = 0; x < actual.width(); ++x) {
+        const render::Rgba e = expected.at(x, y), a = actual.at(x, y);
+        if (std::max({std::abs(e.r - a.r), std::abs(e.g - a.g), std::abs(e.b - a.b)}) <= kLarge) continue;
+        left = std::min(left, x), right = std::max(right, x);
+        top = std::min(top, y), bottom = std::max(bottom, y);
+      }
+    if (right >= 0)
+      marked.stroke({left - kMargin, top - kMargin, right - left + 2 * kMargin, bottom - top + 2 * kMargin},
+                    kDiffers, 4);
+  }
+  // Each pixel is the mean of a square of pixels.
+  const int n = std::max(1, marked.width() / kThumbnail);
+  render::Image out(marked.width() / n, marked.height() / n);
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) {
+      int r = 0, g = 0, b = 0;
+      for (int i = 0; i < n * n; ++i) {
+        const render::Rgba p = marked.at(n * x + i % n, n * y + i / n);
+        r += p.r, g += p.g, b += p.b;
+      }
+      const auto mean = [&](int sum) { return static_cast<std::uint8_t>(sum / (n * n)); };
+      out.at(x, y) = {mean(r), mean(g), mean(b), 255};
+    }
+  return out;
 }
 
 void add_comparison(GoldenResult& result, report::Comparison comparison, const render::Image& expected,
@@ -164,7 +198,8 @@ void add_comparison(GoldenResult& result, report::Comparison comparison, const r
   const render::Image difference =
       expected.empty() || actual.empty() ? render::Image() : render::difference_image(expected, actual);
   comparison.pngs = {png_of(expected), png_of(actual), png_of(difference)};
-  if (!comparison.passed) comparison.command = result.approve;
+  if (!comparison.passed && !actual.empty() && result.thumbnail.empty())
+    result.thumbnail = png_of(thumbnail(expected, actual));
   result.comparisons.push_back(std::move(comparison));
 }
 
@@ -238,11 +273,17 @@ std::string work_text(const GoldenResult& r) {
   return out.empty() ? "within budget" : out;
 }
 
+std::string with_arrows(std::string text) {
+  for (std::size_t i = 0; (i = text.find(" -> ", i)) != std::string::npos;) text.replace(i, 4, " \u2192 ");
+  return text;
+}
+
 /// The differences by step, and their possible causes.
 
 report::Table effects_table(const GoldenResult& r) {
   constexpr std::size_t kMaxRows = 200;
   report::Table t{r.name + ": answers and counters", {"step", "quantity", "approved", "found"}};
+  t.folded = true;
   for (const Effect& e : r.verdict.more_work)
     t.rows.push_back({"all", e.what + " (budget exceeded)", e.expected, e.found});
   for (std::size_t i = 0; i < std::min(r.verdict.effects.size(), kMaxRows); ++i) {
@@ -330,8 +371,6 @@ void write_failures(const GoldenResult& result, const GoldenRun& run, const std:
 
 void write_golden_page(const std::vector<GoldenResult>& results, const report::Folder& folder,
                        const std::string& command) {
-  constexpr std::size_t kNamed = 5;
-  std::string causes;  // of the first failures
   std::size_t failed = 0, images = 0, images_failed = 0, events = 0;
   report::Table scenarios{
       "Scenarios",
@@ -342,49 +381,46 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
     images += v.images.size();
     for (const ImageVerdict& image : v.images) images_failed += image.passed ? 0 : 1;
     events += r.events;
-    scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", cause_text(r), answers_text(r),
-                              events_text(r), work_text(r), images_text(r), io::fixed_text(r.seconds, 1)});
+    scenarios.rows.push_back({r.name, v.passed() ? "passed" : "FAILED", with_arrows(cause_text(r)),
+                              answers_text(r), events_text(r),
+                              v.more_work.size() > 1
+                                  ? std::to_string(v.more_work.size()) + " counters beyond the budget"
+                                  : with_arrows(work_text(r)),
+                              images_text(r), io::fixed_text(r.seconds, 1)});
     scenarios.targets.push_back(!v.passed()             ? "#" + r.name
                                 : r.comparisons.empty() ? std::string()
                                                         : "#" + r.comparisons.front().id);
+    scenarios.pictures.push_back(r.thumbnail);
   }
-  // The causes, each once with the names of all goldens that have it.
-  std::size_t named = 0;
-  std::set<std::string> told;
-  for (const GoldenResult& r : results) {
-    const std::string& group = r.verdict.group;
-    if (r.verdict.passed() || (!group.empty() && !told.insert(group).second)) continue;
-    if (++named > kNamed) continue;
-    std::string names = r.name;
-    for (const GoldenResult& other : results)
-      if (&other != &r && !group.empty() && other.verdict.group == group) names += ", " + other.name;
-    causes += (causes.empty() ? "" : " ") + names + ": " + cause_text(r) + ".";
-  }
-  if (named > kNamed) causes += " And " + render::counted(named - kNamed, "more cause", "more causes") + ".";
-  report::Document doc(
-      kTitle,
-      "Runs against their approved goldens: events and counters must be equal; pictures may differ by the "
-      "rounding of other processors.");
-  if (!causes.empty()) doc.summary(causes);
-  doc.verdict(failed == 0 ? "passed" : render::counted(failed, "failure", "failures"), failed == 0)
+  report::Document doc(kTitle, render::counted(results.size(), "scenario", "scenarios") + ", " +
+                                   std::to_string(failed) + " failed. " + render::group_digits(events) +
+                                   " events compared exactly. " + render::counted(images, "image", "images") +
+                                   " compared within the rounding of other processors, " +
+                                   std::to_string(images_failed) + " failed.");
+  std::string causes;
+  for (const std::string& line : equal_causes(results)) causes += (causes.empty() ? "" : " ") + line + ".";
+  doc.summary(with_arrows(causes))
+      .verdict(failed == 0 ? "passed" : render::counted(failed, "failure", "failures"), failed == 0)
       .command(command)
-      .number({"Scenarios", std::to_string(results.size()), std::to_string(failed) + " failed"})
-      .number({"Events compared", render::group_digits(events), "each field, exactly"})
-      .number({"Images", std::to_string(images), std::to_string(images_failed) + " failed"})
       .table(scenarios);
-  std::vector<report::Comparison> comparisons;
-  for (const GoldenResult& r : results)
-    comparisons.insert(comparisons.end(), r.comparisons.begin(), r.comparisons.end());
+  // A section for each failure: its causes and the command that approves it; pictures; numbers.
+  std::vector<report::Comparison> passed;
   for (const GoldenResult& r : results) {
-    if (r.verdict.passed()) continue;
-    // A section with the cause and the command that approves it, without pictures; they follow.
-    std::string causes_of;
-    for (const std::string& cause : r.verdict.causes) causes_of += (causes_of.empty() ? "" : "; ") + cause;
-    const std::string title = r.name + ": differences";
-    doc.comparisons({{r.name, title, r.verdict.rejection + causes_of, false, {}, {}, r.approve}});
+    if (r.verdict.passed()) {
+      passed.insert(passed.end(), r.comparisons.begin(), r.comparisons.end());
+      continue;
+    }
+    std::string why = r.verdict.rejection;
+    for (const std::string& cause : r.verdict.causes) why += (why.empty() ? "" : "; ") + cause;
+    std::vector<report::Comparison> section = {{r.name, r.name, with_arrows(why), false, {}, {}, r.approve}};
+    section.insert(section.end(), r.comparisons.begin(), r.comparisons.end());
+    std::stable_partition(section.begin() + 1, section.end(), [](const report::Comparison& c) {
+      return !c.pngs[0].empty() || !c.pngs[1].empty();
+    });
+    doc.comparisons(section);
     if (r.verdict.rejection.empty()) doc.table(effects_table(r));
   }
-  doc.comparisons(comparisons).write(folder);
+  doc.comparisons(passed).write(folder);
 }
 
 std::string result_text(const GoldenResult& r) {

@@ -24,6 +24,7 @@ struct GoldenResult {
   std::string renderer;                   ///< what drew the pictures, if some failed; may be empty
   std::string page;                       ///< path of the page that shows the result; may be empty
   std::vector<report::Comparison> comparisons;
+  report::PngBytes thumbnail = {};  ///< of the first picture that failed, with a frame around what differs
 };
 
 /// Tests a run. With `all`, also keeps the pictures that passed.

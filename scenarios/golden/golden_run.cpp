@@ -53,6 +53,18 @@ requires std::is_enum_v<Enum> std::string to_text(Enum value) {
   return std::string(name_of(value));
 }
 
+/// Sets texts of two different values: with as many digits as differ.
+template <class T>
+void set_texts(const T& expected, const T& found, Effect& e) {
+  e.expected = to_text(expected);
+  e.found = to_text(found);
+  if constexpr (std::is_same_v<T, double>)
+    for (int digits = 8; e.expected == e.found && digits <= 17; ++digits) {
+      e.expected = io::number_text(expected, digits);
+      e.found = io::number_text(found, digits);
+    }
+}
+
 /// Compares the fields of two records and the fields of their counters.
 template <class Record>
 void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>& out) {
@@ -66,8 +78,7 @@ void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>&
       compare(expected, found, work, counters);
     } else {
       like.what = io::in_words(field.name);
-      like.expected = to_text(expected);
-      like.found = to_text(found);
+      set_texts(expected, found, like);
       if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>)
         if (field.form == Form::hash) {
           like.expected = trace::to_hex(expected);
@@ -105,8 +116,7 @@ std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run) {
       compare(expected[i].result, found[i].result, like, of_step);
     if (i < lengths.size() && i < lengths_now.size() && lengths[i] != lengths_now[i]) {
       like.what = "length of contact";
-      like.expected = to_text(lengths[i]);
-      like.found = to_text(lengths_now[i]);
+      set_texts(lengths[i], lengths_now[i], like);
       like.kind = Effect::Kind::measure;
       of_step.push_back(like);
     }

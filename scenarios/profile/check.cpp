@@ -130,14 +130,15 @@ report::Table wrong_table(std::span<const Check> checks) {
   return t;
 }
 
-/// The prices of a bar, from the bottom.
+/// The prices of a bar, from the bottom: blue: needed work, orange and red: waste.
 constexpr std::size_t kBarParts = 7;
-constexpr const char* kBarNames[kBarParts] = {"needed", "proof",     "test",        "volumes",
-                                              "order",  "not split", "unattributed"};
+constexpr std::pair<const char*, const char*> kBars[kBarParts] = {
+    {"needed", "#0072b2"}, {"proof", "#56b4e9"},     {"test", "#b2182b"},        {"volumes", "#d55e00"},
+    {"order", "#f0a830"},  {"not split", "#e08020"}, {"unattributed", "#8c8c8c"}};
 
 report::Chart bars(const std::string& title, const std::string& x) {
   report::Chart out{title, {x}, {"visits"}};
-  for (const char* name : kBarNames) out.series.push_back({name, {}, {}, {report::Line::bars}});
+  for (const auto& [name, colour] : kBars) out.series.push_back({name, {}, {}, {report::Line::bars, colour}});
   return out;
 }
 
@@ -172,7 +173,7 @@ report::Chart chart_by_query(const Check& c) {
 
 report::Chart chart_by_depth(const Check& c) {
   report::Chart out = bars("Prices by depth of the descent, " + c.engine, "pairs of nodes above");
-  out.series.resize(3);
+  out.series = {out.series[0], out.series[1], out.series[3]};
   out.series[2].label = "wasted: test, volumes or order";
   for (std::size_t d = 0; d < c.by_depth.size(); ++d) {
     const DepthPrices& p = c.by_depth[d];
@@ -374,13 +375,15 @@ std::vector<std::string> add_checks(report::Document& page, std::span<const Chec
   if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
   for (const Check& c : checks) {
     const CheckSums sum = c.sum();
+    const Prices& p = sum.prices;
     page.number({"Wrong queries of " + c.engine,
                  group_digits(sum.outcomes[static_cast<std::size_t>(Judgement::wrong)]),
-                 "of " + group_digits(sum.queries)});
-  }
-  for (const Check& c : checks) {
-    page.chart(chart_by_query(c));
-    page.chart(chart_by_depth(c));
+                 "of " + group_digits(sum.queries)})
+        .number({"Wasted visits of " + c.engine,
+                 percent(p.visits - p.needed - p.proof - p.unattributed, p.visits),
+                 "of " + group_digits(p.visits)})
+        .number({"Triangle tests for nothing", percent(p.triangle_tests_for_nothing, p.triangle_tests),
+                 "of " + group_digits(p.triangle_tests)});
   }
   for (std::size_t i = 0; i < checks.size(); ++i) try {
       if (!checks[i].waste.empty())
@@ -391,6 +394,7 @@ std::vector<std::string> add_checks(report::Document& page, std::span<const Chec
     } catch (const EnvironmentError& e) {
       notes.push_back(std::string("the waste was not drawn: ") + e.what());
     }
+  for (const Check& c : checks) page.chart(chart_by_query(c)).chart(chart_by_depth(c));
   page.table(price_table(checks));
   page.table(verdict_table(checks));
   if (const report::Table t = owner_table(checks); !t.rows.empty()) page.table(t);

@@ -28,9 +28,8 @@ std::string share_of_epo(const TreeFigures& f, double epo) {
 
 void add_numbers(report::Document& doc, const TreeReport& report, std::size_t triangles) {
   const TreeFigures& f = report.figures;
-  doc.number({"Faults", group_digits(report.faults.total())})
-      .number({"Nodes", group_digits(f.nodes),
-               counted(f.leaves, "leaf", "leaves") + ", " + counted(triangles, "triangle", "triangles")})
+  doc.number({"Nodes", group_digits(f.nodes),
+              counted(f.leaves, "leaf", "leaves") + ", " + counted(triangles, "triangle", "triangles")})
       .number({"Depth", std::to_string(f.depth), "mean of leaves: " + short_number(f.mean_depth)});
   if (const auto sah = f.sah())
     doc.number({"SAH", short_number(*sah),
@@ -261,7 +260,8 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
 }
 
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,
-                     const TreeReport& report, const std::string& engine, const std::string& command) {
+                     const TreeReport& report, const std::string& engine, const std::string& command,
+                     const report::Table& others) {
   constexpr std::size_t kMaxFaces = 500'000;  // of a view
   const TreeFigures& f = report.figures;
   const TreeIndex index(tree, mesh.triangles.size());
@@ -272,6 +272,10 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
   const std::uint64_t faults = report.faults.total();
   doc.verdict(faults == 0 ? "no faults" : counted(faults, "fault", "faults"), faults == 0).command(command);
   add_numbers(doc, report, mesh.triangles.size());
+  if (mesh.triangles.size() <= kMaxFaces)
+    doc.tree_view(view_json(tree, mesh, index, f));
+  else
+    doc.purpose("No view: it is limited to " + group_digits(kMaxFaces) + " triangles.");
   if (faults > 0) {
     report::Table table{"Faults", {"kind", "number", "found"}};
     for (const FoundFault& fault : report.faults.first) {
@@ -283,10 +287,7 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
     table.note = "The first " + std::to_string(TreeFaults::kShown) + " of each kind.";
     doc.table(table);
   }
-  if (mesh.triangles.size() <= kMaxFaces)
-    doc.tree_view(view_json(tree, mesh, index, f));
-  else
-    doc.purpose("No view: it is limited to " + group_digits(kMaxFaces) + " triangles.");
+  if (!others.rows.empty()) doc.table(others);
   doc.picture(
       "nodes.svg", icicle_svg(tree, index, f), "All nodes",
       "By depth, the root on top. Width: triangles below the node. Colour: its EPO, from dark blue (none) to yellow (the largest).",

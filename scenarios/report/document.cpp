@@ -28,8 +28,8 @@ bool looks_numeric(std::string_view cell) {
          cell.find_first_not_of("0123456789.,+-eE %x\xE2\x80\xAF") == std::string_view::npos;
 }
 
-std::string cell_html(const std::string& cell) {
-  const char* kind = looks_numeric(cell)    ? " class=\"n\""
+std::string cell_html(const std::string& cell, bool numeric) {
+  const char* kind = numeric                ? " class=\"n\""
                      : cell == "FAILED"     ? " class=\"bad\""
                      : cell.size() > kProse ? " class=\"prose\""
                                             : "";
@@ -271,7 +271,8 @@ std::string Document::tooltip(std::string_view name) const {
 }
 
 Document& Document::text(const Text& text) {
-  texts_ += fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
+  (text.folded ? folded_texts_ : texts_) +=
+      fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
   return *this;
 }
 
@@ -311,26 +312,39 @@ Document& Document::table(const Table& t) {
     name.erase(name.find_last_not_of('-') + 1);
     file(name + ".tex", booktabs(t), t.title + ", for LaTeX");
   }
+  // A column is aligned right if most of its cells are numbers.
+  std::vector<std::size_t> numbers(t.columns.size());
+  for (const std::vector<std::string>& row : t.rows)
+    for (std::size_t c = 0; c < std::min(row.size(), numbers.size()); ++c)
+      numbers[c] += looks_numeric(row[c]) ? 1 : 0;
+  const auto numeric = [&](std::size_t c) { return c < numbers.size() && 2 * numbers[c] > t.rows.size(); };
   std::string head, rows;
-  for (std::size_t c = 0; c < t.columns.size(); ++c) {
-    const bool numeric = !t.rows.empty() && c < t.rows[0].size() && looks_numeric(t.rows[0][c]);
-    head += fill("<th{!}{!}>{}</th>", {numeric ? " class=\"n\"" : "", tooltip(t.columns[c]), t.columns[c]});
-  }
+  for (std::size_t c = 0; c < t.columns.size(); ++c)
+    head +=
+        fill("<th{!}{!}>{}</th>", {numeric(c) ? " class=\"n\"" : "", tooltip(t.columns[c]), t.columns[c]});
   for (std::size_t r = 0; r < t.rows.size(); ++r) {
     const bool leads = r < t.targets.size() && !t.targets[r].empty();
-    const bool links = leads && t.targets[r].front() == '#';
+    const bool links = leads && (t.targets[r].front() == '#' || t.targets[r].ends_with(".html"));
+    const bool drawn = r < t.pictures.size() && !t.pictures[r].empty();
     rows += leads && !links ? fill("<tr data-to=\"{}\">", {t.targets[r]}) : "<tr>";
     for (std::size_t c = 0; c < t.rows[r].size(); ++c)
-      rows += links && c == 0 ? fill("<td><a href=\"{}\">{}</a></td>", {t.targets[r], t.rows[r][c]})
-                              : cell_html(t.rows[r][c]);
+      rows += links && c == 0
+                  ? fill("<td><a href=\"{}\">{}{!}</a></td>",
+                         {t.targets[r], t.rows[r][c],
+                          drawn ? fill("<img alt=\"\" src=\"{}\">",
+                                       {data_uri("image/png", t.pictures[r].data(), t.pictures[r].size())})
+                                : std::string()})
+                  : cell_html(t.rows[r][c], numeric(c));
     rows += "</tr>\n";
   }
-  return add(
-      fill(R"(<section><h2>{}</h2>
+  const std::string title = fill("<h2>{}</h2>", {t.title});
+  return add(fill(R"(<section>{!}
 <div class="scroll{!}"><table><thead><tr>{!}</tr></thead><tbody>
-{!}</tbody></table></div>{!}</section>
+{!}</tbody></table></div>{!}{!}</section>
 )",
-           {t.title, t.rows.size() > kLong ? " long\" tabindex=\"0" : "", head, rows, note_html(t.note)}));
+                  {t.folded ? "<details><summary>" + title + "</summary>" : title,
+                   t.rows.size() > kLong ? " long\" tabindex=\"0" : "", head, rows, note_html(t.note),
+                   t.folded ? "</details>" : ""}));
 }
 
 Document& Document::grid(const Grid& grid, const std::string& folder) {
@@ -385,7 +399,10 @@ Document& Document::scene(const std::string& json) {
 }
 
 Document& Document::tree_view(const std::string& json) {
-  return view(json, "tree");
+  view(json, "tree");
+  if (!numbers_.empty()) add("<dl class=\"numbers\">\n" + numbers_ + "</dl>\n");
+  numbers_.clear();
+  return *this;
 }
 
 Document& Document::frames(const std::vector<Frame>& frames, const std::string& folder, std::size_t budget) {
@@ -480,6 +497,9 @@ std::string Document::html() const {
                    l.note.empty() ? "" : fill(" <span>{}</span>", {l.note})});
   if (!files.empty())
     source += "<section><h2>Files</h2>\n<ul class=\"links\">\n" + files + "</ul></section>\n";
+  if (!folded_texts_.empty())
+    source = "<section><details><summary><h2>How to read this page</h2></summary><div class=\"texts\">\n" +
+             folded_texts_ + "</div></details></section>\n" + source;
   const std::string texts = texts_.empty() ? "" : "<div class=\"texts\">\n" + texts_ + "</div>\n";
   std::string numbers = numbers_.empty() ? "" : "<dl class=\"numbers\">\n" + numbers_ + "</dl>\n";
   std::string head = purpose_.empty() ? "" : fill("<p class=\"purpose\">{}</p>", {purpose_});

@@ -26,12 +26,15 @@ struct Number {
 struct Table {
   std::string title;
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows = {};  ///< numeric cells are aligned right
+  std::vector<std::vector<std::string>> rows = {};
   std::string note = {};
   /// The items that the rows are about, for as many of the first rows: a click on such a row selects the item
   /// in the view of the run. "step NUMBER", "region SIDE NUMBER" (side 0 or 1), "boxes DEPTH" (of tree
-  /// nodes), "pair STEP A B" (simplices of A and B), or empty.
+  /// nodes), "pair STEP A B" (simplices of A and B), or empty. Of "#ID" and "FILE.html", the first cell is a
+  /// link to that place.
   std::vector<std::string> targets = {};
+  std::vector<PngBytes> pictures = {};  ///< small ones, under the links of as many first rows; may be empty
+  bool folded = false;                  ///< a page shows only the title until it is clicked
 };
 
 /// Returns columns and rows of a table as CSV (RFC 4180), for other programs. Cells with a comma, a quote or
@@ -51,6 +54,7 @@ std::string booktabs(const Table& table);
 /// A heading and a paragraph.
 struct Text {
   std::string title, text;
+  bool folded = false;  ///< at the end of the page, under "How to read this page", instead of at the top
 };
 
 /// A picture of a sequence, which is in the report's folder.
@@ -163,7 +167,7 @@ class Document {
   /// Puts the parts that are added from now on into a tab of the page of a run. Tabs of one name are one.
   Document& tab(const std::string& name);
 
-  Document& text(const Text& text);        ///< at the top, side by side
+  Document& text(const Text& text);        ///< side by side
   Document& number(const Number& number);  ///< below the texts, in a row
   Document& chart(const Chart& chart);
   Document& table(const Table& table);
@@ -173,7 +177,8 @@ class Document {
   Document& comparisons(const std::vector<Comparison>& comparisons);
   Document& views(const std::vector<View>& views);  ///< with one camera and one time step
   Document& scene(const std::string& json);         ///< a run, for the 3D view
-  Document& tree_view(const std::string& json);     ///< a body and its tree, for the 3D view
+  /// A body and its tree, for the 3D view; then the key figures so far.
+  Document& tree_view(const std::string& json);
   /// Pictures of a sequence, whose files are in `folder`. `budget`: see inline_pngs().
   Document& frames(const std::vector<Frame>& frames, const std::string& folder,
                    std::size_t budget = kInlineBudget);
@@ -219,7 +224,7 @@ class Document {
 
   std::string title_, purpose_, summary_, verdict_, footer_, command_, tab_;
   std::string_view (*meaning_of_)(std::string_view) = nullptr;
-  std::string texts_, numbers_, body_;
+  std::string texts_, folded_texts_, numbers_, body_;
   std::string styles_, libraries_, view_data_, charts_, frames_ = "[]";
   std::vector<std::string> modules_{"page"};
   bool of_run_ = false, framing_ = false, in_charts_ = false, tables_as_tex_ = false;

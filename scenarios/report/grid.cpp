@@ -137,8 +137,9 @@ std::string table_html(const Grid& grid) {
     out +=
         fill(R"(<th scope="col" title="{}"><b>{!}</b>{!}</th>)", {c.text, breakable(c.title), small(c.text)});
   out += "</tr></thead><tbody>\n";
-  for (std::size_t r = 0; r < grid.rows.size(); ++r) {
-    const bool total = r + grid.total_rows >= grid.rows.size();
+  for (std::size_t i = 0; i < grid.rows.size(); ++i) {
+    const bool total = i < grid.total_rows;  // sums first
+    const std::size_t r = (i + grid.rows.size() - grid.total_rows) % grid.rows.size();
     out += (total ? "<tr class=\"total\">" : "<tr>") + row_html(grid.rows[r]);
     for (std::size_t c = 0; c < grid.columns.size(); ++c)
       out += cell_html(grid, grid.cells[r * grid.columns.size() + c]);

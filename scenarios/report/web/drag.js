@@ -1,7 +1,9 @@
-// ---- the live page of a run: B is dragged, and the engine in this page (wasm/engine.cpp) answers every pose
 import { byId, digits, element, oncePerFrame, plural } from "./dom.js";
+import { FIELD } from "./scene_camera.js";
 import { Body, NONE } from "./scene_run.js";
-import { BodiesCanvas, FIELD, webglWorks } from "./scene_view.js";
+import { BodiesCanvas, webglWorks } from "./scene_view.js";
+
+// ---- the live page of a run: B is dragged, and the engine in this page (wasm/engine.cpp) answers every pose
 
 /** Two bodies in the engine's memory. */
 class Engine {

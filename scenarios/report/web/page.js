@@ -117,6 +117,13 @@ function ticksWithin(axis) {
   axis.ticks = within.length ? within.filter((t) => within.length < many || isPower(t)) : [{ value: axis.min }, { value: axis.max }];
 }
 
+/** Returns the label of a tick of a logarithmic axis: 0.01, 100, 10⁵; on an axis of several powers of ten, nothing between them. */
+function logLabel(value, { min, max }) {
+  const power = Math.round(Math.log10(value)), superscript = (n) => String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
+  if (Math.abs(Math.log10(value) - power) > 1e-6) return max < 30 * min ? String(Number(value.toPrecision(2))) : "";
+  return power >= -2 && power <= 3 ? String(Number(value.toPrecision(2))) : `10${superscript(power)}`;
+}
+
 function axis({ label, log, min, max, ticks }, isWhole = true) {
   const given = new Map(ticks.map((t) => [t.at, t.label]));
   return {
@@ -126,7 +133,7 @@ function axis({ label, log, min, max, ticks }, isWhole = true) {
     grid: { color: style("--grid"), borderColor: style("--line") },
     ticks: {
       color: style("--soft"), maxRotation: 0, precision: log || !isWhole ? undefined : 0,
-      ...(given.size ? { callback: (value) => given.get(value) } : {}),
+      ...(given.size ? { callback: (value) => given.get(value) } : log ? { callback(value) { return logLabel(value, this); } } : {}),
     },
   };
 }

@@ -1,7 +1,8 @@
-// ---- the proof map: a square of all pairs of faces, A's down and B's across, in the order of their trees.
-// The pairs that a test rejected are a rectangle: with the slider the square fills, down to specks.
 import { byId, digits, element, oncePerFrame, plural, short, style, textButton } from "./dom.js";
 import { grouped, NONE, SIDES, unpack } from "./scene_run.js";
+
+// ---- the proof map: a square of all pairs of faces, A's down and B's across, in the order of their trees.
+// The pairs that a test rejected are a rectangle: with the slider the square fills, down to specks.
 
 // The order of Argument in proof_map.hpp.
 const [CHILD_BOXES, NODE_BOXES, FACE_BOXES, PLANES, FLOATS, FILTER, EXPANSIONS, CONTACT, TOLERANCE, OPEN] =

@@ -1,12 +1,16 @@
 import { byId, digits } from "./dom.js";
 import { data, listeners, moment, seek, seekBy, tell } from "./page.js";
+import { ProofMap } from "./proof_map.js";
 import { AttemptPanel, Attempts } from "./scene_attempts.js";
 import { listenToKeys, Timeline, toggleHelp, ViewControls } from "./scene_controls.js";
+import { concernsPicked, EventFilter, EventTable, FilterForm } from "./scene_events.js";
 import { explainCells, PageAddress, printView, showMore, stripOfRun, Tabs } from "./scene_page.js";
-import { ProofMap } from "./proof_map.js";
-import { AnswerLine, concernsPicked, EventFilter, EventTable, FilterForm, Panel, RowLinks, Selection, WhyPanel, WorkIcicle } from "./scene_panels.js";
-import { Body, Events, eventSentence, Explanations, lastAtMost, NONE, SIDES, tellingEvent, Wrappers } from "./scene_run.js";
+import { AnswerLine, Panel, RowLinks, Selection } from "./scene_panels.js";
+import { Body, Events, eventSentence, Explanations, lastAtMost, NONE, SIDES } from "./scene_run.js";
+import { tellingEvent, Wrappers } from "./scene_run.js";
 import { SceneView, webglWorks } from "./scene_view.js";
+import { WhyPanel } from "./scene_why.js";
+import { WorkIcicle } from "./scene_work.js";
 
 // ---- all events of a run whose page has only some: loaded from its trace, which the user chooses or drops
 // here. Pages from disk cannot fetch it.

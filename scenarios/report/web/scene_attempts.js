@@ -1,7 +1,8 @@
-// ---- the attempts of a builder to cover parts of the front with caps, and the places where they were made, as in
-// scenarios/record/attempts.hpp
 import { byId, digits, element, linkRow, short } from "./dom.js";
 import { grouped, lastAtMost, NONE, outcomeText, unpack } from "./scene_run.js";
+
+// ---- the attempts of a builder to cover parts of the front with caps, and the places where they were made, as in
+// scenarios/record/attempts.hpp
 
 const ACCEPTED = "accepted"; // the verdict
 export class Attempts {

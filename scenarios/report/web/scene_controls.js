@@ -161,7 +161,7 @@ export function listenToKeys(actions) {
 }
 
 // ---- buttons and keys of the 3D view
-const EXPLODE_BY = 0.1; // by which the key changes the slider, which goes from 0 to 1
+const EXPLODE_BY = 0.1, SLICE_BY = 0.02; // by which a key changes its slider, which goes from 0 to 1
 
 export class ViewControls {
   constructor(view, selection) {
@@ -173,6 +173,7 @@ export class ViewControls {
     change("colour-scope", (e) => this.change({ scope: e.value }));
     change("boxes", (e) => this.change({ boxes: Number(e.value) }));
     change("explode", (e) => this.explode(Number(e.value)));
+    change("slice", (e) => this.slice(Number(e.value)));
     byId("ghost").onclick = () => this.toggle("ghost");
     byId("lids").onclick = () => this.toggle("lids");
     byId("isolate").onclick = byId("picked-isolate").onclick = () => this.isolatePicked();
@@ -210,6 +211,7 @@ export class ViewControls {
       byId(id).setAttribute("aria-pressed", on);
     byId("isolate").disabled = !now.isolate && !(picked && picked.region !== NONE);
     byId("explode").value = now.explode;
+    byId("slice").value = now.slice;
     byId("boxes").value = now.boxes;
     byId("colour-by").value = now.by;
     byId("colour-per").value = now.per;
@@ -236,6 +238,9 @@ export class ViewControls {
     this.change({ explode: Math.max(0, Math.min(1, Number(share.toFixed(2)))), isolate: null });
     view.draw(); // the framed objects must exist
     if (fitted) view.frameAll();
+  }
+  slice(share) {
+    this.change({ slice: Math.max(0, Math.min(1, Number(share.toFixed(3)))) });
   }
   /** Shows a region alone and fills the view with it; null: everything again, from where it was seen before. */
   isolate(region) {
@@ -284,6 +289,7 @@ export class ViewControls {
           d: () => view.camera.turn(turn, 0),
           e: () => view.camera.turn(0, turn),
           q: () => view.camera.turn(0, -turn),
+          c: (shift) => this.slice(view.now.slice + (shift ? -SLICE_BY : SLICE_BY)),
         };
     return {
       ...ofSolids,

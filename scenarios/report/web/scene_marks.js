@@ -1,5 +1,6 @@
 import { byId, digits, element } from "./dom.js";
-import { boxEdges, COUNTERS, discard, edgesOf, FaceMesh, mixed, roundPoints, thickLines, thickMaterial, WHITE } from "./scene_bodies.js";
+import { COUNTERS, discard, edgesOf, FaceMesh, mixed } from "./scene_bodies.js";
+import { boxEdges, roundPoints, thickLines, thickMaterial, WHITE } from "./scene_lines.js";
 import { SIDES, unpack } from "./scene_run.js";
 
 // ---- the elements of the event and of the selection: painted over the bodies, with outlines visible through

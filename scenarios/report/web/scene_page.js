@@ -1,8 +1,9 @@
-// ---- the parts of the page of a run around its view: tabs, signs of scrolling, the picture of the cost, the address
 import { byId, digits, element, oncePerFrame, svgElement, textButton } from "./dom.js";
 import { seek } from "./page.js";
-import { WORK_SORTS, workSort } from "./scene_panels.js";
 import { eventText, lastAtMost, NONE, SIDES } from "./scene_run.js";
+import { WORK_SORTS, workSort } from "./scene_work.js";
+
+// ---- the parts of the page of a run around its view: tabs, signs of scrolling, the picture of the cost, the address
 
 const TAB_ORDER = ["Not as expected", "This step", "Events", "Work", "Proof map", "Steps", "Queries", "Charts"], // then all others
   LAST_TABS = ["Frames", "Words", "Run"];

@@ -1,8 +1,10 @@
-// ---- the page of a tree: the volume and the triangles of one node, selected in the view, the icicle or a table
 import { byId, digits, linkRow, percent, plural, rounded, textButton } from "./dom.js";
-import { boxEdges, mixed, WHITE } from "./scene_bodies.js";
+import { mixed } from "./scene_bodies.js";
+import { boxEdges, WHITE } from "./scene_lines.js";
 import { Body, grouped, NONE, unpack } from "./scene_run.js";
 import { BodiesCanvas, onClick, webglWorks } from "./scene_view.js";
+
+// ---- the page of a tree: the volume and the triangles of one node, selected in the view, the icicle or a table
 
 /** The nodes of a tree. A node is an index into these arrays, unless it is called an id: the engine's own
     number. */

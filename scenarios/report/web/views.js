@@ -1,5 +1,6 @@
-// Views of runs side by side: camera and step of one are forwarded to the others.
 import { linkRow } from "./dom.js";
+
+// Views of runs side by side: camera and step of one are forwarded to the others.
 
 export const views = [...document.querySelectorAll(".views iframe")];
 window.addEventListener("message", (e) => {

@@ -106,7 +106,7 @@ TEST_CASE("--animate to a PNG: all frames in one file, without ffmpeg") {
   // Equal frames extend the one before; frames of another size are rejected.
   const std::string twice = run::animated_png({frames[0], frames[0], frames[1]});
   const std::string control = data_of(twice, "fcTL", 0);
-  CHECK(control.substr(20, 4) == std::string("\0\2\0\14", 4));  // 2 of 12 seconds
+  CHECK(control.substr(20, 4) == std::string("\0\10\0\14", 4));  // 2 and 6 twelfths of a second
   CHECK(twice.size() < png.size());
   render::write_png(render::Image(5, 5), folder / "small.png");
   CHECK_THROWS_AS(run::animated_png({frames[0], test::slurp(folder / "small.png")}), InputError);

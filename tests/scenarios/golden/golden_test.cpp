@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -216,6 +217,13 @@ TEST_CASE("goldens: inputs and counters are part of the run; a changed input is 
        "the query request changed: interiors_overlap"},
       {[](golden::Golden& g) { g.trace.steps[1].pose_b.t.x() += 1; }, "step 1: pose of B",
        "step 1: body B moved: its origin is displaced by 1"},
+      {[](golden::Golden& g) {
+         Pose& pose = g.trace.steps[2].pose_b;
+         pose.r = Pose::rotation({0, 0, 1}, 0.5 * std::numbers::pi / 180).r * pose.r;
+       },
+       "step 2: pose of B", "step 2: body B moved: it is rotated by 0.5 degrees"},
+      {[](golden::Golden& g) { g.trace.steps[2].pose_b.r *= 2; }, "step 2: pose of B",
+       "step 2: body B moved: its matrix changed"},
       {[](golden::Golden& g) { ++g.trace.header.bodies[0].hash; }, "hash of body A",
        "the mesh is unchanged, but its LRB-rep was built differently"},
       {[](golden::Golden& g) { ++g.trace.header.bodies[0].hash, ++g.facts.meshes[0]; }, "hash of body A",
@@ -281,8 +289,15 @@ TEST_CASE("goldens: a failure names the moved vertex and its distance first, the
   }
   CHECK_FALSE(has(o.out, "cause: body B"));
   const std::string page = slurp(folder / "out/golden/index.html");
-  CHECK(page.find("its mesh changed: vertex 3 moved by 0.5 (") < page.find("tips: differences"));
-  CHECK(has(page, "id=\"tips-frame_1\""));
+  // The page: the cause with a thumbnail; the section with cause, pictures, numbers.
+  at = 0;
+  for (const char* part : {"its mesh changed: vertex 3 moved by 0.5 (", "id=\"tips\"", "id=\"tips-frame_1\"",
+                           "<details><summary><h2>tips: answers and counters"}) {
+    CAPTURE(part);
+    REQUIRE(page.find(part, at) != std::string::npos);
+    at = page.find(part, at);
+  }
+  CHECK(has(page, "<a href=\"#tips\">tips<img alt=\"\" src=\"data:image/png;base64,"));
   const std::string junit = slurp(folder / "results.xml");
   check_has(junit, {"<testsuite name=\"lrbscope golden\" tests=\"1\" failures=\"1\" errors=\"0\"",
                     "<failure message=\"answers differ in 1 of 2 steps"});

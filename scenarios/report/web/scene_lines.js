@@ -1,0 +1,164 @@
+export const WHITE = [1, 1, 1];
+
+// ---- lines
+/** Returns the geometry of lines, six numbers each, with their lengths, by which they fade. */
+function lineGeometry(ends) {
+  const geometry = new THREE.BufferGeometry(), at = Float32Array.from(ends),
+    span = new Float32Array(at.length / 3);
+  for (let i = 0; i < span.length; i += 2)
+    span[i] = span[i + 1] = Math.hypot(at[3 * i] - at[3 * i + 3], at[3 * i + 1] - at[3 * i + 4], at[3 * i + 2] - at[3 * i + 5]);
+  geometry.setAttribute("position", new THREE.BufferAttribute(at, 3));
+  geometry.setAttribute("span", new THREE.BufferAttribute(span, 1));
+  return geometry;
+}
+
+/** Returns lines one pixel wide that fade where they are short on the screen, and with their distance. `lens`: size of
+    the picture and depths, kept by the view. */
+export function fadingLines(ends, colour, opacity, lens, depthWrite = false) {
+  const material = new THREE.ShaderMaterial({
+    uniforms: { colour: { value: colour }, opacity: { value: opacity }, size: { value: lens.size }, depths: { value: lens.depths } },
+    vertexShader: `
+      attribute float span;
+      uniform vec2 size, depths;
+      varying float seen;
+      void main() {
+        vec4 at = modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * at;
+        float pixels = span * projectionMatrix[1][1] * size.y / 2.0 / gl_Position.w;
+        seen = smoothstep(3.0, 60.0, pixels) * mix(1.0, 0.15, clamp((-at.z - depths.x) / depths.y, 0.0, 1.0));
+      }`,
+    fragmentShader: `
+      uniform vec3 colour;
+      uniform float opacity;
+      varying float seen;
+      void main() { gl_FragColor = vec4(colour, opacity * seen); }`,
+    transparent: true,
+    depthWrite,
+  });
+  const lines = new THREE.LineSegments(lineGeometry(ends), material);
+  lines.frustumCulled = false;
+  return lines;
+}
+
+/** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers for each line.
+    A line that starts where the one before it ends continues its dashes. */
+export function thickLines(ends, material) {
+  const count = ends.length / 6, at = new Float32Array(12 * count), other = new Float32Array(12 * count),
+    side = new Float32Array(4 * count),
+    along = new Float32Array(4 * count),
+    index = new Uint32Array(6 * count);
+  let length = 0;
+  for (let l = 0; l < count; l++) {
+    const a = ends.slice(6 * l, 6 * l + 3), b = ends.slice(6 * l + 3, 6 * l + 6);
+    if (l === 0 || a.some((x, i) => x !== ends[6 * l - 3 + i])) length = 0;
+    const until = length + Math.hypot(...a.map((x, i) => x - b[i]));
+    [[a, b, 1], [a, b, -1], [b, a, -1], [b, a, 1]].forEach(([here, there, s], k) => {
+      at.set(here, 12 * l + 3 * k);
+      other.set(there, 12 * l + 3 * k);
+      side[4 * l + k] = s;
+      along[4 * l + k] = k < 2 ? length : until;
+    });
+    length = until;
+    index.set([0, 1, 2, 2, 1, 3].map((i) => 4 * l + i), 6 * l);
+  }
+  const geometry = new THREE.BufferGeometry();
+  for (const [name, array, size] of [["position", at, 3], ["other", other, 3], ["side", side, 1], ["along", along, 1]])
+    geometry.setAttribute(name, new THREE.BufferAttribute(array, size));
+  geometry.setIndex(new THREE.BufferAttribute(index, 1));
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+/** `lens`: see fadingLines(). `dash`: length of a dash and its gap in pixels; 0: no dashes. `hides`: bodies hide the line,
+    except where it is at most a few pixels behind their faces. */
+export function thickMaterial(colour, width, lens, { opacity = 1, dash = 0, hides = false } = {}) {
+  return new THREE.ShaderMaterial({
+    uniforms: {
+      colour: { value: new THREE.Color(...colour) }, opacity: { value: opacity }, width: { value: width },
+      dash: { value: dash }, size: { value: lens.size }, pixel: lens.pixel,
+    },
+    vertexShader: `
+      attribute vec3 other;
+      attribute float side, along;
+      uniform vec2 size;
+      uniform float width, pixel;
+      varying float on;
+      void main() {
+        vec4 at = modelViewMatrix * vec4(position, 1.0);
+        vec4 a = projectionMatrix * at;
+        vec4 b = projectionMatrix * modelViewMatrix * vec4(other, 1.0);
+        vec2 way = (b.xy / b.w - a.xy / a.w) * size;
+        way = length(way) > 0.0 ? normalize(way) : vec2(1.0, 0.0);
+        a.xy += (vec2(-way.y, way.x) * side - 0.4 * way) * width / size * a.w; // a little longer, so that lines join
+        vec4 near = projectionMatrix * (at + vec4(0.0, 0.0, 4.0 * pixel, 0.0));
+        a.z = near.z / near.w * a.w;
+        on = along / pixel;
+        gl_Position = a;
+      }`,
+    fragmentShader: `
+      uniform vec3 colour;
+      uniform float opacity, dash;
+      varying float on;
+      void main() {
+        if (dash > 0.0 && mod(on, dash) > 0.6 * dash) discard;
+        gl_FragColor = vec4(colour, opacity);
+      }`,
+    side: THREE.DoubleSide,
+    transparent: true,
+    depthTest: hides,
+    depthWrite: false,
+  });
+}
+
+/** Returns round points of a size in pixels with a rim, white or of another colour, seen through everything. */
+export function roundPoints(positions, colour, size, rim = WHITE) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(positions), 3));
+  const points = new THREE.Points(
+    geometry,
+    new THREE.ShaderMaterial({
+      uniforms: {
+        colour: { value: new THREE.Color(...colour) }, rim: { value: new THREE.Color(...rim) },
+        size: { value: size },
+      },
+      vertexShader: `
+        uniform float size;
+        void main() {
+          gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+          gl_PointSize = size;
+        }`,
+      fragmentShader: `
+        uniform vec3 colour, rim;
+        void main() {
+          float r = length(gl_PointCoord - 0.5);
+          if (r > 0.5) discard;
+          gl_FragColor = vec4(r > 0.36 ? rim : colour, 1.0);
+        }`,
+      transparent: true,
+      depthTest: false,
+      depthWrite: false,
+    }),
+  );
+  points.frustumCulled = false;
+  return points;
+}
+
+/** Returns the twelve edges of boxes, six numbers each. `places`: centre and three half axes of each box. */
+export function boxEdges(places, boxes) {
+  const out = [],
+    corner = (at, signs, i) =>
+      places[at + i] + signs.reduce((x, s, axis) => x + s * places[at + 3 + 3 * axis + i], 0);
+  for (const box of boxes)
+    for (let axis = 0; axis < 3; axis++)
+      for (const s of [-1, 1])
+        for (const t of [-1, 1])
+          for (const end of [-1, 1]) {
+            const signs = [0, 0, 0];
+            signs[axis] = end;
+            signs[(axis + 1) % 3] = s;
+            signs[(axis + 2) % 3] = t;
+            for (let i = 0; i < 3; i++) out.push(corner(12 * box, signs, i));
+          }
+  return out;
+}
