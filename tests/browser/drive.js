@@ -136,6 +136,13 @@
     for (const word of ["layer", "lids", "floor", "tests", "hits", "misses"])
       check(text("picked-facts").includes(word), `with ${word}`);
     press("Escape");
+    const depth = () => view.nearest(...at, view.views.flatMap((v) => [v.lids, v.real])), front = depth();
+    view.look({ slice: 1 });
+    view.draw();
+    equal(depth(), null, "sliced away, nothing is under the pointer");
+    view.look({ slice: 0 });
+    view.draw();
+    equal(depth().face, front.face, "and then again what was");
   }
 
   /** The filters of the table, also of a million events, which the page's own repeat. */
