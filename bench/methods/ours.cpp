@@ -1,11 +1,13 @@
 // lrbscope's own methods: its queries, and the simple methods that they are compared with.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Geometry>
 
 #include "bench/methods/method.hpp"
 #include "bench/methods/triangles.hpp"
+#include "engine/mesh/box_tree.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/contact.hpp>
@@ -340,55 +342,33 @@ namespace {
 struct Sphere {
   Eigen::Vector3d centre;
   double radius = 0;
-  std::uint32_t left = 0, right = 0;  ///< children; 0: none
 };
 
+/// Halved by the centroids of the triangles.
 struct SphereBody : MethodBody {
-  explicit SphereBody(Triangles t) : shape(std::move(t)) {
-    std::vector<std::uint32_t> all(shape.triangles.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    if (!all.empty()) build(all.begin(), all.end());
-  }
-  using Iterator = std::vector<std::uint32_t>::iterator;
-
-  /// Splits at the median of the centres, along the longest side of their box.
-  std::uint32_t build(Iterator begin, Iterator end) {
-    const auto index = static_cast<std::uint32_t>(spheres.size());
-    spheres.push_back(round(begin, end));
-    if (end - begin == 1) return index;
-    Eigen::AlignedBox3d centroids;
-    for (Iterator i = begin; i != end; ++i) centroids.extend(centroid(*i));
-    Eigen::Index axis = 0;
-    centroids.sizes().maxCoeff(&axis);
-    const Iterator half = begin + (end - begin) / 2;
-    std::nth_element(begin, half, end, [&](std::uint32_t i, std::uint32_t j) {
-      const double a = centroid(i)[axis], b = centroid(j)[axis];
-      return a != b ? a < b : i < j;
-    });
-    const std::uint32_t left = build(begin, half), right = build(half, end);
-    spheres[index].left = left;
-    spheres[index].right = right;
-    return index;
+  explicit SphereBody(const Triangles& t) {
+    std::vector<BoxTree::Box> centroids;
+    for (const auto& c : t.triangles)
+      centroids.emplace_back(Eigen::Vector3d((t.vertices[c[0]] + t.vertices[c[1]] + t.vertices[c[2]]) / 3));
+    tree = BoxTree(centroids, 1);
+    for (const BoxTree::Node& n : tree.nodes())
+      spheres.push_back(around(t, tree.items().subspan(n.first, n.last - n.first)));
   }
 
-  Sphere round(Iterator begin, Iterator end) const {
+  static Sphere around(const Triangles& t, std::span<const std::uint32_t> some) {
     Eigen::AlignedBox3d box;
-    for (Iterator i = begin; i != end; ++i)
-      for (const VertexId v : shape.triangles[*i]) box.extend(shape.vertices[v]);
+    for (const std::uint32_t i : some)
+      for (const VertexId v : t.triangles[i]) box.extend(t.vertices[v]);
     Sphere s;
     s.centre = box.center();
-    for (Iterator i = begin; i != end; ++i)
-      for (const VertexId v : shape.triangles[*i])
-        s.radius = std::max(s.radius, (shape.vertices[v] - s.centre).norm());
+    for (const std::uint32_t i : some)
+      for (const VertexId v : t.triangles[i])
+        s.radius = std::max(s.radius, (t.vertices[v] - s.centre).norm());
     return s;
   }
-  Eigen::Vector3d centroid(std::uint32_t i) const {
-    const auto& c = shape.triangles[i];
-    return (shape.vertices[c[0]] + shape.vertices[c[1]] + shape.vertices[c[2]]) / 3;
-  }
 
-  Triangles shape;
-  std::vector<Sphere> spheres;
+  BoxTree tree;
+  std::vector<Sphere> spheres;  ///< around its nodes
 };
 
 class Spheres : public Method {
@@ -420,7 +400,9 @@ class Spheres : public Method {
       ++answer.face_tests;
       const double reach = p.radius + q.radius;
       if (way.squaredNorm() > reach * reach) continue;
-      const bool leaf_a = p.left == 0, leaf_b = q.left == 0;
+      const std::uint32_t right_a = body_a.tree.nodes()[item.a].right,
+                          right_b = body_b.tree.nodes()[item.b].right;
+      const bool leaf_a = right_a == 0, leaf_b = right_b == 0;
       if (item.level >= level_ || (leaf_a && leaf_b)) {
         // On average, the midpoint between the points where the line of centres leaves one sphere and enters
         // the other.
@@ -431,12 +413,12 @@ class Spheres : public Method {
         continue;
       }
       if (!leaf_a && !leaf_b) {
-        for (const std::uint32_t i : {p.left, p.right})
-          for (const std::uint32_t j : {q.left, q.right}) stack.push_back({i, j, item.level + 1});
+        for (const std::uint32_t i : {item.a + 1, right_a})
+          for (const std::uint32_t j : {item.b + 1, right_b}) stack.push_back({i, j, item.level + 1});
       } else if (leaf_b) {
-        for (const std::uint32_t i : {p.left, p.right}) stack.push_back({i, item.b, item.level + 1});
+        for (const std::uint32_t i : {item.a + 1, right_a}) stack.push_back({i, item.b, item.level + 1});
       } else {
-        for (const std::uint32_t j : {q.left, q.right}) stack.push_back({item.a, j, item.level + 1});
+        for (const std::uint32_t j : {item.b + 1, right_b}) stack.push_back({item.a, j, item.level + 1});
       }
     }
     answer.microseconds = watch.microseconds();

@@ -135,7 +135,8 @@ std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const 
   add(wa, wb.whole, 0);
   add(wb, {wa.whole.min() - wa.margin, wa.whole.max() + wa.margin}, first_of_b);
   std::vector<SimplexPair> pairs;
-  BoxTree(boxes).for_each_pair([&](std::uint32_t i, std::uint32_t j) {
+  Workers alone;
+  const auto test = [&](std::uint32_t i, std::uint32_t j) {
     if (i >= first_of_b || j < first_of_b) return;
     const double *ca[3], *cb[3];
     const SimplexPair pair{SimplexId(i), SimplexId(j - first_of_b)};
@@ -144,7 +145,8 @@ std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const 
     if (exact::meet_triangles(ca, cb) != exact::Meet::disjoint ||
         (within > 0 && exact::compare_distance(ca, cb, 3, within) <= 0))
       pairs.push_back(pair);
-  });
+  };
+  BoxTree(boxes).for_each_pair(test, alone);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

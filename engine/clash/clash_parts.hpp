@@ -14,6 +14,7 @@
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/collide/query_context.hpp"
 #include "engine/distance/distance_context.hpp"
+#include "engine/mesh/box_tree.hpp"
 #include <lrbscope/clash.hpp>
 
 namespace lrb {
@@ -67,17 +68,10 @@ class SurfaceDistance {
   double at(const Vector3d& x) const;
 
  private:
-  struct Node {
-    Eigen::AlignedBox3d box;
-    std::uint32_t begin, end;           ///< triangles, in `order_`
-    std::uint32_t left = 0, right = 0;  ///< 0: a leaf
-  };
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end, const std::vector<Vector3d>& centroids);
   double bound(std::uint32_t triangle, const Vector3d& x) const;
 
   const UnitBody& body_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
+  BoxTree tree_;  ///< of the triangles
 };
 
 // Convex sets that are proven to be inside a body.

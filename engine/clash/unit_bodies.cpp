@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -16,50 +15,27 @@
 
 namespace lrb::penetration {
 
-// Distance from a point to a surface by an AABB tree with median splits, traversed depth-first with the
-// nearer child first. Distances of boxes prune; triangles yield proven lower bounds of their distance.
+// Distance from a point to a surface by a tree traversed depth-first with the nearer child first. Distances
+// of boxes prune; triangles yield proven lower bounds of their distance.
 
 namespace {
 
-/// Maximum number of triangles in a leaf.
-constexpr std::uint32_t kLeafTriangles = 4;
 /// Covers the roundings in the distance of a box.
 constexpr double kBoxRounding = 1 - 0x1p-48;
 
 }  // namespace
 
-SurfaceDistance::SurfaceDistance(const UnitBody& body) : body_(body), order_(body.triangles.size()) {
-  std::iota(order_.begin(), order_.end(), 0u);
-  std::vector<Vector3d> centroids;
-  centroids.reserve(order_.size());
-  // Three times the centroids, which suffices for comparison.
+SurfaceDistance::SurfaceDistance(const UnitBody& body) : body_(body) {
+  // Halved by the centroids. Three times these suffice for comparison.
+  std::vector<Eigen::AlignedBox3d> centroids;
+  centroids.reserve(body.triangles.size());
   for (const auto& t : body.triangles)
-    centroids.push_back(body.points[t[0]] + body.points[t[1]] + body.points[t[2]]);
-  nodes_.reserve(order_.size());
-  build(0, static_cast<std::uint32_t>(order_.size()), centroids);
-}
-
-std::uint32_t SurfaceDistance::build(std::uint32_t begin, std::uint32_t end,
-                                     const std::vector<Vector3d>& centroids) {
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back({Eigen::AlignedBox3d(), begin, end});
-  // Box of the triangles, and box of the centroids.
-  Eigen::AlignedBox3d box_of_centroids;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    for (const std::uint32_t v : body_.triangles[order_[i]]) nodes_[index].box.extend(body_.points[v]);
-    box_of_centroids.extend(centroids[order_[i]]);
-  }
-  if (end - begin <= kLeafTriangles) return index;
-  // Median split along the longest axis of the centroids: the depth is about log2 of the number of triangles.
-  Eigen::Index axis = 0;
-  box_of_centroids.sizes().maxCoeff(&axis);
-  const std::uint32_t half = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
-                   [&](std::uint32_t i, std::uint32_t j) { return centroids[i][axis] < centroids[j][axis]; });
-  const std::uint32_t left = build(begin, half, centroids), right = build(half, end, centroids);
-  nodes_[index].left = left;
-  nodes_[index].right = right;
-  return index;
+    centroids.emplace_back(Vector3d(body.points[t[0]] + body.points[t[1]] + body.points[t[2]]));
+  tree_ = BoxTree(centroids);
+  tree_.fit([&](std::uint32_t i) {
+    const auto& [a, b, c] = body.triangles[i];
+    return Eigen::AlignedBox3d(body.points[a]).extend(body.points[b]).extend(body.points[c]);
+  });
 }
 
 /// Along any direction n the triangle is at least as far away as its nearest corner: the least n . (c - x) /
@@ -83,25 +59,26 @@ double SurfaceDistance::at(const Vector3d& x) const {
     std::uint32_t node;
     double distance;
   };
-  constexpr std::size_t kDeepest = 64;  // depth of a tree of fewer than 2^32 triangles: one entry per level
-  std::array<Waiting, kDeepest> stack;
+  std::array<Waiting, BoxTree::kMaxDepth> stack;
   std::size_t size = 1;
   stack[0] = {0, 0};
+  const auto nodes = tree_.nodes();
   const auto distance = [&](std::uint32_t i) {
-    return std::sqrt(nodes_[i].box.squaredExteriorDistance(x)) * kBoxRounding;
+    return std::sqrt(nodes[i].box.squaredExteriorDistance(x)) * kBoxRounding;
   };
   // The nearer child is on top, so that `least` decreases early.
   while (size > 0) {
     const Waiting top = stack[--size];
     // The box is not nearer than the best triangle.
     if (top.distance >= least) continue;
-    const Node& node = nodes_[top.node];
-    if (node.left == 0) {
-      for (std::uint32_t i = node.begin; i < node.end; ++i) least = std::min(least, bound(order_[i], x));
+    const BoxTree::Node& node = nodes[top.node];
+    if (node.right == 0) {
+      for (std::uint32_t i = node.first; i < node.last; ++i)
+        least = std::min(least, bound(tree_.items()[i], x));
       continue;
     }
     // The farther child waits below the nearer one.
-    Waiting near{node.left, distance(node.left)}, far{node.right, distance(node.right)};
+    Waiting near{top.node + 1, distance(top.node + 1)}, far{node.right, distance(node.right)};
     if (far.distance < near.distance) std::swap(near, far);
     stack[size++] = far;
     stack[size++] = near;

@@ -82,7 +82,7 @@ double cube(double x) {
 }  // namespace
 
 SurfaceWalk::SurfaceWalk(const FrontMesh& front, const AabbTree& tree, double unit)
-    : slots_(tree.slots().begin(), tree.slots().end()), scale_(1 / unit) {
+    : slots_(tree.items().begin(), tree.items().end()), scale_(1 / unit) {
   Eigen::AlignedBox3d box;
   for (FrontMesh::Corner v = 0; v < front.point_count(); ++v) box.extend(front.x(v));
   centre_ = box.min() / 2 + box.max() / 2;

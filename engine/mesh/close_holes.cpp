@@ -558,8 +558,7 @@ class HoleCloser {
     const auto standing = static_cast<std::uint32_t>(out_.mesh.face_count());
     std::vector<Meetings> out(attempts);
     find_self_intersections(
-        // Pairs have f < g, so g is new if either is. Pairs of existing faces are faults of the input.
-        trial, use, [&](FaceId, FaceId g) { return g >= standing; },
+        trial, use,
         [&](FaceId f, FaceId g) {
           Meetings& of_g = out[owner[g - standing]];
           if (f < standing) {
@@ -571,7 +570,11 @@ class HoleCloser {
             of_g.lids.push_back(owner[f - standing]);
             out[owner[f - standing]].lids.push_back(owner[g - standing]);
           }
-        });
+        },
+        FaceMeeting::outside_shared,
+        // Pairs have f < g, so g is new if either is. Pairs of existing faces are faults of the input.
+        [&](FaceId, FaceId g) { return g >= standing; });
+    for (Meetings& of_one : out) std::sort(of_one.lids.begin(), of_one.lids.end());
     return out;
   }
 

@@ -169,39 +169,20 @@ bool proven_disjoint(const OrientedBox& a, const OrientedBox& b) {
   return false;
 }
 
-TriangleTree::TriangleTree(const Mesh& mesh, const UnitCube& cube, std::vector<Triangle> triangles,
-                           std::uint32_t leaf_size)
-    : triangles_(std::move(triangles)) {
-  build(mesh, cube, 0, static_cast<std::uint32_t>(triangles_.size()), leaf_size);
-}
-
-/// Builds a subtree in preorder. Returns its index.
-std::uint32_t TriangleTree::build(const Mesh& mesh, const UnitCube& cube, std::uint32_t first,
-                                  std::uint32_t last, std::uint32_t leaf_size) {
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  // Fit an oriented box to the corners of all triangles beneath the node.
-  std::vector<Eigen::Vector3d> points;
-  for (std::uint32_t i = first; i < last; ++i)
-    for (const VertexId v : triangles_[i]) points.push_back(cube(mesh.vertices[v]));
-  nodes_.push_back({OrientedBox::about(points), first, last, 0});
-  if (last - first <= leaf_size) return index;
-  // Split it along its own longest axis.
-  int axis = 0;
-  nodes_[index].box.half.maxCoeff(&axis);
-  const Eigen::Vector3d along = nodes_[index].box.axes.row(axis);
-  // Three times the centroid's coordinate along that axis.
-  const auto place = [&](const Triangle& t) {
-    return dot3(along, cube(mesh.vertices[t[0]]) + cube(mesh.vertices[t[1]]) + cube(mesh.vertices[t[2]]));
-  };
-  const std::uint32_t median = first + (last - first) / 2;
-  const auto at = [&](std::uint32_t i) { return triangles_.begin() + static_cast<std::ptrdiff_t>(i); };
-  // Median split: the tree is balanced.
-  std::nth_element(at(first), at(median), at(last),
-                   [&](const Triangle& s, const Triangle& t) { return place(s) < place(t); });
-  build(mesh, cube, first, median, leaf_size);
-  const std::uint32_t right = build(mesh, cube, median, last, leaf_size);
-  nodes_[index].right = right;
-  return index;
+TriangleTree::TriangleTree(const Mesh& mesh, const UnitCube& cube, std::span<const Triangle> triangles,
+                           std::uint32_t leaf_size) {
+  std::vector<Box> boxes(triangles.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (const VertexId v : triangles[i]) boxes[i].extend(cube(mesh.vertices[v]));
+  tree_ = BoxTree(boxes, leaf_size);
+  for (const std::uint32_t i : tree_.items()) triangles_.push_back(triangles[i]);
+  // An oriented box around the corners of all triangles beneath each node.
+  for (std::uint32_t n = 0; n < tree_.nodes().size(); ++n) {
+    std::vector<Eigen::Vector3d> points;
+    for (const Triangle& t : triangles_of(n))
+      for (const VertexId v : t) points.push_back(cube(mesh.vertices[v]));
+    boxes_.push_back(OrientedBox::about(points));
+  }
 }
 
 }  // namespace lrb

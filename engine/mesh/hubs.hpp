@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "engine/mesh/box_tree.hpp"
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/parallel.hpp>
@@ -87,44 +88,33 @@ class TriangleTree {
 
   /// Builds a tree over at least one triangle; `cube` scales the mesh's vertices. Leaves have up to
   /// `leaf_size` triangles.
-  TriangleTree(const Mesh& mesh, const UnitCube& cube, std::vector<Triangle> triangles,
+  TriangleTree(const Mesh& mesh, const UnitCube& cube, std::span<const Triangle> triangles,
                std::uint32_t leaf_size);
 
   /// Returns true if test(s, t) is true for a triangle s of one tree and t of the other. Does not call it for
   /// triangles that are surely apart.
   template <class Test>
   static bool any_pair(const TriangleTree& a, const TriangleTree& b, Test& test) {
-    return any(a, 0, b, 0, test);
+    const auto apart = [&](std::uint32_t m, std::uint32_t n) {
+      return proven_disjoint(a.boxes_[m], b.boxes_[n]);
+    };
+    return descend(a.tree_.nodes(), 0, b.tree_.nodes(), 0, apart, [&](std::uint32_t m, std::uint32_t n) {
+      for (const Triangle& s : a.triangles_of(m))
+        for (const Triangle& t : b.triangles_of(n))
+          if (test(s, t)) return true;
+      return false;
+    });
   }
 
  private:
-  struct Node {
-    OrientedBox box;
-    std::uint32_t first = 0, last = 0;  ///< into triangles_
-    std::uint32_t right = 0;            ///< right child; the left one follows its parent. 0: leaf
-  };
-
-  std::uint32_t build(const Mesh& mesh, const UnitCube& cube, std::uint32_t first, std::uint32_t last,
-                      std::uint32_t leaf_size);
-
-  template <class Test>
-  static bool any(const TriangleTree& a, std::uint32_t m, const TriangleTree& b, std::uint32_t n,
-                  Test& test) {
-    const Node &x = a.nodes_[m], &y = b.nodes_[n];
-    if (proven_disjoint(x.box, y.box)) return false;
-    if (x.right == 0 && y.right == 0) {
-      for (std::uint32_t i = x.first; i < x.last; ++i)
-        for (std::uint32_t j = y.first; j < y.last; ++j)
-          if (test(a.triangles_[i], b.triangles_[j])) return true;
-      return false;
-    }
-    if (y.right == 0 || (x.right != 0 && x.last - x.first >= y.last - y.first))
-      return any(a, m + 1, b, n, test) || any(a, x.right, b, n, test);
-    return any(a, m, b, n + 1, test) || any(a, m, b, y.right, test);
+  std::span<const Triangle> triangles_of(std::uint32_t node) const {
+    const BoxTree::Node& n = tree_.nodes()[node];
+    return std::span(triangles_).subspan(n.first, n.last - n.first);
   }
 
-  std::vector<Triangle> triangles_;
-  std::vector<Node> nodes_;
+  BoxTree tree_;
+  std::vector<OrientedBox> boxes_;   ///< of the tree's nodes
+  std::vector<Triangle> triangles_;  ///< leaf by leaf
 };
 
 }  // namespace lrb

@@ -20,6 +20,7 @@
 #include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include "engine/core/geometry.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/mesh/face_pairs.hpp"
 #include "engine/mesh/self_intersections.hpp"
@@ -69,49 +70,23 @@ PointSide point_side(const Mesh& mesh, std::span<const FaceId> faces, const Eige
 }
 
 SideFinder::SideFinder(const Mesh& mesh, std::vector<std::uint32_t> surface_of_face)
-    : mesh_(mesh), surface_of_face_(std::move(surface_of_face)), boxes_(mesh.face_count()) {
+    : mesh_(mesh), surface_of_face_(std::move(surface_of_face)) {
+  std::vector<Box> boxes(mesh.face_count());
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     if (surface_of_face_[f] == kNull) continue;
-    for (const VertexId v : mesh.face(f)) boxes_[f].extend(mesh.vertices[v]);
-    order_.push_back(f);
+    for (const VertexId v : mesh.face(f)) boxes[f].extend(mesh.vertices[v]);
     std::vector<std::array<VertexId, 3>> triangles;
     if (mesh.dim == 3 && mesh.face(f).size() > 3 && cut_polygon(mesh, f, triangles) == PolygonCut::ears)
       ears_.emplace(f, std::move(triangles));
   }
-  if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
-}
-
-/// Builds a subtree in preorder, by median splits of the boxes' centres. Returns its index.
-std::uint32_t SideFinder::build(std::uint32_t first, std::uint32_t last) {
-  constexpr std::uint32_t kLeafSize = 4;
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.push_back({{}, first, last, 0});
-  for (std::uint32_t i = first; i < last; ++i) nodes_[index].box.extend(boxes_[order_[i]]);
-  if (last - first <= kLeafSize) return index;
-  // Median split along the longest extent. Halved coordinates cannot overflow.
-  const Eigen::AlignedBox3d& box = nodes_[index].box;
-  int axis = 0;
-  (box.max() / 2 - box.min() / 2).maxCoeff(&axis);
-  const std::uint32_t median = first + (last - first) / 2;
-  const auto centre = [&](FaceId f) { return boxes_[f].min()[axis] / 2 + boxes_[f].max()[axis] / 2; };
-  const auto at = [&](std::uint32_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(first), at(median), at(last),
-                   [&](FaceId f, FaceId g) { return centre(f) < centre(g); });
-  build(first, median);
-  const std::uint32_t right = build(median, last);
-  nodes_[index].right = right;
-  return index;
+  tree_ = BoxTree(boxes);
 }
 
 std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const {
-  // The ray runs to +x. Its origin is perturbed infinitesimally from p, which closed boxes account for.
-  const auto is_on_ray = [&](const Eigen::AlignedBox3d& box) {
-    return box.max().x() >= p.x() && box.min().y() <= p.y() && p.y() <= box.max().y() &&
-           (mesh_.dim == 2 || (box.min().z() <= p.z() && p.z() <= box.max().z()));
-  };
   // One parity for each surface with a box on the ray. on_surface is final.
   std::map<std::uint32_t, PointSide> found;
-  const auto cast = [&](FaceId f) {
+  const auto cast = [&](std::uint32_t item) {
+    const FaceId f(item);
     PointSide& side = found.try_emplace(surface_of_face_[f], PointSide::outside).first->second;
     const auto ears = ears_.empty() ? ears_.end() : ears_.find(f);
     const std::span<const std::array<VertexId, 3>> none;
@@ -123,22 +98,10 @@ std::vector<SideFinder::Side> SideFinder::sides(const Eigen::Vector3d& p) const 
       return true;
     });
   };
-  // Traverse only nodes on the ray: O(log n + hits) for usual meshes.
-  std::vector<std::uint32_t> stack;
-  if (!nodes_.empty()) stack.push_back(0);
-  while (!stack.empty()) {
-    const std::uint32_t n = stack.back();
-    const Node& node = nodes_[n];
-    stack.pop_back();
-    if (!is_on_ray(node.box)) continue;
-    if (node.right != 0) {
-      stack.push_back(node.right);
-      stack.push_back(n + 1);
-      continue;
-    }
-    for (std::uint32_t i = node.first; i < node.last; ++i)
-      if (is_on_ray(boxes_[order_[i]])) cast(order_[i]);
-  }
+  // The ray runs to +x. Its origin is perturbed infinitesimally from p, which closed boxes account for.
+  const double far = mesh_.dim == 2 ? kInfinity : 0;
+  tree_.for_each_in(
+      {Eigen::Vector3d(p.x(), p.y(), p.z() - far), Eigen::Vector3d(kInfinity, p.y(), p.z() + far)}, cast);
   // Return only surfaces that the point is in or on. The map lists them in ascending order.
   std::vector<Side> out;
   for (const auto& [surface, side] : found)
@@ -349,11 +312,12 @@ class Nesting {
       // Exact tests only for candidates that are not refuted yet.
       return a != b && (is_candidate(a, b) || is_candidate(b, a)) && !crossing.contains({a, b});
     };
-    find_crossings(mesh_, use_, wanted, [&](FaceId f, FaceId g) {
+    const auto add = [&](FaceId f, FaceId g) {
       const auto [a, b] = components(f, g);
       crossing.insert({a, b});
       crossing.insert({b, a});
-    });
+    };
+    find_self_intersections(mesh_, use_, add, FaceMeeting::crossing, wanted);
     std::erase_if(nested, [&](const Pair& p) { return crossing.contains(p); });
   }
 

@@ -8,8 +8,9 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
+#include "engine/mesh/box_tree.hpp"
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_check.hpp>
 
@@ -55,20 +56,10 @@ class SideFinder {
   }
 
  private:
-  struct Node {
-    Eigen::AlignedBox3d box;
-    std::uint32_t first, last;  ///< into order_
-    std::uint32_t right;        ///< right child; the left one follows its parent. 0: leaf
-  };
-
-  std::uint32_t build(std::uint32_t first, std::uint32_t last);
-
   const Mesh& mesh_;
   std::map<FaceId, std::vector<std::array<VertexId, 3>>> ears_;  ///< the triangles of faces that are not fans
   std::vector<std::uint32_t> surface_of_face_;
-  std::vector<Eigen::AlignedBox3d> boxes_;  ///< (|F|)
-  std::vector<FaceId> order_;               ///< in the order of the tree's leaves
-  std::vector<Node> nodes_;
+  BoxTree tree_;  ///< of the faces of surfaces
 };
 
 /// Returns the wrongly oriented closed components, as lists of their faces, in the order of the first face. A

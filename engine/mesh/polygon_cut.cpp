@@ -23,6 +23,7 @@
 
 #include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
+#include "engine/mesh/box_tree.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/mesh.hpp>
@@ -35,32 +36,34 @@ using Eigen::Vector3d;
 using Corner = std::uint32_t;
 using Ear = std::array<Corner, 3>;
 
-/// The remaining corners of a polygon in the plane, in a tree of boxes with median splits.
+std::vector<BoxTree::Box> boxes_around(std::span<const Vector2d> points) {
+  std::vector<BoxTree::Box> boxes;
+  for (const Vector2d& p : points) boxes.emplace_back(Vector3d(p.x(), p.y(), 0));
+  return boxes;
+}
+
+/// The remaining corners of a polygon in the plane.
 class CornerTree {
  public:
-  explicit CornerTree(std::span<const Vector2d> points) : points_(points), order_(points.size()) {
-    for (Corner i = 0; i < order_.size(); ++i) order_[i] = i;
-    leaf_of_.resize(points.size());
-    build(0, static_cast<Corner>(points.size()), 0);
+  explicit CornerTree(std::span<const Vector2d> points)
+      : tree_(boxes_around(points), 8), leaf_of_(tree_.leaves(points.size())) {
+    for (const BoxTree::Node& node : tree_.nodes()) left_.push_back(node.last - node.first);
   }
 
   void remove(Corner corner) {
-    for (std::uint32_t n = leaf_of_[corner];; n = nodes_[n].parent) {
-      --nodes_[n].count;
-      if (n == 0) return;
-    }
+    for (std::uint32_t n = leaf_of_[corner]; n != kNull; n = tree_.nodes()[n].parent) --left_[n];
   }
 
   /// Returns true if test(corner) holds for a corner in a box for which is_near(box) holds. `steps` counts
   /// the nodes and corners visited. Tests corners that were removed, too, but no leaf without others.
   template <class Near, class Test>
   bool any(const Near& is_near, const Test& test, std::uint64_t& steps) const {
-    std::uint32_t stack[64] = {0};
+    std::uint32_t stack[BoxTree::kMaxDepth] = {0};
     for (int size = 1; size > 0;) {
       const std::uint32_t n = stack[--size];
-      const Node& node = nodes_[n];
+      const BoxTree::Node& node = tree_.nodes()[n];
       ++steps;
-      if (node.count == 0 || !is_near(node.box)) continue;
+      if (left_[n] == 0 || !is_near(node.box)) continue;
       if (node.right != 0) {
         stack[size++] = node.right;
         stack[size++] = n + 1;
@@ -68,44 +71,15 @@ class CornerTree {
       }
       steps += node.last - node.first;
       for (Corner i = node.first; i < node.last; ++i)
-        if (test(order_[i])) return true;
+        if (test(tree_.items()[i])) return true;
     }
     return false;
   }
 
  private:
-  static constexpr Corner kLeafSize = 8;
-  struct Node {
-    Eigen::AlignedBox2d box;
-    Corner first, last;               ///< range in order_
-    std::uint32_t count;              ///< corners that remain
-    std::uint32_t parent, right = 0;  ///< the left child is the next node; 0: a leaf
-  };
-
-  /// Builds a subtree in preorder. Returns its index.
-  std::uint32_t build(Corner first, Corner last, std::uint32_t parent) {
-    const auto index = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({{}, first, last, last - first, parent});
-    for (Corner i = first; i < last; ++i) nodes_[index].box.extend(points_[order_[i]]);
-    if (last - first <= kLeafSize) {
-      for (Corner i = first; i < last; ++i) leaf_of_[order_[i]] = index;
-      return index;
-    }
-    const Eigen::AlignedBox2d& box = nodes_[index].box;
-    const int axis = box.max().x() / 2 - box.min().x() / 2 < box.max().y() / 2 - box.min().y() / 2 ? 1 : 0;
-    const Corner median = first + (last - first) / 2;
-    std::nth_element(order_.begin() + first, order_.begin() + median, order_.begin() + last,
-                     [&](Corner i, Corner j) { return points_[i][axis] < points_[j][axis]; });
-    build(first, median, index);
-    const std::uint32_t right = build(median, last, index);
-    nodes_[index].right = right;
-    return index;
-  }
-
-  std::span<const Vector2d> points_;
-  std::vector<Corner> order_;
+  BoxTree tree_;
   std::vector<std::uint32_t> leaf_of_;
-  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> left_;  ///< (nodes) the corners that remain
 };
 
 class EarClipping {
@@ -180,13 +154,13 @@ class EarClipping {
   }
 
   bool is_blocked(Corner a, Corner b, Corner c) const {
-    Eigen::AlignedBox2d box(points_[a]);
-    box.extend(points_[b]).extend(points_[c]);
+    BoxTree::Box box;
+    for (const Corner i : {a, b, c}) box.extend(Vector3d(points_[i].x(), points_[i].y(), 0));
     const Corner from[3] = {a, b, c}, to[3] = {b, c, a};
-    const auto is_near = [&](const Eigen::AlignedBox2d& node) {
+    const auto is_near = [&](const BoxTree::Box& node) {
       // Inclusive, as touching corners count. Beyond a side: so is the node's corner that is furthest
       // inwards.
-      if (!node.intersects(box)) return false;
+      if (!BoxTree::intersect(node, box)) return false;
       for (int k = 0; k < 3; ++k) {
         const Vector2d &p = points_[from[k]], &q = points_[to[k]];
         const Vector2d inmost(q.y() > p.y() ? node.min().x() : node.max().x(),

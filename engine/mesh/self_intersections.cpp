@@ -125,15 +125,31 @@ class Pieces {
     pairs_.for_each(visit, workers);
   }
 
-  bool meet_outside_shared(FaceId f, FaceId g) const {
+  /// Returns true if two faces have an intersection of a kind.
+  bool meet(FaceId f, FaceId g, FaceMeeting kind) const {
     if (mesh_.dim == 2) {
-      const auto a = mesh_.face(f), b = mesh_.face(g);
-      const double* const pa[2] = {point(a[0]), point(a[1])};
-      const double* const pb[2] = {point(b[0]), point(b[1])};
-      return !exact::meet_only_in_shared_2d(pa, a.data(), pb, b.data());
+      const auto [a, b] = segments(f, g);
+      switch (kind) {
+        case FaceMeeting::crossing:
+          return exact::meet_segments(a.data(), b.data()) == exact::Meet::cross;
+        case FaceMeeting::overlap:
+          return overlap_2d(a.data(), b.data());
+        case FaceMeeting::outside_shared:
+          break;
+      }
+      return !exact::meet_only_in_shared_2d(a.data(), mesh_.face(f).data(), b.data(), mesh_.face(g).data());
     }
-    return any_pair(f, g,
-                    [&](const Triangle& s, const Triangle& t) { return meet_outside_shared(f, s, g, t); });
+    return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
+      switch (kind) {
+        case FaceMeeting::crossing:
+          return exact::meet_triangles(points(s).data(), points(t).data()) == exact::Meet::cross;
+        case FaceMeeting::overlap:
+          return overlap_3d(points(s).data(), points(t).data());
+        case FaceMeeting::outside_shared:
+          break;
+      }
+      return meet_outside_shared(f, s, g, t);
+    });
   }
 
   /// Calls visit(s, t, contact) for each pair of triangles (2D: of the segments) of two faces that intersect
@@ -141,40 +157,15 @@ class Pieces {
   template <class Visit>
   void for_each_contact(FaceId f, FaceId g, const Visit& visit) const {
     if (mesh_.dim == 2) {
-      const auto a = mesh_.face(f), b = mesh_.face(g);
-      const double* const pa[2] = {point(a[0]), point(a[1])};
-      const double* const pb[2] = {point(b[0]), point(b[1])};
-      return visit(Triangle{a[0], a[1], kNull}, Triangle{b[0], b[1], kNull},
-                   exact::contact_of_segments(pa, pb));
+      const auto v = mesh_.face(f), w = mesh_.face(g);
+      const auto [a, b] = segments(f, g);
+      return visit(Triangle{v[0], v[1], kNull}, Triangle{w[0], w[1], kNull},
+                   exact::contact_of_segments(a.data(), b.data()));
     }
     any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
       if (meet_outside_shared(f, s, g, t))
         visit(s, t, exact::contact_of_triangles(points(s).data(), points(t).data()));
       return false;
-    });
-  }
-
-  bool overlap(FaceId f, FaceId g) const {
-    if (mesh_.dim == 2) {
-      const auto a = mesh_.face(f), b = mesh_.face(g);
-      const double* const pa[2] = {point(a[0]), point(a[1])};
-      const double* const pb[2] = {point(b[0]), point(b[1])};
-      return overlap_2d(pa, pb);
-    }
-    return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
-      return overlap_3d(points(s).data(), points(t).data());
-    });
-  }
-
-  bool cross(FaceId f, FaceId g) const {
-    if (mesh_.dim == 2) {
-      const auto a = mesh_.face(f), b = mesh_.face(g);
-      const double* const pa[2] = {point(a[0]), point(a[1])};
-      const double* const pb[2] = {point(b[0]), point(b[1])};
-      return exact::meet_segments(pa, pb) == exact::Meet::cross;
-    }
-    return any_pair(f, g, [&](const Triangle& s, const Triangle& t) {
-      return exact::meet_triangles(points(s).data(), points(t).data()) == exact::Meet::cross;
     });
   }
 
@@ -184,6 +175,12 @@ class Pieces {
     // would permit.
     return !exact::meet_only_in_shared(points(s).data(), s.data(), points(t).data(), t.data()) ||
            ((mesh_.face(f).size() > 3 || mesh_.face(g).size() > 3) && share_a_chord(f, s, g, t));
+  }
+
+  using Segment = std::array<const double*, 2>;
+  std::pair<Segment, Segment> segments(FaceId f, FaceId g) const {
+    const auto a = mesh_.face(f), b = mesh_.face(g);
+    return {{point(a[0]), point(a[1])}, {point(b[0]), point(b[1])}};
   }
 
   const double* point(VertexId v) const { return mesh_.vertices[v].data(); }
@@ -218,8 +215,7 @@ class Pieces {
     } else {
       add_cut(f, triangles);
     }
-    large_.emplace(f,
-                   LargeFace{TriangleTree(mesh_, pairs_.cube(), std::move(triangles), 1), std::move(ring)});
+    large_.emplace(f, LargeFace{TriangleTree(mesh_, pairs_.cube(), triangles, 1), std::move(ring)});
   }
 
   template <class Test>
@@ -237,9 +233,9 @@ class Pieces {
     // The smaller face gets a temporary tree; it has few triangles, so the tree is a single leaf.
     const auto tree_of = [&](FaceId face, std::optional<TriangleTree>& made) -> const TriangleTree* {
       if (pairs_.is_large(face)) return &large_.at(face).tree;
-      const auto at = [&](std::uint32_t i) { return triangles_.begin() + i; };
-      if (offsets_[face] == offsets_[face + 1]) return nullptr;
-      made.emplace(mesh_, pairs_.cube(), std::vector<Triangle>(at(offsets_[face]), at(offsets_[face + 1])),
+      const std::uint32_t count = offsets_[face + 1] - offsets_[face];
+      if (count == 0) return nullptr;
+      made.emplace(mesh_, pairs_.cube(), std::span(triangles_).subspan(offsets_[face], count),
                    kFewNeighbours);
       return &*made;
     };
@@ -282,35 +278,19 @@ class Pieces {
   std::vector<Triangle> scratch_;
 };
 
-/// Calls found(f, g) for the candidate pairs for which test(pieces, f, g) is true.
-template <class Test>
-void find_pairs(const Mesh& mesh, const std::vector<FaceUse>& use, const Test& test,
-                const std::function<void(FaceId, FaceId)>& found) {
+}  // namespace
+
+void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
+                             const std::function<void(FaceId, FaceId)>& found, FaceMeeting kind,
+                             const std::function<bool(FaceId, FaceId)>& wanted) {
   // One thread, because callers' functions are not required to be thread-safe.
   const Pieces pieces(mesh, use);
   Workers alone;
   pieces.for_each_pair(
       [&](FaceId f, FaceId g) {
-        if (test(pieces, f, g)) found(f, g);
+        if ((!wanted || wanted(f, g)) && pieces.meet(f, g, kind)) found(f, g);
       },
       alone);
-}
-
-}  // namespace
-
-void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
-                             const std::function<void(FaceId, FaceId)>& found) {
-  const auto test = [](const Pieces& pieces, FaceId f, FaceId g) { return pieces.meet_outside_shared(f, g); };
-  find_pairs(mesh, use, test, found);
-}
-
-void find_self_intersections(const Mesh& mesh, const std::vector<FaceUse>& use,
-                             const std::function<bool(FaceId, FaceId)>& wanted,
-                             const std::function<void(FaceId, FaceId)>& found) {
-  const auto test = [&](const Pieces& pieces, FaceId f, FaceId g) {
-    return wanted(f, g) && pieces.meet_outside_shared(f, g);
-  };
-  find_pairs(mesh, use, test, found);
 }
 
 std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<FaceUse>& use,
@@ -321,7 +301,8 @@ std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<
       [&](FaceId f, FaceId g) {
         // Skip the exact test if both faces are known. Flags only change from false to true, so races between
         // threads are harmless.
-        if (!(meets[f] && meets[g]) && pieces.meet_outside_shared(f, g)) meets[f] = meets[g] = true;
+        if (!(meets[f] && meets[g]) && pieces.meet(f, g, FaceMeeting::outside_shared))
+          meets[f] = meets[g] = true;
       },
       workers);
   std::vector<FaceId> faces;
@@ -330,32 +311,14 @@ std::vector<FaceId> self_intersecting_faces(const Mesh& mesh, const std::vector<
   return faces;
 }
 
-void find_crossings(const Mesh& mesh, const std::vector<FaceUse>& use,
-                    const std::function<bool(FaceId, FaceId)>& wanted,
-                    const std::function<void(FaceId, FaceId)>& found) {
-  const auto test = [&](const Pieces& pieces, FaceId f, FaceId g) {
-    return wanted(f, g) && pieces.cross(f, g);
-  };
-  find_pairs(mesh, use, test, found);
-}
-
 bool overlaps_itself(const Mesh& mesh, const std::vector<FaceUse>& use,
                      const std::function<bool(FaceId, FaceId)>& wanted) {
   bool found = false;
-  // After the first hit, `wanted` rejects all pairs, so no more exact tests run.
-  find_overlaps(
-      mesh, use, [&](FaceId f, FaceId g) { return !found && (!wanted || wanted(f, g)); },
-      [&](FaceId, FaceId) { found = true; });
+  // After the first hit, all pairs are rejected, so no more exact tests run.
+  find_self_intersections(
+      mesh, use, [&](FaceId, FaceId) { found = true; }, FaceMeeting::overlap,
+      [&](FaceId f, FaceId g) { return !found && (!wanted || wanted(f, g)); });
   return found;
-}
-
-void find_overlaps(const Mesh& mesh, const std::vector<FaceUse>& use,
-                   const std::function<bool(FaceId, FaceId)>& wanted,
-                   const std::function<void(FaceId, FaceId)>& found) {
-  const auto test = [&](const Pieces& pieces, FaceId f, FaceId g) {
-    return wanted(f, g) && pieces.overlap(f, g);
-  };
-  find_pairs(mesh, use, test, found);
 }
 
 // The pairs with kinds, segments and curves.
@@ -466,7 +429,7 @@ SelfIntersections self_intersections(const Mesh& mesh, const std::vector<FaceUse
   std::atomic<bool> is_full = false;
   pieces.for_each_pair(
       [&](FaceId f, FaceId g) {
-        if (is_full || !pieces.meet_outside_shared(f, g)) return;
+        if (is_full || !pieces.meet(f, g, FaceMeeting::outside_shared)) return;
         const std::lock_guard<std::mutex> locked(lock);
         if (found.size() == max_pairs)
           is_full = true;
