@@ -10,6 +10,7 @@
 
 #include <glm/common.hpp>
 
+#include "engine/core/polygon.hpp"
 #include "render/face_look.hpp"
 #include <lrbscope/render/rasterize.hpp>
 
@@ -295,15 +296,11 @@ class ScreenMeshBuilder {
   static constexpr int kPlanes = 5;
 
   void clip(std::vector<Vector3d>& polygon) const {
-    // Sutherland and Hodgman 1974: one plane after the other.
     for (int plane = 0; plane < kPlanes && !polygon.empty(); ++plane) {
       std::vector<Vector3d> out;
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector3d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        const double da = inside(a, plane), db = inside(b, plane);
-        if (da >= 0) out.push_back(a);
-        if ((da >= 0) != (db >= 0)) out.push_back(a + (b - a) * (da / (da - db)));
-      }
+      clip_polygon(
+          polygon, [&](const Vector3d& x) { return inside(x, plane); },
+          [&](const Vector3d& x, std::size_t, bool, bool) { out.push_back(x); });
       polygon = std::move(out);
     }
   }

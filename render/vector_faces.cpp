@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "engine/core/polygon.hpp"
+
 namespace lrb::render {
 namespace {
 
@@ -42,20 +44,16 @@ bool is_narrow(const std::vector<Vector2d>& x) {
   return !(std::abs(twice_area(x)) > kNarrow * around);
 }
 
-/// Keeps the part of a convex polygon with value(x) >= 0, where `value` is linear (Sutherland and Hodgman
-/// 1974). `edges` belongs to the corners; the new edge along the cut gets -1.
+/// Keeps the part of a convex polygon with value(x) >= 0. `edges` belongs to the corners; the new edge along
+/// the cut gets -1.
 template <class Value>
 void clip(std::vector<Vector2d>& corners, std::vector<std::int8_t>& edges, const Value& value) {
   std::vector<Vector2d> x;
   std::vector<std::int8_t> e;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vector2d &a = corners[i], &b = corners[(i + 1) % corners.size()];
-    const double va = value(a), vb = value(b);
-    if (va >= 0) x.push_back(a), e.push_back(edges[i]);
-    if ((va >= 0) == (vb >= 0)) continue;
-    x.push_back(a + (b - a) * (va / (va - vb)));
-    e.push_back(va >= 0 ? std::int8_t{-1} : edges[i]);
-  }
+  clip_polygon(corners, value, [&](const Vector2d& corner, std::size_t i, bool, bool along_cut) {
+    x.push_back(corner);
+    e.push_back(along_cut ? std::int8_t{-1} : edges[i]);
+  });
   corners = std::move(x);
   edges = std::move(e);
 }

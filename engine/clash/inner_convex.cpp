@@ -15,6 +15,7 @@
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/clash/minkowski.hpp"
 #include "engine/core/geometry.hpp"
+#include "engine/core/polygon.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 
 namespace lrb::penetration {
@@ -165,16 +166,12 @@ struct HalfSpace {
 /// A part of a triangle that is not excluded by any half-space yet.
 using Part = std::vector<Vector3d>;
 
-/// Clips a convex polygon to n . x <= most (Sutherland-Hodgman).
+/// Clips a convex polygon to n . x <= most.
 Part clipped(const Part& in, const Vector3d& n, double most) {
   Part out;
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const Vector3d &x = in[i], &y = in[(i + 1) % in.size()];
-    const double dx = most - n.dot(x), dy = most - n.dot(y);
-    // Keep corners inside, and add the intersection of an edge whose ends are on different sides.
-    if (dx >= 0) out.push_back(x);
-    if ((dx > 0 && dy < 0) || (dx < 0 && dy > 0)) out.push_back(x + dx / (dx - dy) * (y - x));
-  }
+  clip_polygon(
+      in, [&](const Vector3d& x) { return most - n.dot(x); },
+      [&](const Vector3d& x, std::size_t, bool, bool) { out.push_back(x); });
   return out;
 }
 

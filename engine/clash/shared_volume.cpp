@@ -41,10 +41,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Geometry>
 
 #include "engine/clash/clash_parts.hpp"
+#include "engine/core/polygon.hpp"
 
 namespace lrb::penetration {
 namespace {
@@ -115,20 +117,12 @@ struct Polygon {
   void add(const Vector2d& x) { p[size++] = x; }
 };
 
-/// Clips a polygon to { x : value(x) >= 0 } for a function that is linear between corners
-/// (Sutherland-Hodgman).
+/// Clips a polygon to value(x) >= 0.
 template <class Value>
 Polygon clipped(const Polygon& in, const Value& value) {
   Polygon out;
-  double d[16];
-  for (int i = 0; i < in.size; ++i) d[i] = value(in.p[i]);
-  for (int i = 0; i < in.size; ++i) {
-    const int j = (i + 1) % in.size;
-    if (d[i] >= 0) out.add(in.p[i]);
-    // A change of sign: add the zero of the linear interpolation. A corner with value 0 was added itself.
-    if ((d[i] >= 0) != (d[j] >= 0) && d[i] != 0 && d[j] != 0)
-      out.add(in.p[i] + d[i] / (d[i] - d[j]) * (in.p[j] - in.p[i]));
-  }
+  clip_polygon(std::span(in.p, static_cast<std::size_t>(in.size)), value,
+               [&](const Vector2d& x, std::size_t, bool, bool) { out.add(x); });
   return out;
 }
 
@@ -280,14 +274,10 @@ using Outline = std::vector<Vector3d>;
 Outline part_of(const Outline& in, int axis, double at, double sign) {
   Outline out;
   const auto ahead = [&](const Vector3d& x) { return sign * (x[axis] - at); };
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const Vector3d &p = in[i], &q = in[(i + 1) % in.size()];
-    const double d = ahead(p), e = ahead(q);
-    if (d >= 0) out.push_back(p);
-    if ((d >= 0) == (e >= 0) || d == 0 || e == 0) continue;
-    out.emplace_back(p + d / (d - e) * (q - p));
-    out.back()[axis] = at;
-  }
+  clip_polygon(in, ahead, [&](const Vector3d& x, std::size_t, bool is_new, bool) {
+    out.push_back(x);
+    if (is_new) out.back()[axis] = at;
+  });
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/collide/relation.hpp"
+#include "engine/core/axes.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/lrb/complex.hpp"
@@ -56,13 +57,8 @@ class SlabSearch {
     if (!std::isnormal(length_sq)) return false;
     const double least = margin_ * std::sqrt(length_sq);
     if (!std::isnormal(least)) return false;
-    // Project all corners. The wider gap between the two intervals counts, whichever simplex comes first.
-    const double a0 = d.dot(a_[0]), a1 = d.dot(a_[1]), a2 = d.dot(a_[2]);
-    const double b0 = d.dot(b_[0]), b1 = d.dot(b_[1]), b2 = d.dot(b_[2]);
-    const double w = std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}),
-                              std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
     // Both sides are scaled by |d|, which avoids a division.
-    return w > least;
+    return gap_along(d, a_, b_) > least;
   }
 
  private:

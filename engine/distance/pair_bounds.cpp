@@ -22,10 +22,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <Eigen/Geometry>
 
-#include "engine/core/geometry.hpp"
+#include "engine/core/axes.hpp"
 #include "engine/core/tolerances.hpp"
 
 namespace lrb {
@@ -53,11 +54,8 @@ bool is_in_range(double length) {
 }
 
 /// Returns the width of the slab between two simplices along a direction of any length, rounded down; at
-/// least 0. low, high: the ends of their projections, in double. reach: the largest coordinate from which
-/// these were computed.
-double slab_width(const Vector3d& direction, const double (&low)[2], const double (&high)[2], double reach) {
-  // Either simplex may come first along the direction.
-  const double gap = std::max(low[1] - high[0], low[0] - high[1]);
+/// least 0. gap: gap_along() the direction. reach: the largest coordinate from which it was computed.
+double slab_width(const Vector3d& direction, double gap, double reach) {
   // A quarter of kPairRounding is 16 u: the error bound of a difference of products, derived above.
   const double sure = gap - 0.25 * kPairRounding * reach * direction.cwiseAbs().sum();
   return sure > 0 ? sure / direction.norm() * kPairDown : 0;
@@ -190,14 +188,8 @@ class Pair {
     if (!(largest > 0)) return 0;
     // Scale by a power of two, which is exact, so that the largest coordinate is in [1, 2).
     n *= std::ldexp(1.0, -std::ilogb(largest));
-    double low[2] = {kInfinity, kInfinity}, high[2] = {-kInfinity, -kInfinity};
-    for (int side = 0; side < 2; ++side)
-      for (int k = 0; k < n_; ++k) {
-        const double x = n.dot(x_[side][k]);
-        low[side] = std::min(low[side], x);
-        high[side] = std::max(high[side], x);
-      }
-    return slab_width(n, low, high, reach_);
+    const auto corners = static_cast<std::size_t>(n_);
+    return slab_width(n, gap_along(n, std::span(x_[0], corners), std::span(x_[1], corners)), reach_);
   }
 
   int n_;
@@ -262,7 +254,7 @@ double distance_along(const Vector3d& direction, double least, const double* con
     }
   // Outside this range squares are unreliable: no result.
   if (!is_in_range(reach) || !is_in_range(direction.cwiseAbs().maxCoeff())) return 0;
-  const double width = slab_width(direction, low, high, reach);
+  const double width = slab_width(direction, std::max(low[1] - high[0], low[0] - high[1]), reach);
   // Clearly below `least`: the caller computes the full bounds, which may be larger.
   return width < least - 2 * kPairRounding * reach ? 0 : width;
 }

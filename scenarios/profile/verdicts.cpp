@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/axes.hpp"
 #include "engine/exact/pair_distance.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/distance.hpp>
@@ -112,18 +113,13 @@ double overlap_depth(const Triangle& a, const Triangle& b) {
   // the normal of a triangle, or of the parallelogram of an edge of each. (Cameron, "Enhancing GJK", 1997,
   // section 4.) The coordinate axes serve where edges are parallel and the sum is flat.
   double least = std::numeric_limits<double>::infinity();
+  Triangle from_a[2] = {a, b};
+  for (Triangle& t : from_a)
+    for (Eigen::Vector3d& x : t) x -= a[0];
   const auto along = [&](const Eigen::Vector3d& direction) {
     const double length = direction.norm();
     if (!(length > 0)) return;
-    const Eigen::Vector3d axis = direction / length;
-    double low[2], high[2];
-    for (int side = 0; side < 2; ++side) {
-      const Triangle& t = side == 0 ? a : b;
-      const double x[] = {axis.dot(t[0] - a[0]), axis.dot(t[1] - a[0]), axis.dot(t[2] - a[0])};
-      low[side] = std::min({x[0], x[1], x[2]});
-      high[side] = std::max({x[0], x[1], x[2]});
-    }
-    least = std::min(least, std::max(0.0, std::min(high[0] - low[1], high[1] - low[0])));
+    least = std::min(least, std::max(0.0, -gap_along(direction / length, from_a[0], from_a[1])));
   };
   Eigen::Vector3d edges[2][3];
   for (int side = 0; side < 2; ++side) {

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
+#include "engine/core/polygon.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::profile {
@@ -126,15 +127,9 @@ void clip_in(std::vector<Vector3d>& polygon, const HalfSpace& half, std::vector<
   const auto is_inside = [&](const Vector3d& p) { return above(p) <= 0; };
   if (std::all_of(polygon.begin(), polygon.end(), is_inside)) return;
   room.clear();
-  double of_p = above(polygon[0]);
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vector3d& p = polygon[i];
-    const Vector3d& q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    const double of_q = above(q);
-    if (of_p <= 0) room.push_back(p);
-    if ((of_p < 0 && of_q > 0) || (of_p > 0 && of_q < 0)) room.push_back(p + of_p / (of_p - of_q) * (q - p));
-    of_p = of_q;
-  }
+  clip_polygon(
+      polygon, [&](const Vector3d& p) { return -above(p); },
+      [&](const Vector3d& x, std::size_t, bool, bool) { room.push_back(x); });
   polygon.swap(room);
 }
 
