@@ -29,10 +29,10 @@
 #include "engine/construct/front_mesh.hpp"
 #include "engine/construct/front_simplifier.hpp"
 #include "engine/construct/half_spaces.hpp"
+#include "engine/construct/whole_fronts.hpp"
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/predicates.hpp"
-#include "engine/mesh/nesting.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/core/disjoint_sets.hpp>
@@ -48,27 +48,8 @@ namespace {
 using Slot = FrontMesh::Slot;
 using Corner = FrontMesh::Corner;
 
-// Nesting of a body's components: voids have negative volume (exact); an exact ray decides which components
-// contain each other; a solid component belongs to the innermost void that contains it.
+}  // namespace
 
-struct Component {
-  std::vector<FaceId> faces;
-  Eigen::AlignedBox3d box;
-};
-
-std::vector<Component> components_of(const FrontMesh& front) {
-  std::vector<Component> out(front.component_count());
-  for (Slot s = 0; s < front.slot_count(); ++s) {
-    // The triangles of a polygon are consecutive, so comparing with the last face removes duplicates.
-    Component& c = out[front[s].component];
-    if (c.faces.empty() || c.faces.back() != front[s].face) c.faces.push_back(front[s].face);
-    c.box.extend(box_of(front, s));
-  }
-  return out;
-}
-
-/// Returns the components around each one, ascending. The first corner of a face decides, unless it is on the
-/// other component's surface; if the corners of many faces are, the two have their surface in common.
 std::vector<std::vector<std::uint32_t>> find_holders(const Mesh& mesh,
                                                      const std::vector<Component>& components) {
   std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
@@ -91,34 +72,7 @@ std::vector<std::vector<std::uint32_t>> find_holders(const Mesh& mesh,
   return holders;
 }
 
-/// Returns the void in front of each component of the mesh's surface: (components) itself for a void, kNull
-/// for the outside. `front`: still the mesh's own surface. Exact, except that a component that crosses a
-/// void's wall is located by one of its vertices.
-std::vector<std::uint32_t> find_nesting(const Mesh& mesh, const FrontMesh& front) {
-  const std::uint32_t count = front.component_count();
-  std::vector<std::uint32_t> home(count, kNull);
-  // The usual case: nothing can be nested.
-  if (count == 1) return home;
-  const std::vector<Component> components = components_of(front);
-  // Exact sign of the volume: a component that faces inward bounds a void.
-  std::vector<bool> is_void(count);
-  for (std::uint32_t c = 0; c < count; ++c) is_void[c] = volume_sign(mesh, components[c].faces) < 0;
-  const auto holders = find_holders(mesh, components);
-  const auto is_inside = [&](std::uint32_t inner, std::uint32_t outer) {
-    return std::binary_search(holders[inner].begin(), holders[inner].end(), outer);
-  };
-  for (std::uint32_t c = 0; c < count; ++c) {
-    // A void is its own home: its front faces the space inside it.
-    if (is_void[c]) {
-      home[c] = c;
-      continue;
-    }
-    // The innermost void around it is inside all others.
-    for (const std::uint32_t v : holders[c])
-      if (is_void[v] && (home[c] == kNull || is_inside(v, home[c]))) home[c] = v;
-  }
-  return home;
-}
+namespace {
 
 // Finds the faces of a self-intersecting body in front of which is not the outside:
 // 1. Connect the triangles that intersect nothing into sheets. No sheet crosses a surface, so the winding
@@ -215,23 +169,14 @@ constexpr double kFewLidsSwell = 0.05;
 /// 2. Fitted levels of limited deviation (unless lean), then levels without a limit, until there are few
 /// enough outer faces: FrontSimplifier.
 /// 3. Bridge concavities, fill voids, and close with a wrapper if there are still too many outer faces.
-class CollapseBuilder {
+class CollapseBuilder : WholeFronts<FrontMesh> {
  public:
   CollapseBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
-      : options_(options),
+      : WholeFronts(mesh, meeting, options),
         workers_(options.threads),
-        front_(mesh),
-        complex_(mesh),
-        home_(find_nesting(mesh, front_)),
-        bounds_(mesh.vertices, options.max_lids > 0 ? kFewLidsSwell : kFrontSwell),
-        frozen_(mesh.face_count(), false),
-        component_boxes_(front_.component_count()),
-        passes_(options) {
-    // Faces that intersect others, and faces in front of which is not the outside, are never covered.
-    for (const FaceId f : meeting) frozen_[f] = true;
+        bounds_(mesh.vertices, options.max_lids > 0 ? kFewLidsSwell : kFrontSwell) {
+    // Faces in front of which is not the outside are not covered either.
     for (const FaceId f : find_buried(front_, meeting)) frozen_[f] = true;
-    for (Slot s = 0; s < front_.slot_count(); ++s)
-      component_boxes_[front_[s].component].extend(box_of(front_, s));
   }
 
   LrbData run() {
@@ -242,30 +187,20 @@ class CollapseBuilder {
     }
     if (outer_size() > options_.max_outer_faces && bridge())
       make_simplifier().simplify([&] { plan_polytope_from(kPolytopeFrom); });
-    fill();
-    const std::uint32_t outer = outer_size();
-    const bool is_closed = outer > options_.max_outer_faces && close();
-    if (options_.probe) options_.probe->closed(is_closed ? polytope_size() : outer);
-    return complex_.finish(true, false);
+    return finish(options_.max_outer_faces);
   }
 
  private:
-  bool is_outer(Slot s) const { return home_[front_[s].component] == kNull; }
-
-  std::uint32_t outer_size() const {
-    std::uint32_t count = 0;
-    for (Slot s = 0; s < front_.slot_count(); ++s) count += front_.alive(s) && is_outer(s);
-    return count;
-  }
-
-  std::uint32_t polytope_size() const { return static_cast<std::uint32_t>(polytope_.face_count()); }
-
-  std::vector<Eigen::Vector3d> outer_points() const {
+  std::vector<Eigen::Vector3d> outer_points() const override {
     std::vector<Eigen::Vector3d> points;
     for (Corner v = 0; v < front_.point_count(); ++v)
       if (front_.degree(v) > 0 && is_outer(front_.any_slot(v))) points.push_back(front_.x(v));
     return points;
   }
+  Mesh wrapper_around(std::span<const Eigen::Vector3d> points) override {
+    return enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
+  }
+  bool wrapper_holds(const Eigen::Vector3d& point) const override { return holds(wrapper_, point); }
 
   FrontSimplifier make_simplifier() {
     return {front_, complex_, frozen_, component_boxes_, bounds_, options_, passes_};
@@ -289,7 +224,10 @@ class CollapseBuilder {
   bool bridge_pockets() {
     // The convex hull of n points in one plane takes O(n^2) steps.
     for (Slot s = 0; s < front_.slot_count(); ++s)
-      if (front_.alive(s) && front_.is_crowded(s)) return report_whole_cap(0, CapVerdict::too_crowded);
+      if (front_.alive(s) && front_.is_crowded(s)) {
+        report_whole_cap(0, outer_size(), CapVerdict::too_crowded);
+        return false;
+      }
     std::vector<bool> joined(front_.component_count());
     for (std::uint32_t c = 0; c < joined.size(); ++c) joined[c] = home_[c] == kNull;
     if (options_.max_lids == 0) plan_polytope();
@@ -297,71 +235,16 @@ class CollapseBuilder {
            CapVerdict::accepted;
   }
 
-  /// Reports a cap of `faces` faces over the entire outer front to the probe. Returns true if the cap was
-  /// accepted.
-  bool report_whole_cap(std::uint32_t faces, CapVerdict verdict) const {
-    if (options_.probe) {
-      Slot first = 0;
-      while (!front_.alive(first) || !is_outer(first)) ++first;
-      const std::uint32_t outer = outer_size();
-      options_.probe->patch({front_.point(front_[first].v[0]).id, outer, 0});
-      options_.probe->cap({faces, outer, verdict, false, -1});
-    }
-    return verdict == CapVerdict::accepted;
-  }
-
-  void fill() {
-    const std::uint32_t before = complex_.region_count(), faces = front_.triangle_count();
-    fill_voids(front_, home_, passes_.layer(), complex_);
-    if (complex_.region_count() == before) return;
-    passes_.report_begin(BuildStage::fill, faces);
-    passes_.report_regions(complex_, before);
-    passes_.report_end({.front_faces = outer_size()});
-  }
-
   /// Plans the outermost wrapper; from now on all fronts stay inside it.
   void plan_polytope() {
-    if (polytope_.face_count() > 0) return;
-    polytope_ = enclosing_polytope(outer_points(), options_.max_outer_faces, kPolytopeDistance, workers_);
-    if (polytope_.face_count() == 0) return;
+    if (wrapper_size() > 0) return;
+    wrapper_ = wrapper_around(outer_points());
+    if (wrapper_size() == 0) return;
     // The front keeps a margin from the wrapper, so that the exact confirmation in find_closing() succeeds.
-    bounds_ = BodyBounds(polytope_, kFrontDistance * size_of(polytope_));
-  }
-
-  static double size_of(const Mesh& mesh) {
     Eigen::AlignedBox3d box;
-    for (const auto& v : mesh.vertices) box.extend(v);
-    return box.sizes().maxCoeff();
+    for (const auto& v : wrapper_.vertices) box.extend(v);
+    bounds_ = BodyBounds(wrapper_, kFrontDistance * box.sizes().maxCoeff());
   }
-
-  /// Puts the outermost wrapper around the front. Returns false if no wrapper is found.
-  bool close() {
-    const std::uint32_t outer = outer_size(), before = complex_.region_count();
-    passes_.report_begin(BuildStage::close, outer);
-    const CapVerdict verdict = find_closing();
-    const bool accepted = report_whole_cap(polytope_size(), verdict);
-    if (accepted) enclose(front_, home_, polytope_, passes_.layer(), complex_);
-    passes_.report_regions(complex_, before);
-    passes_.report_end({.front_faces = accepted ? polytope_size() : outer});
-    if (accepted) end_pass();
-    return accepted;
-  }
-
-  CapVerdict find_closing() {
-    plan_polytope();
-    const std::vector<Eigen::Vector3d> points = outer_points();
-    const auto holds_all = [&] {
-      return std::all_of(points.begin(), points.end(), [&](const auto& p) { return holds(polytope_, p); });
-    };
-    if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
-    // Rounding or bridging may have moved the front outside: plan again around the current front.
-    if (!holds_all())
-      polytope_ = enclosing_polytope(points, options_.max_outer_faces, kPolytopeDistance, workers_);
-    if (polytope_.face_count() == 0) return CapVerdict::too_far_out;
-    return holds_all() ? CapVerdict::accepted : CapVerdict::leaves_out;
-  }
-
-  void end_pass() { passes_.end_pass(complex_, front_.triangle_count()); }
 
   /// Fitting ends when the front has no more triangles than this.
   static constexpr std::uint32_t kFitDownTo = 200;
@@ -371,17 +254,8 @@ class CollapseBuilder {
   /// The same while fitting, where the front is close to the mesh for longer.
   static constexpr std::uint32_t kFittedPolytopeFrom = 2000;
 
-  const BuildOptions& options_;
   Workers workers_;
-  FrontMesh front_;
-  ComplexBuilder complex_;
-  const std::vector<std::uint32_t> home_;  ///< (components) see find_nesting()
   BodyBounds bounds_;
-  /// (|real faces|) true for faces that are never covered
-  std::vector<bool> frozen_;
-  std::vector<Eigen::AlignedBox3d> component_boxes_;
-  Mesh polytope_;  ///< empty until planned
-  PassCounter passes_;
 };
 
 /// Builds an LRB-rep from a 3D mesh that is MeshReport::buildable() and oriented outward. `meeting`: the

@@ -18,9 +18,9 @@
 #include "engine/construct/chain_cap.hpp"
 #include "engine/construct/complex_builder.hpp"
 #include "engine/construct/convex_hull.hpp"
+#include "engine/construct/whole_fronts.hpp"
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
-#include "engine/mesh/nesting.hpp"
 #include <lrbscope/contact.hpp>
 
 namespace lrb::construct {
@@ -30,21 +30,10 @@ using Slot = FrontLoops::Slot;
 using Vector3 = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
 
-class ChainBuilder {
+class ChainBuilder : WholeFronts<FrontLoops> {
  public:
   ChainBuilder(const Mesh& mesh, const std::vector<FaceId>& meeting, const BuildOptions& options)
-      : options_(options),
-        max_outer_(std::min(options.max_outer_faces, kMaxOuter)),
-        front_(mesh),
-        complex_(mesh),
-        frozen_(mesh.face_count(), false),
-        boxes_(front_.component_count()),
-        passes_(options) {
-    // Segments that intersect others are never covered: embedding can be proven only for the others.
-    for (const FaceId f : meeting) frozen_[f] = true;
-    for (Slot s = 0; s < front_.slot_count(); ++s) boxes_[front_[s].component].extend(box_of(front_, s));
-    find_nesting(mesh);
-  }
+      : WholeFronts(mesh, meeting, options), max_outer_(std::min(options.max_outer_faces, kMaxOuter)) {}
 
   LrbData run() {
     plan_polygon();
@@ -55,72 +44,41 @@ class ChainBuilder {
     simplify(kLastCapWorth);
     // Bridging changes the shape, so that chains without a cap may have one now.
     if (outer_size() > max_outer_ && bridge()) simplify(kLastCapWorth);
-    fill();
-    const std::uint32_t outer = outer_size();
-    // No wrapper is needed if the front itself has few enough segments.
-    const bool is_closed = outer > max_outer_ && close();
-    if (options_.probe) options_.probe->closed(is_closed ? polygon_size() : outer);
-    return complex_.finish(true, false);
+    return finish(max_outer_);
   }
 
  private:
-  bool is_outer(Slot s) const { return home_[front_[s].component] == kNull; }
-
   std::vector<Slot> outer_slots() const {
     std::vector<Slot> slots = front_.alive_slots();
     std::erase_if(slots, [&](Slot s) { return !is_outer(s); });
     return slots;
   }
 
-  std::uint32_t outer_size() const { return static_cast<std::uint32_t>(outer_slots().size()); }
-
-  std::vector<Vector3> outer_points() const {
+  std::vector<Vector3> outer_points() const override {
     std::vector<Vector3> points;
     for (const Slot s : outer_slots()) points.push_back(front_.start(s));
     return points;
   }
-
-  /// Finds the hole in front of each component: the component itself if it is a hole, kNull for the outside.
-  void find_nesting(const Mesh& mesh) {
-    const std::uint32_t count = front_.component_count();
-    // Step 1: holes are the components with negative area. A hole is its own home.
-    std::vector<std::vector<FaceId>> faces(count);
-    for (Slot s = 0; s < front_.slot_count(); ++s) faces[front_[s].component].push_back(front_[s].face);
-    home_.assign(count, kNull);
-    for (std::uint32_t c = 0; c < count; ++c)
-      if (volume_sign(mesh, faces[c]) < 0) home_[c] = c;
-    // Step 2: the components that contain each one, decided by its first vertex; ambiguous only if they
-    // cross.
-    std::vector<std::uint32_t> component_of(mesh.face_count(), kNull);
-    for (std::uint32_t c = 0; c < count; ++c)
-      for (const FaceId f : faces[c]) component_of[f] = c;
-    const SideFinder finder(mesh, std::move(component_of));
-    std::vector<std::vector<std::uint32_t>> holders(count);  // of a component's first vertex, ascending
-    for (std::uint32_t c = 0; c < count; ++c)
-      for (const SideFinder::Side& s : finder.sides(mesh.vertices[mesh.face(faces[c][0])[0]]))
-        if (s.side == PointSide::inside && boxes_[s.surface].contains(boxes_[c]))
-          holders[c].push_back(s.surface);
-    const auto is_inside = [&](std::uint32_t inner, std::uint32_t outer) {
-      return std::binary_search(holders[inner].begin(), holders[inner].end(), outer);
-    };
-    // Step 3: the innermost hole around each solid component. It is inside all others around it.
-    const std::vector<std::uint32_t> holes = home_;
-    for (std::uint32_t c = 0; c < count; ++c) {
-      if (holes[c] != kNull) continue;
-      for (const std::uint32_t h : holders[c])
-        if (holes[h] == h && (home_[c] == kNull || is_inside(h, home_[c]))) home_[c] = h;
-    }
+  Mesh wrapper_around(std::span<const Vector3> points) override {
+    Mesh mesh;
+    mesh.dim = 2;
+    mesh.vertices = enclosing_polygon(points, max_outer_, kPolytopeDistance);
+    // One face for each side, counter-clockwise: the inside is on the left.
+    const auto count = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (VertexId v = 0; v < count; ++v) mesh.add_face(std::array{v, VertexId((v + 1) % count)});
+    return mesh;
   }
+  bool wrapper_holds(const Vector3& point) const override { return holds_2d(wrapper_.vertices, point); }
 
   /// Plans the outermost wrapper first, so that all fronts stay inside it.
   void plan_polygon() {
-    const auto points = outer_points();
     // The front is still the mesh itself, so the wrapper is as tight as possible.
-    polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
+    wrapper_ = wrapper_around(outer_points());
+    const std::vector<Vector3>& polygon = wrapper_.vertices;
     Box box;
-    for (const Vector3& p : polygon_) box.extend(p);
-    for (std::size_t i = 0; i < polygon_.size(); ++i) {
-      const Vector3 &a = polygon_[i], &b = polygon_[(i + 1) % polygon_.size()];
+    for (const Vector3& p : polygon) box.extend(p);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vector3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
       // The inward normal of a side. The front keeps a small distance, so that rounding cannot move it
       // outside.
       const Vector3 n = normalized3(Vector3(a.y() - b.y(), b.x() - a.x(), 0));
@@ -131,7 +89,7 @@ class ChainBuilder {
   void fit() {
     // The deviations of the schedule are relative to the largest side of the body's box.
     Box box;
-    for (const Box& b : boxes_) box.extend(b);
+    for (const Box& b : component_boxes_) box.extend(b);
     // Later passes at a deviation limit would gain too little.
     constexpr double kGain = 0.8;
     fit_fronts(
@@ -177,7 +135,7 @@ class ChainBuilder {
       const auto chain = chain_of_untaken(p.cap, taken);
       // Prove against the current front, not the front at the time of the proposal.
       const CapVerdict verdict =
-          chain.empty() ? CapVerdict::overlaps : judge_chain_cap(front_, tree, p.cap, boxes_);
+          chain.empty() ? CapVerdict::overlaps : judge_chain_cap(front_, tree, p.cap, component_boxes_);
       report_cap(p, verdict, goal.off);
       if (verdict != CapVerdict::accepted) continue;
       for (const Slot s : replace(p.cap, chain)) {
@@ -349,72 +307,11 @@ class ChainBuilder {
       if (cap.length < 2) continue;
       // The caps cannot intersect each other, as sides of one convex hull, so each is tested alone.
       caps.push_back(cap);
-      const CapVerdict verdict = judge_chain_cap(front_, tree, cap, boxes_);
+      const CapVerdict verdict = judge_chain_cap(front_, tree, cap, component_boxes_);
       if (verdict != CapVerdict::accepted) return verdict;
     }
     return caps.empty() ? CapVerdict::too_many_faces : CapVerdict::accepted;
   }
-
-  /// Reports a cap over all outer outlines, and the number of segments that it covers.
-  void report_whole_cap(std::uint32_t segments, std::uint32_t covered, CapVerdict verdict) const {
-    if (!options_.probe) return;
-    const std::vector<Slot> slots = outer_slots();
-    options_.probe->patch({front_[slots.front()].a, static_cast<std::uint32_t>(slots.size()), 0});
-    options_.probe->cap({segments, covered, verdict, false, -1});
-  }
-
-  void fill() {
-    const std::uint32_t before = complex_.region_count(), faces = front_.segment_count();
-    // The remainder of each hole is one region with a floor but no lid.
-    fill_voids(front_, home_, passes_.layer(), complex_);
-    if (complex_.region_count() == before) return;
-    passes_.report_begin(BuildStage::fill, faces);
-    passes_.report_regions(complex_, before);
-    passes_.report_end({.front_faces = outer_size()});
-  }
-
-  /// Puts the outermost wrapper around the front. Returns false if no wrapper is found.
-  bool close() {
-    const std::uint32_t outer = outer_size(), before = complex_.region_count();
-    passes_.report_begin(BuildStage::close, outer);
-    // The wrapper becomes the outer boundary of one last region around all outer outlines.
-    const CapVerdict verdict = find_closing();
-    report_whole_cap(polygon_size(), outer, verdict);
-    const bool accepted = verdict == CapVerdict::accepted;
-    if (accepted) enclose(front_, home_, outline_mesh(polygon_), passes_.layer(), complex_);
-    passes_.report_regions(complex_, before);
-    passes_.report_end({.front_faces = accepted ? polygon_size() : outer});
-    if (accepted) end_pass();
-    return accepted;
-  }
-
-  CapVerdict find_closing() {
-    const auto points = outer_points();
-    const auto holds_all = [&] {
-      return std::all_of(points.begin(), points.end(),
-                         [&](const Vector3& p) { return holds_2d(polygon_, p); });
-    };
-    // The planned polygon usually still contains the front. Rounding or bridging may have moved the front
-    // outside: plan again.
-    if (polygon_.empty() || !holds_all()) polygon_ = enclosing_polygon(points, max_outer_, kPolytopeDistance);
-    if (polygon_.empty()) return CapVerdict::too_far_out;
-    // The final confirmation is exact.
-    return holds_all() ? CapVerdict::accepted : CapVerdict::leaves_out;
-  }
-
-  std::uint32_t polygon_size() const { return static_cast<std::uint32_t>(polygon_.size()); }
-
-  static Mesh outline_mesh(const std::vector<Vector3>& polygon) {
-    Mesh mesh;
-    mesh.dim = 2;
-    mesh.vertices = polygon;
-    // One face for each side, counter-clockwise: the inside is on the left.
-    const auto count = static_cast<std::uint32_t>(polygon.size());
-    for (VertexId v = 0; v < count; ++v) mesh.add_face(std::array{v, VertexId((v + 1) % count)});
-    return mesh;
-  }
-
-  void end_pass() { passes_.end_pass(complex_, front_.segment_count()); }
 
   static constexpr std::uint32_t kMaxOuter = 8;  ///< maximum number of segments of the outermost wrapper
   /// Fitting ends when the front has no more segments than this.
@@ -422,16 +319,8 @@ class ChainBuilder {
   /// A pass that leaves more than this share of the segments is the last.
   static constexpr double kMinGain = 0.95;
 
-  const BuildOptions& options_;
   const std::uint32_t max_outer_;
-  FrontLoops front_;
-  ComplexBuilder complex_;
-  std::vector<bool> frozen_;         ///< (|real faces|) true for faces that intersect others
-  std::vector<Box> boxes_;           ///< (components)
-  std::vector<std::uint32_t> home_;  ///< (components)
-  std::vector<Vector3> polygon_;
   std::vector<HalfSpace> bounds_;
-  PassCounter passes_;
 };
 
 }  // namespace
