@@ -91,7 +91,7 @@ void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& r
       found.relation == Relation::crossing && crossing_interiors_overlap(query, found) == Answer::yes;
   bool solid_inside = true;
   const auto pieces =
-      penetration::surface_pieces(query, found, false, &result.reason, is_proven ? nullptr : &solid_inside);
+      penetration::surface_pieces(query, found, result.reason, is_proven ? nullptr : &solid_inside);
   if (!pieces) return;
   result.pieces = *pieces;
   const bool enters = (*pieces)[0].inside + (*pieces)[1].inside > 0;

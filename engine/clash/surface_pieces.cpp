@@ -25,6 +25,7 @@
 #include "engine/core/tolerances.hpp"
 #include "engine/exact/locate.hpp"
 #include "engine/exact/predicates.hpp"
+#include "engine/mesh/vertex_groups.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/core/disjoint_sets.hpp>
 
@@ -203,22 +204,6 @@ std::pair<int, double> SimpleCut::place_on_border(std::uint32_t cell) const {
   return {0, 0};  // every cell has a part of the border
 }
 
-/// Returns for each vertex the first vertex at the same position: vertices on seams occur twice.
-std::vector<VertexId> places_of(const LrbRep& rep) {
-  std::vector<VertexId> order(rep.vertices().size()), out(rep.vertices().size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = VertexId(i);
-  const auto less = [&](VertexId a, VertexId b) {
-    const Eigen::Vector3d &x = rep.vertices()[a], &y = rep.vertices()[b];
-    return std::lexicographical_compare(x.data(), x.data() + 3, y.data(), y.data() + 3);
-  };
-  // Equal positions become adjacent, the first vertex in front because the sort is stable.
-  std::stable_sort(order.begin(), order.end(), less);
-  for (std::size_t i = 0; i < order.size(); ++i)
-    // A vertex equal to its predecessor inherits the predecessor's representative.
-    out[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? out[order[i - 1]] : order[i];
-  return out;
-}
-
 /// The use of an edge by a triangle.
 struct EdgeUse {
   VertexId from, to;  ///< by position, from < to
@@ -242,15 +227,14 @@ struct TouchedFace {
 class CutSurface {
  public:
   CutSurface(QueryContext& ctx, Side side, const CollideResult& result,
-             const std::vector<exact::PairContact>& contacts, bool only_rational)
+             const std::vector<exact::PairContact>& contacts)
       : body_(ctx[side]),
         holder_(ctx[other(side)]),
         side_(side),
         result_(result),
         contacts_(contacts),
-        only_rational_(only_rational),
-        place_(places_of(body_.rep())),
-        holder_place_(places_of(holder_.rep())),
+        place_(first_at_positions(body_.rep().vertices())),
+        holder_place_(first_at_positions(holder_.rep().vertices())),
         nodes_(0),
         surface_(body_.rep().real_simplex_count()) {}
 
@@ -338,7 +322,7 @@ class CutSurface {
       touched_[own(result_.pairs[i])].pairs.push_back(i);
     for (auto& [s, face] : touched_) {
       // Rational arithmetic is slow: used only if the simple method fails.
-      if (!only_rational_) face.simple = simple_cut(s, face);
+      face.simple = simple_cut(s, face);
       if (!face.simple) face.cut = rational_cut(s, face);
       if (!face.simple && !face.cut) return false;
       // One node of the graph for each cell.
@@ -582,7 +566,6 @@ class CutSurface {
   const Side side_;
   const CollideResult& result_;
   const std::vector<exact::PairContact>& contacts_;
-  const bool only_rational_;
   const std::vector<VertexId> place_, holder_place_;
   std::map<SimplexId, TouchedFace> touched_;
   std::uint32_t node_count_ = 0;
@@ -603,10 +586,7 @@ ClashReason reason_of_bodies(const LrbRep& a, const LrbRep& b) {
 }  // namespace
 
 std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
-                                                           bool only_rational, ClashReason* reason,
-                                                           bool* solid_inside) {
-  ClashReason unused = ClashReason::none;
-  ClashReason& why = reason != nullptr ? *reason : unused;
+                                                           ClashReason& why, bool* solid_inside) {
   why = reason_of_bodies(context[Side::a].rep(), context[Side::b].rep());
   if (why != ClashReason::none) return std::nullopt;
   std::vector<exact::PairContact> contacts;
@@ -628,7 +608,7 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
   std::array<SurfacePieces, 2> out;
   // Each surface is cut by the other.
   for (const Side side : {Side::a, Side::b}) {
-    CutSurface surface(context, side, result, contacts, only_rational);
+    CutSurface surface(context, side, result, contacts);
     const std::optional<SurfacePieces> pieces = surface.run(why);
     if (!pieces) return std::nullopt;
     if (solid_inside != nullptr && !*solid_inside) *solid_inside = surface.has_solid_inside();

@@ -18,6 +18,7 @@
 
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/mesh/vertex_groups.hpp"
 
 namespace lrb {
 
@@ -28,19 +29,7 @@ void VertexStars::begin(const LrbRep& rep) {
   if (serial_ == rep.serial()) return;
   serial_ = rep.serial();
   const std::span<const Vector3d> x = rep.vertices();
-  // Vertices in the order of their coordinates, and of their numbers where these are equal.
-  std::vector<std::uint32_t> order(x.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto coordinates = [&](std::uint32_t v) { return std::tuple(x[v].x(), x[v].y(), x[v].z()); };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
-    const auto of_v = coordinates(v), of_w = coordinates(w);
-    return of_v != of_w ? of_v < of_w : v < w;
-  });
-  place_.assign(x.size(), VertexId{});
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool is_same = i > 0 && x[order[i]] == x[order[i - 1]];
-    place_[order[i]] = is_same ? place_[order[i - 1]] : VertexId(order[i]);
-  }
+  place_ = first_at_positions(x);
   // Simplices by counting sort.
   const int n = rep.simplex_size();
   VertexId v[3];

@@ -53,14 +53,12 @@ class CornerJoiner {
 
   /// Returns true if all positions are distinct.
   bool find_places() {
-    FirstAtPosition first_at(mesh_.vertices);
+    place_ = first_at_positions(mesh_.vertices);
     bool distinct = true;
-    place_.reserve(mesh_.vertices.size());
     finite_.reserve(mesh_.vertices.size());
     for (VertexId v = 0; v < mesh_.vertices.size(); ++v) {
-      place_.push_back(first_at(v));
       finite_.push_back(mesh_.vertices[v].allFinite());
-      distinct &= place_.back() == v;
+      distinct &= place_[v] == v;
     }
     return distinct;
   }

@@ -400,17 +400,6 @@ std::uint32_t orient_outward(Mesh& mesh) {
 
 namespace {
 
-struct FaultText {
-  std::string_view name, text;
-  bool build, query;
-};
-
-constexpr std::array<FaultText, kMeshFaultCount> kFaults = {{
-#define MESH_FAULT(name, text, build, query) {#name, text, build, query},
-    LRB_MESH_FAULTS(MESH_FAULT)
-#undef MESH_FAULT
-}};
-
 /// The kinds of elements that the two numbers of a finding refer to.
 enum class ElementKind : std::uint8_t {
   none,
@@ -423,53 +412,59 @@ enum class ElementKind : std::uint8_t {
   component
 };
 
-struct Help {
-  ElementKind kind;
-  std::string_view advice;
+struct FaultRow {
+  std::string_view name, text;
+  bool build, query;
 };
 
-/// Returns the advice on a fault of a mesh of `dim` dimensions.
-Help help_for(MeshFault fault, int dim) {
-  if (dim == 2 && fault == MeshFault::open_edge)
-    return {ElementKind::edge, "add a segment (l) that joins it to another end"};
-  if (dim == 2 && fault == MeshFault::non_manifold_edge)
-    return {ElementKind::edge, "separate the parts: one copy of the vertex for each pair of segments"};
-  switch (fault) {
-    case MeshFault::no_faces:
-      return {ElementKind::none, "export the mesh with its faces"};
-    case MeshFault::non_finite_vertex:
-      return {ElementKind::vertex, "replace it by a finite number"};
-    case MeshFault::index_out_of_range:
-      return {ElementKind::face_and_vertex, "correct the index or add the vertex"};
-    case MeshFault::repeated_corner:
-      return {ElementKind::face_and_vertex, "remove the corner or the face"};
-    case MeshFault::zero_area_face:
-      return {ElementKind::face, "collapse or remove it"};
-    case MeshFault::non_planar_face:
-    case MeshFault::non_convex_face:
-      return {ElementKind::face, "triangulate it to choose its triangles"};
-    case MeshFault::folded_face:
-      return {ElementKind::face,
-              "it is read as a fan of triangles from its first corner, which goes beyond it; triangulate it"};
-    case MeshFault::duplicate_face:
-      return {ElementKind::two_faces, "remove one of them"};
-    case MeshFault::open_edge:
-      return {ElementKind::edge, "close the hole (lrbscope close)"};
-    case MeshFault::non_manifold_edge:
-      return {ElementKind::edge, "separate the parts or remove inner faces"};
-    case MeshFault::flipped_face:
-      return {ElementKind::two_faces, "reverse one of them: list its corners in the opposite order"};
-    case MeshFault::non_manifold_vertex:
-      return {ElementKind::vertex, "duplicate the vertex, one copy per fan"};
-    case MeshFault::inside_out:
-      return {ElementKind::component, "it can be flipped without loss"};
-    case MeshFault::self_intersection:
-      return {ElementKind::two_faces, "inside and outside are then decided by parity"};
-    case MeshFault::duplicate_vertex:
-      return {ElementKind::two_vertices, "merge them if the surface should be connected there"};
-    default:
-      return {ElementKind::vertex, "it can be removed without loss"};
-  }
+constexpr std::array<FaultRow, kMeshFaultCount> kFaults = {{
+#define MESH_FAULT(name, text, build, query) {#name, text, build, query},
+    LRB_MESH_FAULTS(MESH_FAULT)
+#undef MESH_FAULT
+}};
+
+struct Help {
+  MeshFault fault;
+  ElementKind kind;
+  std::string_view advice;
+  std::string_view text_2d = {};    ///< where it differs: in 2D, vertices take the role of edges
+  std::string_view advice_2d = {};  ///< where it differs
+};
+
+constexpr std::array<Help, kMeshFaultCount> kHelp = {{
+    {MeshFault::no_faces, ElementKind::none, "export the mesh with its faces", "the mesh has no segments"},
+    {MeshFault::non_finite_vertex, ElementKind::vertex, "replace it by a finite number"},
+    {MeshFault::index_out_of_range, ElementKind::face_and_vertex, "correct the index or add the vertex",
+     "a segment has a vertex index out of range"},
+    {MeshFault::repeated_corner, ElementKind::face_and_vertex, "remove the corner or the face",
+     "a segment uses a vertex twice"},
+    {MeshFault::zero_area_face, ElementKind::face, "collapse or remove it", "a segment has no length"},
+    {MeshFault::non_planar_face, ElementKind::face, "triangulate it to choose its triangles"},
+    {MeshFault::non_convex_face, ElementKind::face, "triangulate it to choose its triangles"},
+    {MeshFault::folded_face, ElementKind::face,
+     "it is read as a fan of triangles from its first corner, which goes beyond it; triangulate it"},
+    {MeshFault::duplicate_face, ElementKind::two_faces, "remove one of them",
+     "two segments have the same ends"},
+    {MeshFault::open_edge, ElementKind::edge, "close the hole (lrbscope close)",
+     "a vertex has only one segment", "add a segment (l) that joins it to another end"},
+    {MeshFault::non_manifold_edge, ElementKind::edge, "separate the parts or remove inner faces",
+     "a vertex has more than two segments",
+     "separate the parts: one copy of the vertex for each pair of segments"},
+    {MeshFault::flipped_face, ElementKind::two_faces,
+     "reverse one of them: list its corners in the opposite order",
+     "two adjacent segments are inconsistently oriented"},
+    {MeshFault::non_manifold_vertex, ElementKind::vertex, "duplicate the vertex, one copy per fan"},
+    {MeshFault::inside_out, ElementKind::component, "it can be flipped without loss"},
+    {MeshFault::self_intersection, ElementKind::two_faces, "inside and outside are then decided by parity",
+     "two segments intersect outside their shared ends"},
+    {MeshFault::duplicate_vertex, ElementKind::two_vertices,
+     "merge them if the surface should be connected there"},
+    {MeshFault::unused_vertex, ElementKind::vertex, "it can be removed without loss",
+     "a vertex is not used by any segment"},
+}};
+
+const Help& help_for(MeshFault fault) {
+  return *std::find_if(kHelp.begin(), kHelp.end() - 1, [&](const Help& row) { return row.fault == fault; });
 }
 
 std::string shown(ElementKind kind, const std::array<std::uint32_t, 2>& element) {
@@ -501,37 +496,6 @@ std::string_view noun(ElementKind kind, int dim) {
   }
 }
 
-/// Returns a fault's text. In 2D, vertices take the role of edges.
-std::string_view text_of(MeshFault fault, int dim) {
-  if (dim == 2) {
-    switch (fault) {
-      case MeshFault::no_faces:
-        return "the mesh has no segments";
-      case MeshFault::index_out_of_range:
-        return "a segment has a vertex index out of range";
-      case MeshFault::repeated_corner:
-        return "a segment uses a vertex twice";
-      case MeshFault::zero_area_face:
-        return "a segment has no length";
-      case MeshFault::duplicate_face:
-        return "two segments have the same ends";
-      case MeshFault::open_edge:
-        return "a vertex has only one segment";
-      case MeshFault::non_manifold_edge:
-        return "a vertex has more than two segments";
-      case MeshFault::flipped_face:
-        return "two adjacent segments are inconsistently oriented";
-      case MeshFault::self_intersection:
-        return "two segments intersect outside their shared ends";
-      case MeshFault::unused_vertex:
-        return "a vertex is not used by any segment";
-      default:
-        break;
-    }
-  }
-  return kFaults[static_cast<std::size_t>(fault)].text;
-}
-
 /// Returns the advice on open edges, which depends on whether there is a hole at all.
 std::string advice_on_openings(const MeshReport& report) {
   const std::uint32_t sheets = report.sheets, open = report.open_components;
@@ -539,7 +503,7 @@ std::string advice_on_openings(const MeshReport& report) {
   if (sheets > 0 && sheets == open)
     return sheets == 1 ? "this is a sheet, which does not bound a solid"
                        : "these are " + std::to_string(sheets) + " sheets, which do not bound a solid";
-  const std::string close(help_for(MeshFault::open_edge, 3).advice);
+  const std::string close(help_for(MeshFault::open_edge).advice);
   if (sheets == 0) return close;
   return close + ", but " + std::to_string(sheets) + " of the " + std::to_string(open) + " open components " +
          (sheets == 1 ? "is a sheet, which does" : "are sheets, which do") + " not bound a solid";
@@ -547,9 +511,11 @@ std::string advice_on_openings(const MeshReport& report) {
 
 std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report) {
   const MeshFinding& finding = report[fault];
-  const Help help = help_for(fault, mesh.dim);
+  const Help& help = help_for(fault);
+  const bool is_2d = mesh.dim == 2;
   std::string line = mesh.name.empty() ? "mesh" : mesh.name;
-  line.append(": ").append(text_of(fault, mesh.dim));
+  line.append(": ");
+  line.append(is_2d && !help.text_2d.empty() ? help.text_2d : kFaults[static_cast<std::size_t>(fault)].text);
   // Number of findings, then the first affected elements in file order.
   if (help.kind != ElementKind::none) {
     line.append(" (").append(std::to_string(finding.count)).append(finding.count == 1 ? " time" : " times");
@@ -562,8 +528,8 @@ std::string line_for(const Mesh& mesh, MeshFault fault, const MeshReport& report
   }
   line.append("; ");
   // In 2D an open edge is a loose end, for which the advice on sheets does not apply.
-  return fault == MeshFault::open_edge && mesh.dim == 3 ? line + advice_on_openings(report)
-                                                        : line.append(help.advice);
+  if (fault == MeshFault::open_edge && !is_2d) return line + advice_on_openings(report);
+  return line.append(is_2d && !help.advice_2d.empty() ? help.advice_2d : help.advice);
 }
 
 }  // namespace

@@ -56,6 +56,15 @@ class FirstAtPosition {
   std::vector<VertexId> slots_;
 };
 
+/// Returns for each vertex the first one at its position: vertices on seams occur twice.
+inline std::vector<VertexId> first_at_positions(std::span<const Eigen::Vector3d> points) {
+  FirstAtPosition first_at(points);
+  std::vector<VertexId> places;
+  places.reserve(points.size());
+  for (VertexId v = 0; v < points.size(); ++v) places.push_back(first_at(v));
+  return places;
+}
+
 /// Merges equal points (bitwise, except that 0 and -0 are equal) to vertices, numbered in order of first
 /// appearance. There is no tolerance: points an ulp apart stay distinct, and check_mesh() reports the gap.
 class VertexMerger {

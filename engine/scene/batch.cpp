@@ -120,21 +120,21 @@ Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motio
 
 namespace {
 
-/// Write to `answer`, whose memory collide_into() reuses.
-void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const CollideRequest& request, QueryContext& context, Expected<CollideResult>& answer) try {
+/// Ask one query of a batch, and write to `answer`, whose memory is reused.
+void ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+         const CollideRequest& request, Workspace& workspace, Expected<CollideResult>& answer) try {
   // An earlier answer keeps the memory of its vectors.
   if (answer)
     clear(*answer);
   else
     answer = CollideResult{};
-  collide_watched(a, pose_a, b, pose_b, request, context, nullptr, *answer);
+  collide_watched(a, pose_a, b, pose_b, request, workspace.memory().of_collision(), nullptr, *answer);
 } catch (const InputError& e) {
   answer = Error{e.what()};
 }
 
-void distance_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                   const DistanceRequest& request, Workspace& workspace, Expected<DistanceResult>& answer) {
+void ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+         const DistanceRequest& request, Workspace& workspace, Expected<DistanceResult>& answer) {
   const Expected<DistanceResult&> found = distance(a, pose_a, b, pose_b, request, workspace);
   if (found)
     answer = *found;
@@ -160,19 +160,26 @@ class Batch::Work {
   explicit Work(unsigned threads) : workers_(threads), workspaces_(workers_.count()) {}
   unsigned threads() const { return workers_.count(); }
 
-  /// Calls ask(i, workspace) for i = 0 .. n - 1.
-  template <class Ask>
-  void for_each(std::size_t n, const Ask& ask) {
-    // Each worker has its own workspace: queries share no memory and need no locks.
-    workers_.for_each(n, [&](std::size_t i, unsigned worker) { ask(i, workspaces_[worker]); });
+  /// Each worker has its own workspace: queries share no memory and need no locks.
+  template <class Request, class Answers>
+  void run(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
+           const Request& request, Answers& answers) {
+    answers.resize(poses_b.size());
+    workers_.for_each(poses_b.size(), [&](std::size_t i, unsigned worker) {
+      ask(a, pose_a, b, poses_b[i], request, workspaces_[worker], answers[i]);
+    });
   }
 
   /// The same for pairs; those of the same two bodies are processed consecutively.
-  template <class Ask>
-  void for_each(std::span<const PosedPair> pairs, const Ask& ask) {
+  template <class Request, class Answers>
+  void run(std::span<const PosedPair> pairs, const Request& request, Answers& answers) {
     // Only the order of work changes: answers are written to the index of their query.
     const std::vector<std::size_t> order = order_by_bodies(pairs);
-    for_each(pairs.size(), [&](std::size_t k, Workspace& workspace) { ask(order[k], workspace); });
+    answers.resize(pairs.size());
+    workers_.for_each(pairs.size(), [&](std::size_t k, unsigned worker) {
+      const PosedPair& p = pairs[order[k]];
+      ask(*p.a, p.pose_a, *p.b, p.pose_b, request, workspaces_[worker], answers[order[k]]);
+    });
   }
 
  private:
@@ -191,36 +198,22 @@ unsigned Batch::threads() const {
 
 void Batch::collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                     const CollideRequest& request, CollideAnswers& answers) {
-  answers.resize(poses_b.size());
-  work_->for_each(poses_b.size(), [&](std::size_t i, Workspace& w) {
-    collide_into(a, pose_a, b, poses_b[i], request, w.memory().of_collision(), answers[i]);
-  });
+  work_->run(a, pose_a, b, poses_b, request, answers);
 }
 
 void Batch::collide(std::span<const PosedPair> pairs, const CollideRequest& request,
                     CollideAnswers& answers) {
-  answers.resize(pairs.size());
-  work_->for_each(pairs, [&](std::size_t i, Workspace& w) {
-    const PosedPair& p = pairs[i];
-    collide_into(*p.a, p.pose_a, *p.b, p.pose_b, request, w.memory().of_collision(), answers[i]);
-  });
+  work_->run(pairs, request, answers);
 }
 
 void Batch::distance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                      const DistanceRequest& request, DistanceAnswers& answers) {
-  answers.resize(poses_b.size());
-  work_->for_each(poses_b.size(), [&](std::size_t i, Workspace& w) {
-    distance_into(a, pose_a, b, poses_b[i], request, w, answers[i]);
-  });
+  work_->run(a, pose_a, b, poses_b, request, answers);
 }
 
 void Batch::distance(std::span<const PosedPair> pairs, const DistanceRequest& request,
                      DistanceAnswers& answers) {
-  answers.resize(pairs.size());
-  work_->for_each(pairs, [&](std::size_t i, Workspace& w) {
-    const PosedPair& p = pairs[i];
-    distance_into(*p.a, p.pose_a, *p.b, p.pose_b, request, w, answers[i]);
-  });
+  work_->run(pairs, request, answers);
 }
 
 namespace {

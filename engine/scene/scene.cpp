@@ -174,32 +174,22 @@ void each_near_pair(std::span<const Box> a, std::span<const Box> b, const double
 
 // The pairs of a query.
 
-/// Returns the pair of two bodies of the same scene, the one with the lower key first.
-NearbyPair near_of_one(const Participant& participant, std::uint32_t i, std::uint32_t j, double gap) {
-  if (participant.placed[j].key < participant.placed[i].key) std::swap(i, j);
-  return {gap, participant.placed[i].key, participant.placed[j].key, i, j};
-}
-
-NearbyPair near_of_two(const Participant& a, const Participant& b, std::uint32_t i, std::uint32_t j,
-                       double gap) {
-  return {gap, a.placed[i].key, b.placed[j].key, i, j};
-}
-
 /// The two sides of a query. `is_one`: both are the same scene, and each unordered pair counts once.
 struct Participants {
   Participant a, b;
   bool is_one = false;
 
+  /// Returns the pair of two bodies; of the same scene, the one with the lower key first.
+  NearbyPair pair(std::uint32_t i, std::uint32_t j, double gap) const {
+    if (is_one && a.placed[j].key < a.placed[i].key) std::swap(i, j);
+    return {gap, a.placed[i].key, b.placed[j].key, i, j};
+  }
+
   /// Calls see(near) for the pairs whose AABBs are at most `limit` apart. see() may lower the limit.
   template <class See>
   void each_near(const double& limit, const See& see) const {
-    if (is_one)
-      each_near_pair(a.boxes, limit,
-                     [&](std::uint32_t i, std::uint32_t j, double gap) { see(near_of_one(a, i, j, gap)); });
-    else
-      each_near_pair(a.boxes, b.boxes, limit, [&](std::uint32_t i, std::uint32_t j, double gap) {
-        see(near_of_two(a, b, i, j, gap));
-      });
+    const auto found = [&](std::uint32_t i, std::uint32_t j, double gap) { see(pair(i, j, gap)); };
+    is_one ? each_near_pair(a.boxes, limit, found) : each_near_pair(a.boxes, b.boxes, limit, found);
   }
 
   PosedPair posed(const NearbyPair& near) const {
@@ -289,7 +279,7 @@ class Scene::Impl {
   std::shared_ptr<const BodyExtent> extent_of(const LrbRep& rep);
   Participant participant();
   std::vector<NearbyPair> find_near(const Participants& participants, double within);
-  std::vector<NearbyPair> sweep(const Participant& all);
+  std::vector<NearbyPair> sweep(const Participants& all);
   std::vector<const Queried*> find_kept(std::span<const NearbyPair> near,
                                         const CollideRequest& request) const;
   void measure(const Participants& participants, std::span<const NearbyPair> near, DistanceRequest request);
@@ -430,14 +420,14 @@ Participants Scene::Impl::with(Impl& other) {
 }
 
 /// Returns the pairs of a scene whose AABBs intersect, by the broad phase.
-std::vector<NearbyPair> Scene::Impl::sweep(const Participant& all) {
+std::vector<NearbyPair> Scene::Impl::sweep(const Participants& all) {
   // The insertion sort moves each new box through the order. If more than 1 in 8 bodies were added or
   // removed, restart with a full sort.
   constexpr std::size_t kShareThatStays = 8;
   if (std::exchange(came_and_gone_, 0) > slots_.size() / kShareThatStays) sweep_ = {};
   std::sort(changed_.begin(), changed_.end());
   std::vector<NearbyPair> near;
-  for (const BodyPair& p : sweep_.update(all.boxes, changed_)) near.push_back(near_of_one(all, p.i, p.j, 0));
+  for (const BodyPair& p : sweep_.update(all.a.boxes, changed_)) near.push_back(all.pair(p.i, p.j, 0));
   for (const std::uint32_t place : changed_) slots_[place].has_changed = false;
   changed_.clear();
   work.broad_phase = sweep_.work();
@@ -448,7 +438,7 @@ std::vector<NearbyPair> Scene::Impl::find_near(const Participants& participants,
   std::vector<NearbyPair> near;
   // Within one scene and at distance 0, the coherent broad phase applies. Otherwise sweep along one axis.
   if (participants.is_one && !(within > 0))
-    near = sweep(participants.a);
+    near = sweep(participants);
   else
     participants.each_near(within, [&](const NearbyPair& n) { near.push_back(n); });
   // A unique order, whichever method found the pairs. Without removed bodies, the sweep has it already.
