@@ -13,12 +13,12 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "engine/clash/clash_tolerances.hpp"
+#include "engine/clash/simple_cut.hpp"
 #include "engine/collide/interiors.hpp"
 #include "engine/collide/relation.hpp"
 #include "engine/core/geometry.hpp"
@@ -31,178 +31,6 @@
 
 namespace lrb::penetration {
 namespace {
-
-/// A face that the other surface cuts along disjoint chains from border to border, the usual case. Steps:
-/// 1. Link the segments to chains, by the identifiers of their ends.
-/// 2. Sort the ends of chains on each edge of the face, with error bounds.
-/// 3. Traverse the border with a stack: between the two ends of a chain there are only the ends of entire
-///    chains, nested like brackets. Exact if the order of ends is exact.
-class SimpleCut {
- public:
-  /// The end of a segment in which the face intersects a face of the other surface: on an edge of the face,
-  /// or inside it, where an edge of the other surface pierces it.
-  struct End {
-    std::pair<std::uint32_t, std::uint32_t> name;  ///< identifier, unique on one edge, or inside the face
-    int edge = -1;                                 ///< of the face; -1: inside
-    double share = 0;                              ///< approximate parameter along the edge
-    double rounding = 0;                           ///< error bound of `share`
-
-    static End inside(VertexId from, VertexId to) { return {{from.value(), to.value()}}; }
-    static End on_border(int edge, const Eigen::Vector3d& x, const double* const corners[3], SimplexId by);
-  };
-
-  void add(const End& from, const End& to) { segments_.push_back({from, to}); }
-  /// Finds the cells. Returns false if the face is not simple: a chain is closed or branches, or the order of
-  /// ends on the border is uncertain.
-  bool close();
-
-  std::uint32_t cell_count() const { return cell_count_; }
-  /// Return the number of parts of an edge, and the cell at one part, counted from the edge's corner.
-  std::size_t part_count(int edge) const { return cells_[static_cast<std::size_t>(edge)].size(); }
-  std::uint32_t cell_beside(int edge, std::size_t part) const {
-    return cells_[static_cast<std::size_t>(edge)][part];
-  }
-  /// Returns an edge, and a parameter on it, at which the cell is adjacent to it; parameter 0: the edge's
-  /// corner.
-  std::pair<int, double> place_on_border(std::uint32_t cell) const;
-
- private:
-  using Key = std::pair<int, std::pair<std::uint32_t, std::uint32_t>>;
-  struct BorderEnd {
-    double share, rounding;
-    std::uint32_t point, chain;
-  };
-
-  bool follow_chains(std::map<Key, std::uint32_t>& number, std::vector<std::uint32_t>& chain);
-  bool sort_border(const std::map<Key, std::uint32_t>& number, const std::vector<std::uint32_t>& chain);
-  bool walk_round();
-
-  std::vector<std::array<End, 2>> segments_;
-  std::array<std::vector<BorderEnd>, 3> border_;     ///< for each edge: the chain ends on it, in order
-  std::array<std::vector<std::uint32_t>, 3> cells_;  ///< for each edge: the cell beside each of its parts
-  std::uint32_t cell_count_ = 1;
-};
-
-/// The point is within 1e-13 of the extent of the edge that is cut, plus two roundings, of the exact point
-/// (pair_contact.cpp). That edge is the face's own: at this end an edge of the face pierces the other
-/// triangle.
-SimpleCut::End SimpleCut::End::on_border(int edge, const Eigen::Vector3d& x, const double* const corners[3],
-                                         SimplexId by) {
-  const Eigen::Map<const Eigen::Vector3d> from(corners[edge]), to(corners[(edge + 1) % 3]);
-  const Eigen::Vector3d way = to - from;
-  const double length = stable_norm3(way);
-  End end{{by.value(), 0}, edge};
-  // Divide before the product, so that squares cannot overflow.
-  end.share = (x - from).dot(way / length) / length;
-  // If coordinates are larger than the edge, their rounding dominates.
-  const double size = std::max({from.cwiseAbs().maxCoeff(), to.cwiseAbs().maxCoeff(), 0x1p-1000});
-  end.rounding = kShareRounding * (1 + size / length * 0x1p-8);
-  return end;
-}
-
-bool SimpleCut::close() {
-  std::map<Key, std::uint32_t> number;
-  std::vector<std::uint32_t> chain;
-  if (!follow_chains(number, chain) || !sort_border(number, chain)) return false;
-  return walk_round();
-}
-
-/// Numbers the points, and labels all points of a chain with one number. Points inside the face must have two
-/// segments, points on the border one; a chain then has an end on the border unless it is closed.
-bool SimpleCut::follow_chains(std::map<Key, std::uint32_t>& number, std::vector<std::uint32_t>& chain) {
-  std::vector<std::array<std::uint32_t, 2>> links;
-  std::vector<std::uint32_t> uses;
-  // Ends with the same name are the same point.
-  for (const auto& segment : segments_) {
-    std::array<std::uint32_t, 2> link;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const auto [it, is_new] = number.try_emplace(Key{segment[k].edge, segment[k].name},
-                                                   static_cast<std::uint32_t>(number.size()));
-      if (is_new) uses.push_back(0);
-      ++uses[it->second];
-      link[k] = it->second;
-    }
-    // Both ends at one point: degenerate.
-    if (link[0] == link[1]) return false;
-    links.push_back(link);
-  }
-  // Degree 2 inside, degree 1 on the border: no chain branches or ends inside.
-  for (const auto& [key, i] : number)
-    if (uses[i] != (key.first < 0 ? 2u : 1u)) return false;
-  chain.resize(number.size());
-  DisjointSets chains(number.size());
-  for (const auto& link : links) chains.join(link[0], link[1]);
-  // A chain without an end on the border is closed: it would bound a cell that does not reach the border.
-  std::set<std::uint32_t> open;
-  for (const auto& [key, i] : number) {
-    chain[i] = chains.leader(i);
-    if (key.first >= 0) open.insert(chain[i]);
-  }
-  return std::all_of(chain.begin(), chain.end(), [&](std::uint32_t c) { return open.contains(c); });
-}
-
-/// Sorts the ends on each edge. Returns false if rounding could have changed their order.
-bool SimpleCut::sort_border(const std::map<Key, std::uint32_t>& number,
-                            const std::vector<std::uint32_t>& chain) {
-  // Collect the ends by edge.
-  for (const auto& segment : segments_)
-    for (const End& end : segment) {
-      if (end.edge < 0) continue;
-      const std::uint32_t point = number.at(Key{end.edge, end.name});
-      border_[static_cast<std::size_t>(end.edge)].push_back({end.share, end.rounding, point, chain[point]});
-    }
-  for (auto& ends : border_) {
-    std::sort(ends.begin(), ends.end(),
-              [](const BorderEnd& a, const BorderEnd& b) { return a.share < b.share; });
-    // The order is certain if the intervals of possible positions are disjoint and inside the edge.
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      const double before = i > 0 ? ends[i - 1].share + ends[i - 1].rounding : 0;
-      // NaN is rejected as well.
-      if (!(ends[i].share - ends[i].rounding > before) || !(ends[i].share + ends[i].rounding < 1))
-        return false;
-    }
-  }
-  return true;
-}
-
-/// Assigns cells to the parts of the border, starting at the face's first corner.
-bool SimpleCut::walk_round() {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> open;  // chains, with the cells outside them
-  std::uint32_t cell = 0;
-  cell_count_ = 1;
-  // The part between the corner and the first end belongs to the current cell.
-  for (std::size_t edge = 0; edge < 3; ++edge) {
-    cells_[edge].push_back(cell);
-    for (const BorderEnd& end : border_[edge]) {
-      if (!open.empty() && open.back().first == end.chain) {
-        // Second end of the innermost open chain: return to the cell outside it.
-        cell = open.back().second;
-        open.pop_back();
-      } else {
-        // First end of a chain: a new cell begins behind it.
-        open.emplace_back(end.chain, cell);
-        cell = cell_count_++;
-      }
-      cells_[edge].push_back(cell);
-    }
-  }
-  return open.empty();  // otherwise chains would cross
-}
-
-std::pair<int, double> SimpleCut::place_on_border(std::uint32_t cell) const {
-  // A corner of the face needs no rounding.
-  for (std::size_t edge = 0; edge < 3; ++edge)
-    if (cells_[edge].front() == cell) return {static_cast<int>(edge), 0};
-  // Otherwise the midpoint of a part between two ends, or between an end and the corner.
-  for (std::size_t edge = 0; edge < 3; ++edge)
-    for (std::size_t part = 1; part < cells_[edge].size(); ++part)
-      if (cells_[edge][part] == cell) {
-        const double from = border_[edge][part - 1].share;
-        const double to = part < border_[edge].size() ? border_[edge][part].share : 1;
-        return {static_cast<int>(edge), 0.5 * (from + to)};
-      }
-  return {0, 0};  // every cell has a part of the border
-}
 
 /// The use of an edge by a triangle.
 struct EdgeUse {

@@ -70,6 +70,9 @@ std::vector<ManifoldCandidate> reduce_candidates(
     std::vector<ManifoldCandidate> candidates, int dim, const Eigen::Vector3d& normal, double size,
     const std::function<bool(const ManifoldCandidate&)>& is_valid);
 
+/// Sets the ids of the points. reach: how far a point may have moved on its body and keep its id.
+void number_points(ManifoldResult& result, const ManifoldResult* previous, double reach);
+
 struct ManifoldContext {
   NearPairsResult near;
   VertexStars stars[2];  ///< of A and of B
