@@ -350,25 +350,6 @@ TEST_CASE("a query without all its events, or without tests of triangles, is not
   CHECK(profile::totals_of(run).wrong_verdicts == 1);
 }
 
-TEST_CASE("a body with itself: the pairs found are checked, and no others expected") {
-  ToyEngine engine;
-  const capture::Mesh mesh =
-      captured(shapes::several({shapes::box(), shapes::translated(shapes::box(), {0.5, 0.25, 0.5})}),
-               "crosses itself");
-  const std::uint32_t tree = engine.add(mesh);
-  engine.query(tree, tree, {0, 0, 0}, capture::QueryKind::self);
-  capture::Event& last = engine.capture.queries[0].events.back();
-  REQUIRE(last.kind == capture::EventKind::triangles);
-  const run::Recording right = recorded(engine.capture);
-  CHECK(profile::totals_of(right).right > 50);
-  CHECK(profile::totals_of(right).missed + profile::totals_of(right).false_pairs == 0);
-  for (capture::Event& e : engine.capture.queries[0].events)
-    if (e.kind == capture::EventKind::triangles) e.met = 1;
-  const run::Recording all = recorded(engine.capture);
-  CHECK(profile::totals_of(all).right == profile::totals_of(right).right);
-  CHECK(profile::totals_of(all).false_pairs > 0);
-}
-
 TEST_CASE("a walk over a broken tree is recorded with what holds") {
   ToyEngine engine = two_balls();
   const std::size_t whole = recorded(engine.capture).trace.events.size();

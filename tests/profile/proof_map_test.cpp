@@ -98,16 +98,6 @@ TEST_CASE("the cells of a proof map tile the square of all pairs, for every kind
   CHECK(not_needed > 0);  // queries for one pair ended early
 }
 
-TEST_CASE("the map of a query to a tolerance is over the faces of its wrappers") {
-  const LrbRep rock = build_lrb(shapes::bumpy_sphere(4, 7, 0.3)), ring = build_lrb(shapes::torus(60, 30));
-  const trace::Trace trace =
-      recorded(rock, ring, Pose::translation({0.6, 0.1, 0}), {.tolerance = 0.1}, EventLevel::all);
-  const ProofMap map = checked_map(run_of(rock, ring, trace), {}, true);
-  CHECK(map.size[0] < rock.real_simplex_count());
-  CHECK(pairs_of(map, Argument::tolerance) == trace.steps[0].result.pair_count);
-  CHECK(pairs_of(map, Argument::tolerance) > 0);
-}
-
 TEST_CASE("the map of another engine's query: each pair is rejected, tested, or not reported") {
   for (const bool wide : {false, true})
     for (const capture::QueryKind kind : {capture::QueryKind::all_pairs, capture::QueryKind::any}) {

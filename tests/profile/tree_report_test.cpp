@@ -35,26 +35,6 @@ std::vector<std::string> texts(const profile::TreeReport& report, const capture:
   return out;
 }
 
-std::vector<std::string> faults_of(const capture::Tree& tree, const capture::Mesh& mesh) {
-  return texts(profile::report_tree(tree, mesh), tree, mesh);
-}
-
-/// Replaces the children or triangles of a node.
-void set_range(std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& all, std::uint32_t node,
-               const std::vector<std::uint32_t>& by) {
-  const auto begin = all.begin() + first[node], end = all.begin() + first[node + 1];
-  const auto was = static_cast<std::uint32_t>(end - begin);
-  all.insert(all.erase(begin, end), by.begin(), by.end());
-  for (std::size_t n = node + std::size_t{1}; n < first.size(); ++n)
-    first[n] += static_cast<std::uint32_t>(by.size()) - was;
-}
-void set_children(capture::Tree& tree, std::uint32_t node, const std::vector<std::uint32_t>& by) {
-  set_range(tree.first_child, tree.child, node, by);
-}
-void set_triangles(capture::Tree& tree, std::uint32_t node, const std::vector<std::uint32_t>& by) {
-  set_range(tree.first_triangle, tree.triangle, node, by);
-}
-
 /// Four triangles in the plane z = 0, side by side along x: triangle i between x = i and i + 1.
 capture::Mesh strip(std::uint32_t triangles = 4) {
   capture::Mesh mesh;
@@ -67,82 +47,9 @@ capture::Mesh strip(std::uint32_t triangles = 4) {
   return mesh;
 }
 
-/// The tree of a strip: node 0 over 1 and 2, these over leaves 3 to 6 of triangles 0 to 3. The engine calls
-/// node n 10 n.
-capture::Tree strip_tree(const capture::Mesh& mesh) {
-  capture::Tree tree = test::halving_tree(mesh, VolumeKind::aabb);
-  for (std::uint32_t n = 0; n < tree.size(); ++n) tree.ids.push_back(10 * n);
-  return tree;
-}
-
 using Texts = std::vector<std::string>;
 
 }  // namespace
-
-TEST_CASE("a sound tree of each kind of volume has no faults") {
-  const capture::Mesh mesh = captured(shapes::bumpy_sphere(3, 1));
-  for (const VolumeKind kind : kAll)
-    for (const std::size_t leaf_size : {1, 4}) {
-      const capture::Tree tree = test::halving_tree(mesh, kind, leaf_size);
-      CHECK(faults_of(tree, mesh) == Texts{});
-    }
-}
-
-TEST_CASE("planted faults are named, with the engine's numbers of nodes") {
-  const capture::Mesh mesh = strip();
-  capture::Tree tree = strip_tree(mesh);
-  REQUIRE(faults_of(tree, mesh) == Texts{});
-  SUBCASE("a node with two parents") {
-    set_children(tree, 1, {3, 4, 5});
-    tree.volumes[1 * 6 + 3] = 3;  // room for it
-    CHECK(faults_of(tree, mesh) == Texts{"node 50 has 2 parents: 10 and 20"});
-  }
-  SUBCASE("a node that is twice a child") {
-    set_children(tree, 1, {3, 4, 4});
-    CHECK(faults_of(tree, mesh) == Texts{"node 40 is 2 times a child of node 10"});
-  }
-  SUBCASE("a cycle") {
-    set_children(tree, 4, {1});
-    set_triangles(tree, 4, {});
-    set_triangles(tree, 3, {0, 1});
-    tree.volumes[3 * 6 + 3] = 2;
-    CHECK(faults_of(tree, mesh) == Texts{"node 10 is below itself: 10 - 40 - 10"});
-  }
-  SUBCASE("a triangle that does not exist") {
-    set_triangles(tree, 5, {2, 4});
-    CHECK(faults_of(tree, mesh) == Texts{"leaf 50 has triangle 4; the mesh has 4"});
-  }
-  SUBCASE("a triangle in two leaves") {
-    set_triangles(tree, 5, {2, 3});
-    tree.volumes[5 * 6 + 3] = 4;
-    CHECK(faults_of(tree, mesh) == Texts{"triangle 3 is in leaf 50 and in leaf 60"});
-  }
-  SUBCASE("a volume that is too small") {
-    tree.volumes[1 * 6 + 4] = 0.75;  // node 1 in y
-    const profile::TreeReport report = profile::report_tree(tree, mesh);
-    CHECK(
-        texts(report, tree, mesh) ==
-        Texts{
-            "triangle 0, corner 2 (0, 1, 0), lies outside node 10 (depth 1) by 0.25, 0.0606 of the diagonal; "
-            "and 1 other corners, by less"});
-    CHECK(report.faults.first[0].by == 0.25);
-    CHECK(report.faults.first[0].by_share == doctest::Approx(0.25 / std::sqrt(17.0)));
-    CHECK(report.figures.beyond.count == 2);
-  }
-  SUBCASE("a volume that is too small by less than the tolerance") {
-    tree.volumes[1 * 6 + 4] = 1 - 4e-7;  // of the diagonal: 0.97e-7
-    CHECK(faults_of(tree, mesh) == Texts{});
-    tree.volumes[1 * 6 + 4] = 1 - 4.2e-7;
-    CHECK(profile::report_tree(tree, mesh).faults.total() == 1);
-    CHECK(profile::report_tree(tree, mesh, {.tolerance = 1e-6}).faults.total() == 0);
-  }
-  SUBCASE("an inverted volume") {
-    std::swap(tree.volumes[6 * 6 + 0], tree.volumes[6 * 6 + 3]);
-    CHECK(faults_of(tree, mesh) ==
-          Texts{"node 60 has an empty volume: its greatest numbers are below its least, "
-                "or its radius is negative"});
-  }
-}
 
 TEST_CASE("faults of random graphs of nodes are those found by brute force") {
   shapes::RandomEngine random(31);
@@ -233,17 +140,6 @@ TEST_CASE("faults of random graphs of nodes are those found by brute force") {
   CHECK(broken_volumes > 200);
 }
 
-TEST_CASE("every fault is counted, and the list of each kind is limited") {
-  const capture::Mesh mesh = captured(shapes::icosphere(3));  // 1280 triangles
-  capture::Tree tree = test::halving_tree(mesh, VolumeKind::sphere);
-  for (std::uint32_t n = 0; n < tree.size(); ++n)
-    if (tree.is_leaf(n)) tree.volumes[4 * n + 3] *= -1;
-  const profile::TreeReport report = profile::report_tree(tree, mesh);
-  CHECK(report.faults.total() == 1280);
-  CHECK(report.faults.totals[static_cast<std::size_t>(TreeFault::empty_volume)] == 1280);
-  CHECK(report.faults.first.size() == profile::TreeFaults::kShown);
-}
-
 TEST_CASE("a corner outside is found in every kind of volume, whatever the volumes above contain") {
   const capture::Mesh mesh = captured(shapes::bumpy_sphere(3, 2));
   for (const VolumeKind kind : kAll) {
@@ -318,22 +214,6 @@ TEST_CASE("the depths, leaf sizes and SAH of a tree are those counted directly")
   }
 }
 
-TEST_CASE("EPO is the surface of others in each node: two crossing triangles by hand") {
-  // Triangle 0 has corners (0,0,0), (2,0,0), (0,2,0), area 2; triangle 1 is the same, moved by 1 in x.
-  capture::Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 0, 0}, {3, 0, 0}, {1, 2, 0}};
-  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-  const capture::Tree tree = test::halving_tree(mesh, VolumeKind::aabb);
-  // Of triangle 1, in the box [0, 2] x [0, 2], the part with x < 2: 1.5. Of triangle 0, in [1, 3], x > 1:
-  // 0.5.
-  profile::TreeOptions options;
-  options.exact = true;
-  const auto epo = profile::report_tree(tree, mesh, options).figures.epo;
-  REQUIRE(epo);
-  CHECK(epo->samples == 0);
-  CHECK(epo->value == doctest::Approx((1.5 + 0.5) / 4).epsilon(1e-6));
-}
-
 TEST_CASE("sampled EPO lies within three standard errors of that by clipping") {
   const std::vector<Mesh> meshes = {shapes::bumpy_sphere(3, 3), shapes::torus(30, 12), shapes::comb(6),
                                     shapes::bowl(24, 10)};
@@ -356,22 +236,6 @@ TEST_CASE("sampled EPO lies within three standard errors of that by clipping") {
       }
   }
   CHECK(within_one > all * 0.4);  // expected: 68 %
-}
-
-TEST_CASE("EPO of spheres and rounded rectangles is sampled, and equal for an equal seed") {
-  const capture::Mesh mesh = captured(shapes::torus(16, 8));
-  for (const VolumeKind kind : {VolumeKind::sphere, VolumeKind::rss}) {
-    const capture::Tree tree = test::halving_tree(mesh, kind);
-    profile::TreeOptions options;
-    options.exact = true;
-    const auto first = profile::report_tree(tree, mesh, options).figures.epo;
-    const auto second = profile::report_tree(tree, mesh, options).figures.epo;
-    REQUIRE(first);
-    CHECK(first->samples == options.samples);
-    CHECK(first->by_node == second->by_node);
-    options.seed = 2;
-    CHECK(profile::report_tree(tree, mesh, options).figures.epo->value != first->value);
-  }
 }
 
 TEST_CASE("lrbscope's own trees have no faults") {
@@ -437,23 +301,6 @@ TEST_CASE("a chain of 100,000 nodes is measured without recursion") {
   CHECK(broken.faults.first[2].kind == TreeFault::triangle_in_no_leaf);
 }
 
-TEST_CASE("a child that is listed twice, level after level, is measured once") {
-  constexpr std::uint32_t kLevels = 60;
-  capture::Tree tree;
-  tree.first_child = tree.first_triangle = {0};
-  tree.triangle = {0};
-  for (std::uint32_t n = 0; n <= kLevels; ++n) {
-    tree.volumes.insert(tree.volumes.end(), {0, 0, 0, 2, 1, 0});
-    if (n < kLevels) tree.child.insert(tree.child.end(), 2, n + 1);
-    tree.first_child.push_back(static_cast<std::uint32_t>(tree.child.size()));
-    tree.first_triangle.push_back(n < kLevels ? 0 : 1);
-  }
-  const profile::TreeReport report = profile::report_tree(tree, strip(2));
-  CHECK(report.faults.totals[static_cast<std::size_t>(TreeFault::two_parents)] == kLevels);
-  // Half of the surface, in each of the inner nodes and in the leaf of one triangle.
-  CHECK(report.figures.epo->value == doctest::Approx((1.2 * kLevels + 1) / 2).epsilon(0.05));
-}
-
 TEST_CASE("a mesh of one triangle, of none, and a tree of no nodes") {
   const capture::Mesh one = strip(1);
   for (const VolumeKind kind : kAll) {
@@ -466,23 +313,12 @@ TEST_CASE("a mesh of one triangle, of none, and a tree of no nodes") {
     CHECK(report.figures.worst.empty());
   }
   capture::Tree root = test::halving_tree(one, VolumeKind::aabb);
-  set_triangles(root, 0, {});
+  root.triangle.clear();
+  root.first_triangle[1] = 0;
   const profile::TreeReport empty = profile::report_tree(root, {});
   CHECK(empty.faults.total() == 0);
   CHECK_FALSE(empty.figures.epo);
   capture::Tree nothing;
   nothing.first_child = nothing.first_triangle = {0};
   CHECK_THROWS_AS(profile::report_tree(nothing, one), InputError);
-}
-
-TEST_CASE("waste by node, if given, ranks nodes") {
-  const capture::Mesh mesh = strip();
-  const capture::Tree tree = strip_tree(mesh);
-  const std::vector<double> waste = {0, 3, 0, 0, 7, 0, 0};
-  profile::TreeOptions options;
-  options.waste = waste;
-  const auto most = profile::report_tree(tree, mesh, options).figures.most_waste;
-  REQUIRE(most.size() == 2);
-  CHECK(most[0].node == 4);
-  CHECK(most[1].node == 1);
 }

@@ -154,25 +154,6 @@ TEST_CASE("a traversal that omits a pair of children is blamed at that pair, als
   }
 }
 
-TEST_CASE("The children of wide nodes are blamed if their boxes were found disjoint") {
-  Sheets s;
-  const TrianglePair lost = verdict_of((s.ask(), s.engine.capture)).exact[3];
-  const TreeIndex index(s.engine.capture.trees[s.a], 50);
-  const std::uint32_t leaf = index.leaf[lost.a];
-  auto& volumes = s.engine.capture.trees[s.a].volumes;
-  volumes[6 * leaf + 2] += 100, volumes[6 * leaf + 5] += 100;
-  FaultyQuery how;
-  how.wide = true;
-  how.order = OpeningOrder::both;
-  s.ask(how);
-  const QueryVerdict v = verdict_of(s.engine.capture, 1);
-  REQUIRE(v.missed > 0);
-  for (const WrongPair& w : v.wrong) {
-    CHECK(w.culprit == Culprit::child_volumes);
-    CHECK(w.nodes[0] == index.parent[leaf]);
-  }
-}
-
 TEST_CASE("A triangle in no leaf is blamed") {
   Sheets s(2);
   const TrianglePair lost = verdict_of((s.ask(), s.engine.capture)).exact[2];
@@ -294,52 +275,6 @@ TEST_CASE("A query of kind any is checked by its verdict and its tests, not by t
   CHECK(v.wrong[0].culprit == Culprit::triangle_test);
 }
 
-TEST_CASE("Without events the verdict and the number of pairs are checked") {
-  Sheets s;
-  capture::Query& q = s.ask();
-  const std::uint64_t pairs = q.pairs;
-  s.ask();  // another one has events
-  capture::Query& cut = s.engine.capture.queries[0];
-  cut.events.clear();
-  cut.parts.clear();
-  CHECK(verdict_of(s.engine.capture).outcome == Judgement::right);
-  CHECK_FALSE(verdict_of(s.engine.capture).pairs_checked);
-  cut.pairs = pairs - 1;
-  CHECK(verdict_of(s.engine.capture).answer == Judgement::wrong);
-  CHECK(verdict_of(s.engine.capture).remark == "the engine counted " + std::to_string(pairs - 1) +
-                                                   " pairs of triangles; " + std::to_string(pairs) +
-                                                   " intersect");
-  cut.pairs = 0;  // it does not count
-  CHECK(verdict_of(s.engine.capture).outcome == Judgement::right);
-  cut.verdict = capture::Verdict::separate;
-  const QueryVerdict v = verdict_of(s.engine.capture);
-  CHECK(v.answer == Judgement::wrong);
-  REQUIRE(v.missed == pairs);
-  CHECK(v.wrong[0].culprit == Culprit::unrecorded);
-  cut.verdict = capture::Verdict::unreported;
-  CHECK(verdict_of(s.engine.capture).outcome == Judgement::unchecked);
-}
-
-TEST_CASE("Of distance queries the verdict is checked, of first contacts the poses at the beginning") {
-  Sheets s;
-  capture::Query& q = s.ask();
-  for (const auto& [kind, verdict, outcome] :
-       {std::tuple{QueryKind::distance, capture::Verdict::intersecting, Judgement::right},
-        {QueryKind::distance, capture::Verdict::separate, Judgement::wrong},
-        {QueryKind::first_contact, capture::Verdict::intersecting, Judgement::unchecked},
-        {QueryKind::first_contact, capture::Verdict::separate, Judgement::wrong}}) {
-    q.kind = kind;
-    q.verdict = verdict;
-    const QueryVerdict v = verdict_of(s.engine.capture);
-    CHECK(v.outcome == outcome);
-    CHECK_FALSE(v.pairs_checked);
-  }
-  q.kind = QueryKind::distance;
-  q.verdict = capture::Verdict::intersecting;
-  q.poses[1].t.z() += 10;
-  CHECK(verdict_of(s.engine.capture).outcome == Judgement::wrong);
-}
-
 TEST_CASE("A self query is checked for triangles without a common vertex") {
   FaultyEngine engine;
   std::mt19937_64 random(5);
@@ -362,37 +297,6 @@ TEST_CASE("A self query is checked for triangles without a common vertex") {
   const QueryVerdict lied = verdict_of(engine.capture, 1);
   CHECK(lied.missed == 1);
   CHECK(lied.wrong[0].triangles == v.exact[0]);
-}
-
-TEST_CASE("Queries against a single shape, without triangles or that were cut off are not checked") {
-  Sheets s;
-  capture::Query& q = s.ask();
-  q.trees[1] = kNull;
-  CHECK(verdict_of(s.engine.capture).outcome == Judgement::unchecked);
-  q.trees[1] = s.b;
-  q.ended = false;
-  CHECK(verdict_of(s.engine.capture).outcome == Judgement::unchecked);
-  // A mesh without triangles intersects nothing.
-  q.ended = true;
-  s.engine.capture.meshes.push_back({"empty", {}, {}});
-  capture::Tree none;
-  none.mesh = 2;
-  none.first_child = none.first_triangle = {0, 0};
-  none.volumes.assign(6, 0);
-  s.engine.capture.trees.push_back(none);
-  q.trees[1] = 2;
-  q.events = {{.a = 0, .b = 0, .met = 0}};
-  q.verdict = capture::Verdict::separate;
-  q.pairs = 0;
-  FaultyEngine::close(q);
-  CHECK(verdict_of(s.engine.capture).outcome == Judgement::right);
-}
-
-TEST_CASE("A vertex that is not finite is refused by name") {
-  Sheets s;
-  s.ask();
-  s.engine.capture.meshes[0].vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_WITH_AS(verdict_of(s.engine.capture), doctest::Contains("sheet: "), InputError);
 }
 
 }  // namespace lrb::profile

@@ -153,23 +153,6 @@ double distance_of(const std::vector<test::Points>& a, const std::vector<test::P
 
 }  // namespace
 
-TEST_CASE("area and volume of boxes, spheres and rounded rectangles are those of the formulas") {
-  const auto check = [](const capture::Tree& t, double area, double volume) {
-    const Volumes v(t);
-    CHECK(v.size(0).area == doctest::Approx(area).epsilon(1e-12));
-    CHECK(v.size(0).volume == doctest::Approx(volume).epsilon(1e-12));
-    CHECK_FALSE(v.empty(0));
-  };
-  constexpr double kPi = std::numbers::pi;
-  check(one_node(VolumeKind::aabb, {0, 0, 0, 2, 3, 4}), 52, 24);
-  check(one_node(VolumeKind::obb, {5, 5, 5, 0.6, 0.8, 0, -1.2, 0.9, 0, 0, 0, 2}), 52, 24);
-  check(one_node(VolumeKind::obb, {5, 5, 5, 0.6, 0.8, 0, 0, 0, 0, 0, 0, 2}), 16, 0);  // flat: both sides
-  check(one_node(VolumeKind::sphere, {1, 2, 3, 2}), 16 * kPi, 32 * kPi / 3);
-  check(one_node(VolumeKind::rss, {0, 0, 0, 2, 0, 0, 0, 3, 0, 0}), 12, 0);
-  check(one_node(VolumeKind::rss, {0, 0, 0, 0, 0, 0, 0, 0, 0, 2}), 16 * kPi, 32 * kPi / 3);
-  check(one_node(VolumeKind::rss, {0, 0, 0, 2, 0, 0, 0, 0, 0, 1}), 8 * kPi, 10 * kPi / 3);  // a capsule
-}
-
 TEST_CASE("area and volume of k-DOPs are those of their polytopes") {
   SUBCASE("a box") {
     const capture::Tree t = one_node(VolumeKind::kdop, {0, 2, 0, 3, 0, 4}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
@@ -283,22 +266,6 @@ TEST_CASE("the gap of two boxes is the distance of their sides, of flat ones too
   }
   CHECK(apart > 200);
   CHECK(met > 100);
-}
-
-TEST_CASE("two volumes overlap in the frame of the world as in that of one") {
-  shapes::RandomEngine random(13);
-  for (int i = 0; i < 500; ++i) {
-    const capture::Tree trees[] = {random_obb(random), random_rss(random), random_kdop(random)};
-    for (const capture::Tree& t : trees) {
-      const Volumes a(t), b(t);
-      const Pose relative = Pose::rotation(shapes::random_direction(random), shapes::uniform(random, 0, 3),
-                                           2 * shapes::random_direction(random));
-      const Pose frame = Pose::rotation(shapes::random_direction(random), 1, {5, -3, 2});
-      const Pose both{frame.r * relative.r, frame.apply(relative.t)};
-      CHECK(overlap(a, 0, {}, b, 0, relative) == overlap(a, 0, frame, b, 0, both));
-      CHECK(overlap(a, 0, {}, b, 0, relative) == overlap(b, 0, relative, a, 0, {}));
-    }
-  }
 }
 
 TEST_CASE("rounded rectangles overlap from the distance of their rectangles on") {

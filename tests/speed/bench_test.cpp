@@ -118,20 +118,6 @@ TEST_CASE("a data set contains poses of its classes, and is read back unchanged"
   CHECK_THROWS_AS(bench::read_data_set(folder / "spheres.set.json"), InputError);
 }
 
-TEST_CASE("a gap of a hundredth of the diagonal is placed accurately") {
-  const Folder folder;
-  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::bumpy_sphere(2, 2));
-  for (const bench::Question& q : set.questions) {
-    if (q.pose_class != bench::PoseClass::apart) continue;
-    // Pushed by a little more than the gap along some direction it must meet; along the line of centres it
-    // does for bodies this round.
-    Pose nearer = q.pose_b;
-    nearer.t -= 0.03 * set.diagonal * q.pose_b.t.normalized();
-    CHECK_FALSE(bench::exact_pairs(a, Pose{}, b, nearer).empty());
-  }
-}
-
 TEST_CASE("records are read back from their lines, and a partial line is skipped") {
   bench::Record r = answer("spheres", 3, bench::PoseClass::small, 1.5);
   r.setting = 4;
@@ -176,73 +162,6 @@ TEST_CASE("ratios are medians over questions; faster engines are named") {
   CHECK(text.find("set, deep, 10 %, all pairs: fast 2.00x") != std::string::npos);
   CHECK(text.find("slow 0") == std::string::npos);
   CHECK(text.find("crash") != std::string::npos);
-}
-
-TEST_CASE("errors of a contact region: 0 for the exact list, 1 for an empty one, between for a part") {
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
-  const Pose p = Pose::translation({1.2, 0.1, 0});
-  const auto pairs = bench::exact_pairs(a, Pose{}, a, p);
-  REQUIRE(pairs.size() > 10);
-  bench::RegionMaker maker(a, Pose{}, a, p);
-  const bench::Region exact = maker.of_pairs(pairs);
-  const bench::RegionError none = bench::region_error(exact, maker.of_pairs(pairs), 2);
-  CHECK(none.hausdorff == 0);
-  CHECK(none.length == 0);
-  CHECK(none.normal < 1e-6);
-  const bench::RegionError worst = bench::region_error(exact, maker.of_pairs({}), 2);
-  CHECK(worst.hausdorff == 1);
-  CHECK(worst.depth == 1);
-  const bench::RegionError part =
-      bench::region_error(exact, maker.of_pairs({pairs.begin(), pairs.begin() + 5}), 2);
-  CHECK(part.hausdorff > 0);
-  CHECK(part.hausdorff < 1);
-  CHECK(part.length > 0);
-  CHECK(bench::region_error(bench::of_points({}), bench::of_points({}), 2).hausdorff == 0);
-  CHECK(bench::region_error(bench::of_points({{0, 0, 0}}), bench::of_points({{1, 0, 0}}), 2).hausdorff ==
-        0.5);
-}
-
-TEST_CASE("the deviation of points from two bodies is the sum of both distances") {
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1));
-  const Pose near = Pose::translation({1.2, 0.1, 0}), far = Pose::translation({10, 0, 0});
-  bench::RegionMaker maker(a, Pose{}, a, near);
-  const bench::Region exact = maker.of_pairs(bench::exact_pairs(a, Pose{}, a, near));
-  REQUIRE(exact.points.size() > 10);
-  CHECK(bench::BodyDistance(a, Pose{}, a, near).off(exact.points) < 1e-12);
-  CHECK(bench::BodyDistance(a, Pose{}, a, near).off({}) == 0);
-  // A point of A, whose nearest point of B is a vertex of it or not much nearer.
-  const Eigen::Vector3d x = a.vertices()[0];
-  double nearest = 1e9;
-  for (FaceId f = 0; f < a.real_face_count(); ++f)
-    for (const VertexId v : a.face(f)) nearest = std::min(nearest, (far.apply(a.vertices()[v]) - x).norm());
-  CHECK(bench::BodyDistance(a, Pose{}, a, far).off({x}) <= nearest);
-  CHECK(bench::BodyDistance(a, Pose{}, a, far).off({x}) > nearest - 0.1);
-}
-
-TEST_CASE("an approximate answer deviates by at most its bound, and an intersecting pair by 0") {
-  const Folder folder;
-  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
-  const auto entries = methods::registered_methods();
-  std::vector<bench::Record> records;
-  std::vector<methods::MethodInfo> infos;
-  for (const std::string name : {"ours-tolerance", "ours-one-pair"}) {
-    const methods::MethodEntry& entry = methods::find_method(entries, name);
-    infos.push_back(entry.info);
-    bench::BenchRunner runner(entry, entry.info.parameter.empty() ? std::nullopt : std::optional(0.1), set,
-                              true);
-    for (std::uint64_t q = 0; q < set.questions.size(); ++q) records.push_back(runner.ask(q));
-  }
-  bool any_off = false;
-  for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
-    CAPTURE(p.method);
-    const double off = *p.errors[static_cast<std::size_t>(bench::Metric::deviation)];
-    REQUIRE(p.proven_deviation);
-    CHECK(off <= *p.proven_deviation + 1e-12);
-    CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::contact)] == 0);
-    if (p.method == "ours-one-pair") CHECK(*p.proven_deviation == 0);
-    any_off |= off > 1e-6;
-  }
-  CHECK(any_off);
 }
 
 namespace {
@@ -370,64 +289,6 @@ TEST_CASE("a frontier needs times that differ by more than their rounds; others 
   CHECK(bench::to_lines({points["ours"]}).find("\"too_close_to\":[\"twin\"]") != std::string::npos);
 }
 
-TEST_CASE("unfinished surveys: missing answers are named by page, picture and program") {
-  const Folder folder;
-  const auto chart = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), "chart");
-    words.insert(words.end(), {"--faces", "80", "--poses", "1", "--method", "ours", "--method", "plain",
-                               "--rounds", "2", "--no-scenes", "-o", "c"});
-    return test::run(folder, words);
-  };
-  REQUIRE(chart({"measure"}).code == 0);
-  const std::string file = folder / "c/records.jsonl", whole = slurp(file);
-  REQUIRE(std::count(whole.begin(), whole.end(), '\n') == 3 * 5 * 2 * 2);
-  auto drawn = chart({"draw"});
-  CHECK(drawn.err.empty());
-  CHECK(slurp(folder / "c/index.html").find("unfinished") == std::string::npos);
-  // The first pair of bodies is complete, of the second 3 answers of a round remain, of the third none.
-  std::istringstream in(whole);
-  std::string some, line;
-  std::map<std::string, int> seen;
-  while (std::getline(in, line)) {
-    const bench::Record r = bench::record_from(nlohmann::json::parse(line));
-    if (seen.size() < 3 || seen.count(r.set) != 0) ++seen[r.set];
-    if (r.set == seen.begin()->first || (r.set == std::next(seen.begin())->first && seen[r.set] <= 3))
-      some += line + "\n";
-  }
-  folder.write("c/records.jsonl", some);
-  drawn = chart({"draw"});
-  CHECK(drawn.code == 0);
-  CHECK(drawn.err.find("note: The survey is unfinished. ") == 0);
-  CHECK(slurp(folder / "c/index.html").find("The survey is unfinished.") != std::string::npos);
-  CHECK(slurp(folder / "c/chart.svg").find("UNFINISHED") != std::string::npos);
-  CHECK(chart({"measure"}).code == 0);
-  const std::string again = slurp(file);
-  CHECK(std::count(again.begin(), again.end(), '\n') == 3 * 5 * 2 * 2);
-  CHECK(chart({"draw"}).err.empty());
-}
-
-TEST_CASE("a sphere tree misses no contact, and is more accurate at deeper levels") {
-  const auto spheres = methods::find_method(methods::registered_methods(), "spheres").make();
-  const LrbRep a = build_lrb(shapes::torus(32, 12));  // far from its own outermost sphere
-  const auto body_a = spheres->build(a), body_b = spheres->build(a);
-  shapes::RandomEngine random(7);
-  std::size_t wolves[2] = {0, 0}, met = 0;
-  for (int i = 0; i < 60; ++i) {
-    const Pose p = shapes::random_pose(random, a, a, 0.3 + 0.01 * i);
-    const bool meets = !bench::exact_pairs(a, Pose{}, a, p).empty();
-    met += meets;
-    int k = 0;
-    for (const double level : {2.0, 20.0}) {
-      spheres->set(level);
-      const auto answer = spheres->query(*body_a, Pose{}, *body_b, p, Mode::all_pairs);
-      CHECK((answer.contact || !meets));
-      wolves[k++] += answer.contact && !meets;
-    }
-  }
-  CHECK(met > 0);
-  CHECK(wolves[1] < wolves[0]);
-}
-
 TEST_CASE("numbers are judged by their error, in diagonals or fractions of the motion") {
   const auto error = [](Quantity quantity, double known, const bench::Record& r) {
     bench::DataSet set;
@@ -460,24 +321,6 @@ TEST_CASE("numbers are judged by their error, in diagonals or fractions of the m
   const bench::Point p = error(Quantity::depth, 1, said(1, 1));
   CHECK(p.frontier);
   CHECK(p.errors[static_cast<std::size_t>(Metric::penetration)].has_value());
-}
-
-TEST_CASE("a data set of numbers is read back unchanged, and complete if all numbers are known") {
-  const Folder folder;
-  bench::DataSet set = made_up_set(2);
-  set.quantity = Quantity::first_contact;
-  set.questions[1].from = {1, 2, 0.1};
-  set.questions[1].to = {-1, -2, 0.3};
-  set.questions[1].number = {0.25, 0.5};
-  const bench::DataSet again = bench::read_data_set(bench::write_data_set(set, folder.path.string()));
-  CHECK(again.quantity == set.quantity);
-  CHECK(again.questions[1].from == set.questions[1].from);
-  CHECK(again.questions[1].to == set.questions[1].to);
-  CHECK(again.questions[1].number->most == 0.5);
-  CHECK_FALSE(again.questions[0].number);
-  CHECK_FALSE(bench::is_complete(again));
-  set.questions[0].number = {2, 2};
-  CHECK(bench::is_complete(set));
 }
 
 TEST_CASE("errors of near pairs: missing and extra pairs, and the largest error of a distance") {
