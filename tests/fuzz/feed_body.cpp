@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/fuzz/choices.hpp"
 #include "tests/fuzz/feed.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include "tests/support/lrb_files.hpp"
@@ -18,34 +19,17 @@ namespace {
 
 constexpr std::size_t kMaxCorners = 400;
 
-void promise(bool kept, const char* what) {
-  if (!kept) throw std::logic_error(what);
-}
-
-/// Numbers from bytes; zeros behind their end.
-class Numbers {
- public:
-  explicit Numbers(std::string_view bytes) : bytes_(bytes) {}
-  std::uint32_t below(std::uint32_t end) { return next() % end; }
-  double signed_unit() { return static_cast<std::int8_t>(next()) / 128.0; }
-
- private:
-  std::uint8_t next() { return at_ < bytes_.size() ? static_cast<std::uint8_t>(bytes_[at_++]) : 0; }
-  std::string_view bytes_;
-  std::size_t at_ = 0;
-};
-
 /// A closed body of polygons whose vertices have been moved, so that its faces fold; some of them perhaps
 /// gone, double or turned.
-Mesh folded(Numbers& numbers) {
-  const std::uint32_t family = numbers.below(4), size = numbers.below(8);
-  const double reach = numbers.below(128) / 128.0;
+Mesh folded(Choices& choose) {
+  const std::uint32_t family = choose.below(4), size = choose.below(8);
+  const double reach = choose.below(128) / 128.0;
   Mesh mesh;
   if (family == 0) {
-    const std::uint32_t rings = 1 + numbers.below(4);
-    mesh = test::quad_ball(3 + size, rings, [&] { return 1 + reach * numbers.signed_unit(); });
+    const std::uint32_t rings = 1 + choose.below(4);
+    mesh = test::quad_ball(3 + size, rings, [&] { return 1 + reach * choose.signed_unit(); });
   } else if (family == 1) {
-    const std::uint32_t cells = 1 + numbers.below(255);
+    const std::uint32_t cells = 1 + choose.below(255);
     mesh = shapes::voxels(
         2, 2, 2, [=](int x, int y, int z) { return (cells >> (4 * x + 2 * y + z) & 1) != 0; }, true);
   } else {
@@ -53,11 +37,11 @@ Mesh folded(Numbers& numbers) {
   }
   if (family != 0)
     for (Eigen::Vector3d& v : mesh.vertices)
-      for (double& x : v) x += reach * numbers.signed_unit();
+      for (double& x : v) x += reach * choose.signed_unit();
   Mesh out;
   out.vertices = mesh.vertices;
   out.name = "m";
-  const std::uint32_t odd = numbers.below(4) == 3 ? numbers.below(64) : kNull, what = numbers.below(3);
+  const std::uint32_t odd = choose.below(4) == 3 ? choose.below(64) : kNull, what = choose.below(3);
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
     std::vector<VertexId> corners(mesh.face(f).begin(), mesh.face(f).end());
     if (f == odd && what == 0) continue;
@@ -74,12 +58,12 @@ void query(const LrbRep& a, const LrbRep& b) {
     const BruteForceResult truth = brute_force(a, {}, b, pose);
     CollideRequest request;
     const CollideResult all = collide(a, {}, b, pose, request);
-    promise(all.pairs == truth.pairs && all.meets == truth.meets, "other pairs than brute force");
+    judge(all.pairs == truth.pairs && all.meets == truth.meets, "other pairs than brute force");
     for (const double tolerance : {0.01, 0.3, 3.0}) {
       request.tolerance = tolerance;
-      promise(collide(a, {}, b, pose, request).relation == all.relation, "a tolerance changes the relation");
+      judge(collide(a, {}, b, pose, request).relation == all.relation, "a tolerance changes the relation");
     }
-    promise(distance(a, {}, b, pose).meet == !truth.pairs.empty(), "a distance of 0, or none, is wrong");
+    judge(distance(a, {}, b, pose).meet == !truth.pairs.empty(), "a distance of 0, or none, is wrong");
   }
 }
 
@@ -89,8 +73,8 @@ bool feed_body(std::string_view bytes) {
   if (bytes.empty()) return false;
   const bool is_file = bytes[0] == '0';
   return accepted(is_file ? "m.obj" : "m", [&] {
-    Numbers numbers(bytes.substr(1));
-    Mesh mesh = is_file ? read_mesh(std::string(bytes.substr(1)), "m.obj") : folded(numbers);
+    Choices choose(bytes.substr(1));
+    Mesh mesh = is_file ? read_mesh(std::string(bytes.substr(1)), "m.obj") : folded(choose);
     if (mesh.face_vertices.size() > kMaxCorners) return;
     BodyOptions options;
     options.build.threads = 1;
@@ -104,8 +88,8 @@ bool feed_body(std::string_view bytes) {
       if (levels) body.rep().levels();
       const std::string file = test::lrb_bytes(body);
       const LrbRep again = load_lrb(file, "m.lrb");
-      promise(again.hash() == body.rep().hash() && test::lrb_bytes(again) == file,
-              "another body once saved and loaded");
+      judge(again.hash() == body.rep().hash() && test::lrb_bytes(again) == file,
+            "another body once saved and loaded");
       query(body, again);
     }
   });
