@@ -224,17 +224,6 @@ TEST_CASE("GLB: a node per part, triangles of all fans, positions around a centr
   CHECK(json["buffers"][0]["byteLength"] == bin.size());
 }
 
-TEST_CASE("GLB: lids are translucent") {
-  const Wrapper wrapper = wrapper_of_faces(ball(), 120);
-  const Model model = make_model(moment_of(ball(), &wrapper), {false, true, false, {true, true}});
-  const auto [json, bin] = open_glb(glb_bytes(model, 1));
-  CHECK(!json["nodes"][0].contains("rotation"));  // y is up, as in glTF
-  std::size_t translucent = 0;
-  for (const nlohmann::json& primitive : json["meshes"].at(0)["primitives"])
-    translucent += json["materials"][primitive["material"].get<int>()].value("alphaMode", "") == "BLEND";
-  CHECK(translucent > 0);
-}
-
 TEST_CASE("the page on formats has the names of all columns") {
   const std::string page = test::slurp(LRB_SOURCE_DIR "/docs/formats.md");
   const ShippedRun run("collision", {true, true, true, {true, true}});

@@ -11,10 +11,7 @@
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
-#include "tests/support/pixels.hpp"
-#include "tests/support/program.hpp"
 #include "tests/support/text.hpp"
-#include <lrbscope/core/random.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
 
@@ -92,19 +89,6 @@ TEST_CASE("panels of one body: from the outermost wrapper to the body, in equal 
   CHECK(layers.back() + 1 == s.recording.trace.events.size());
 }
 
-TEST_CASE("panels of layers: at most 26, evenly chosen, and omissions are reported") {
-  const Shipped few("figure2"), many("figure2_mesh");
-  CHECK(choose(few.run, {Choice::By::layers, {}}).left_out.empty());
-  const std::uint32_t layers = many.recording.trace.header.bodies[0].layers;
-  REQUIRE(layers >= kMaxPanels);
-  const Chosen chosen = choose(many.run, {Choice::By::layers, {}});
-  CHECK(chosen.events.size() == kMaxPanels);
-  CHECK(chosen.events.front() == 0);
-  CHECK(chosen.events.back() + 1 == many.recording.trace.events.size());
-  CHECK(chosen.left_out ==
-        "26 of " + std::to_string(layers + 1) + " panels are shown, evenly chosen; --events shows others");
-}
-
 TEST_CASE("panels of two bodies: time steps, including the first contact") {
   const Shipped s("islands");
   std::uint32_t first = 0;
@@ -120,22 +104,6 @@ TEST_CASE("panels of two bodies: time steps, including the first contact") {
   CHECK_THROWS_AS(choose(s.run, {Choice::By::steps, {100'000}}), InputError);
   CHECK_THROWS_AS(choose(s.run, {Choice::By::events, {100'000'000}}), InputError);
   CHECK_THROWS_AS(choose(s.run, {Choice::By::layers, {}}), InputError);
-}
-
-TEST_CASE("panels are alike if almost no pixel of their content differs visibly in grey") {
-  render::Image a(100, 100, render::kWhite);
-  a.fill({10, 10, 80, 80}, {100, 100, 100});
-  render::Image b = a;
-  b.fill({20, 20, 60, 60}, {100, 110, 105});  // hardly lighter
-  CHECK(alike_in_grey(a, b));
-  b.fill({20, 20, 5, 5}, render::kBlack);  // a few pixels
-  CHECK(alike_in_grey(a, b));
-  b.fill({20, 20, 10, 10}, render::kBlack);
-  CHECK_FALSE(alike_in_grey(a, b));
-  render::Image red(100, 100, render::kWhite), green = red;
-  red.fill({10, 10, 80, 80}, {170, 0, 0});
-  green.fill({10, 10, 80, 80}, {0, 87, 0});
-  CHECK(alike_in_grey(red, green));
 }
 
 TEST_CASE("the default series omits states that look like the one before, and reports it") {
@@ -155,53 +123,6 @@ TEST_CASE("the default series omits states that look like the one before, and re
   // Requested states are shown.
   spec.choice = {Choice::By::events, {1, 2}};
   CHECK(draw_figure(s.run, {}, spec, run::kSilent).panels == 2);
-}
-
-TEST_CASE("panels fill the width; omitted parts take no space") {
-  Block block = squares(6);
-  const FigureLayout bare = lay_out({block}, {}, {}, "", at_width(240));
-  double right = 0;
-  for (const PanelPlace& p : bare.blocks[0].panels) right = std::max(right, p.box.max().x());
-  CHECK(right == doctest::Approx(240));
-  CHECK(bare.blocks[0].panels[0].box.min().norm() < 1e-9);
-  CHECK(bare.blocks[0].panels[3].box.min().x() < 1e-9);  // three columns
-  CHECK(bare.height == doctest::Approx(bare.blocks[0].panels[5].box.max().y()));
-  block.texts = {"(a)", "(b)", "(c)", "(d)", "(e)", "(f)"};
-  const FigureLayout lettered = lay_out({block}, {}, {}, "", at_width(240));
-  CHECK(lettered.height > bare.height + 15);
-  const std::vector<render::LegendItem> legend = {{render::LegendItem::Mark::solid, {}, "A"}};
-  CHECK(lay_out({block}, legend, {}, "", at_width(240)).height > lettered.height + 8);
-  CHECK(lay_out({block}, {}, render::ScaleBar{"tests", 0, 9}, "", at_width(240)).height >
-        lettered.height + 16);
-  CHECK(lay_out({block}, {}, {}, "Its content.", at_width(240)).height > lettered.height + 8);
-}
-
-TEST_CASE("panels of different sizes keep one scale, and their rows and columns") {
-  Block block = squares(4);
-  block.seen[3] = AlignedBox2d(Vector2d(20, 30), Vector2d(60, 60));  // smaller, inside
-  LayoutOptions o = at_width(200);
-  o.columns = 2;
-  const FigureLayout layout = lay_out({block}, {}, {}, "", o);
-  const auto& panels = layout.blocks[0].panels;
-  CHECK(panels[3].seen_from == Vector2d(0, 0));  // as its neighbours, so that nothing jumps
-  CHECK(panels[3].box.sizes().isApprox(panels[0].box.sizes()));
-  CHECK(panels[0].box.sizes().x() == doctest::Approx(100 * layout.blocks[0].scale + 2 * o.margin));
-  o.columns = 26;
-  o.width = 60;
-  Block many = squares(26);
-  CHECK_THROWS_AS(lay_out({many}, {}, {}, "", o), InputError);
-  CHECK_THROWS_AS(
-      lay_out({block}, {{render::LegendItem::Mark::solid, {}, std::string(60, 'w')}}, {}, "", at_width(100)),
-      InputError);
-}
-
-TEST_CASE("panels are aligned to the pixel grid") {
-  LayoutOptions o = at_width(241);
-  o.grid = 0.24;
-  const FigureLayout layout = lay_out({squares(5)}, {}, {}, "", o);
-  for (const PanelPlace& p : layout.blocks[0].panels)
-    for (const double x : {p.box.min().x(), p.box.min().y(), p.box.max().x(), p.box.max().y()})
-      CHECK(std::abs(x / o.grid - std::round(x / o.grid)) < 1e-9);
 }
 
 TEST_CASE("a figure of a 2D body consists of lines and text, without pixels") {
@@ -250,15 +171,6 @@ TEST_CASE("a figure of 3D bodies: vector graphics, or faces as pixels if there a
   const render::DecodedPng read = render::decode_png(bytes);
   CHECK(read.image.width() == static_cast<int>(std::ceil(85 / 25.4 * 150)));
   CHECK(read.dpi == doctest::Approx(150).epsilon(0.001));
-}
-
-TEST_CASE("the figure of a mesh of 4,480 faces: below 300 kB, without pixels") {
-  const Shipped s("figure2_mesh");
-  const Figure pdf = draw_figure(s.run, s.scenario.frames, {}, run::kSilent);
-  CHECK(pdf.panels == 6);
-  CHECK(pdf.bytes.size() < 300'000);
-  CHECK(count(pdf.bytes, "/Subtype /Image") == 0);
-  CHECK(pdf.bytes == draw_figure(s.run, s.scenario.frames, {}, run::kSilent).bytes);
 }
 
 TEST_CASE("callouts and insets are read, and wrong ones rejected with their option") {
@@ -335,32 +247,6 @@ TEST_CASE("texts of callouts are inside their panel, beside its content, and apa
   }
 }
 
-TEST_CASE("leaders of callouts with close anchors do not cross") {
-  const auto side = [](const Vector2d& p, const Vector2d& q, const Vector2d& r) {
-    return (q - p).x() * (r - p).y() - (q - p).y() * (r - p).x() > 0;
-  };
-  const AlignedBox2d box(Vector2d(0, 0), Vector2d(120, 90));
-  render::Image content(120, 90, render::kTransparent);
-  for (int y = 30; y < 90; ++y)
-    for (int x = 0; x < 120; ++x) content.at(x, y) = render::kBlack;
-  Random random(1);
-  for (int round = 0; round < 40; ++round) {
-    std::vector<Vector2d> anchors, sizes;
-    for (int i = 0; i < 5; ++i) {
-      anchors.emplace_back(random.in(40, 80), random.in(35, 55));
-      sizes.emplace_back(random.in(12, 40), 8);
-    }
-    const std::vector<CalloutPlace> places = place_callouts(box, box, content, {}, anchors, sizes);
-    for (std::size_t i = 0; i < anchors.size(); ++i) {
-      CHECK(places[i].covered == 0);
-      for (std::size_t k = 0; k < i; ++k) {
-        const Vector2d &a = anchors[i], &b = places[i].leader, &c = anchors[k], &d = places[k].leader;
-        CHECK_FALSE((side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b)));
-      }
-    }
-  }
-}
-
 TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in the panel as well") {
   const Shipped s("stick_through_wall");
   FigureSpec spec;
@@ -391,12 +277,6 @@ TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in 
   spec.vector_faces = 10;
   spec.dpi = 100;
   CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).bytes, "<image") == 4);
-  const auto rejected = [&](const char* option, const char* inset) {
-    spec.insets = {parse_inset(inset)};
-    CHECK_THROWS_WITH_AS(draw_figure(s.run, {}, spec, run::kSilent), option, InputError);
-  };
-  rejected("--inset c:contact: expected a panel of the figure, which has a to b", "c:contact");
-  rejected("--inset a:contact: expected a panel with a contact, found none in it", "a:contact");
   spec.insets.clear();
   spec.callouts = {
       parse_callout("face:b2=a text that is much wider than a panel of half the width of the figure")};

@@ -13,12 +13,10 @@
 #include "scenarios/paper/paper_pictures.hpp"
 #include "scenarios/paper/sweep.hpp"
 #include "tests/support/json_schema.hpp"
-#include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/counters.hpp>
 
 using namespace lrb;
-using lrb::test::count;
 using nlohmann::json;
 
 namespace {
@@ -27,27 +25,6 @@ bool schema_accepts_experiment(const std::string& text) {
   const json document = json::parse(io::embedded_file("experiment.schema.json"));
   const json scenario = json::parse(io::embedded_file("scenario.schema.json"));
   return test::schema_faults(document, json::parse(text), scenario).empty();
-}
-
-std::string experiment_error(const std::string& text) {
-  try {
-    paper::parse_experiment(text, "dir/e.json");
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
-}
-
-json good_experiment() {
-  return json::parse(R"({"name": "n", "purpose": "p", "protocol": {"collisions": 3},
-    "objects": [{"name": "A", "body": {"generator": "fractal", "parameters": {"real_faces": 144, "total_faces": 168}}},
-                {"name": "rock", "body": {"generator": "rock", "parameters": {"frequency": 4}}}]})");
-}
-
-std::string experiment_with(const std::string& pointer, const json& value) {
-  json e = good_experiment();
-  e[json::json_pointer(pointer)] = value;
-  return e.dump(1);
 }
 
 std::vector<paper::PaperObject> small_objects() {
@@ -88,62 +65,14 @@ TEST_CASE(
   CHECK_FALSE(paper::open_experiment("table1").collides());
 }
 
-TEST_CASE("experiments: schema and reader agree on valid and invalid files") {
-  json lone = good_experiment();
-  lone["objects"].erase(1);
-  lone["report"] = {"table1"};
-  const std::string experiments[] = {
-      good_experiment().dump(),
-      lone.dump(),
-      experiment_with("/name", "../n"),
-      experiment_with("/protocl", 1),
-      experiment_with("/protocol", json{{"collisions", 0}}),
-      experiment_with("/protocol", json{{"collisions", 2.5}}),
-      experiment_with("/protocol", json{{"step", 0}}),
-      experiment_with("/protocol", json{{"steps_after", -1}}),
-      experiment_with("/protocol", json{{"steps", 1}}),
-      experiment_with("/protocol", json{{"seed", 7}, {"step", 0.01}, {"steps_after", 0}}),
-      experiment_with("/protocol", json{{"seeds", 10}}),
-      experiment_with("/protocol", json{{"seeds", 0}}),
-      experiment_with("/protocol", json{{"seeds", 1001}}),
-      experiment_with("/report", json::array()),
-      experiment_with("/report", json{"table2", "settings", "heat_maps"}),
-      experiment_with("/report", json{"table3"}),
-      experiment_with("/report", json{"table1", "table1"}),
-      experiment_with("/close_up", "rock"),
-      experiment_with("/objects", json::array()),
-      experiment_with("/objects/0/name", "A-B"),
-      experiment_with("/objects/0/name", ""),
-      experiment_with("/objects/0/body", json{{"file", "x.obj"}}),
-      experiment_with("/objects/0/body", json{{"generator", "rok"}}),
-      experiment_with("/objects/0/body", json{{"generator", "rock"}, {"pose", {{"degrees", 3}}}}),
-      experiment_with("/objects/0/pose", json::object()),
-  };
-  for (const std::string& text : experiments) {
-    CAPTURE(text);
-    CAPTURE(experiment_error(text));
-    CHECK(schema_accepts_experiment(text) == experiment_error(text).empty());
-  }
-}
-
-TEST_CASE("experiments: errors name file, line, column and the nearest word") {
-  CHECK(experiment_error("{\n \"name\": \"n\",\n \"purpos\": \"p\"}")
-            .rfind("dir/e.json:3:2: /purpos: unknown key; did you mean \"purpose\"?", 0) == 0);
-  CHECK(experiment_error(experiment_with("/close_up", "rok")).find("did you mean \"rock\"?") !=
-        std::string::npos);
-  CHECK(experiment_error(experiment_with("/objects/1/name", "A")).find("another object has the name A") !=
-        std::string::npos);
-  json lone = good_experiment();
-  lone["objects"].erase(1);
-  CHECK(experiment_error(lone.dump()).find("expected a second object") != std::string::npos);
-  CHECK_THROWS_WITH_AS(paper::open_experiment("tabel1"), doctest::Contains("did you mean \"table1\"?"),
-                       InputError);
+TEST_CASE("an experiment with a 2D body is rejected") {
   std::vector<std::string> notes;
-  CHECK_THROWS_WITH_AS(
-      paper::make_objects(
-          paper::parse_experiment(experiment_with("/objects/1/body", json{{"generator", "island"}}), "e"),
-          notes),
-      doctest::Contains("expected a 3D body"), InputError);
+  CHECK_THROWS_WITH_AS(paper::make_objects(paper::parse_experiment(
+                                               R"({"name": "n", "purpose": "p", "protocol": {"collisions": 3},
+        "objects": [{"name": "A", "body": {"generator": "rock"}}, {"name": "B", "body": {"generator": "island"}}]})",
+                                               "e"),
+                                           notes),
+                       doctest::Contains("expected a 3D body"), InputError);
 }
 
 TEST_CASE("easiest and hardest collision: by comparisons over all time steps; ties go to the first") {

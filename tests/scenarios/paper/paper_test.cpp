@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <sstream>
-#include <tuple>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -10,12 +8,9 @@
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/paper/series.hpp"
 #include "scenarios/paper/tables.hpp"
-#include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
-#include <lrbscope/mesh.hpp>
 
 using namespace lrb;
-using nlohmann::json;
 
 namespace {
 
@@ -34,28 +29,6 @@ paper::SweepOptions few_collisions() {
 }
 
 }  // namespace
-
-TEST_CASE("the paper's sweep: jobs and shards change nothing") {
-  const auto objects = few_objects();
-  paper::SweepOptions options = few_collisions();
-  const std::string whole = paper::to_json_lines(paper::run_sweep(objects, options));
-  options.jobs = 3;
-  std::atomic<int> calls = 0;
-  options.runner = [&](const paper::CollisionTask& task, Workspace& workspace) {
-    ++calls;
-    return paper::run(task, workspace);
-  };
-  CHECK(paper::to_json_lines(paper::run_sweep(objects, options)) == whole);
-  CHECK(calls == 12);
-  std::vector<paper::ContactStep> parts;
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    options.shard = {4 - i, 5};
-    for (paper::ContactStep& s : paper::run_sweep(objects, options)) parts.push_back(std::move(s));
-  }
-  CHECK(paper::to_json_lines(paper::merged(parts)) == whole);
-  parts.push_back(parts.front());
-  CHECK_THROWS_AS(paper::merged(parts), InputError);
-}
 
 TEST_CASE("the paper's sweep: every collision ends in contact, and the complete recursion misses nothing") {
   const auto objects = few_objects();
@@ -189,114 +162,4 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
   CHECK_THROWS_AS(paper::read_times(paper::times_to_json_lines(steps), "t.jsonl", again), InputError);
   steps[0].object = "another/2000/A";
   CHECK_THROWS_AS(paper::series_rows(a, objects, steps), InputError);
-}
-
-namespace {
-
-/// Small objects of the paper with its names, and a mesh.
-void write_few(const test::Folder& folder) {
-  json few = {{"name", "few"},
-              {"purpose", "Few."},
-              {"protocol", {{"collisions", 12}, {"seeds", 4}}},
-              {"report", {"table1", "table2", "figure3.1", "figure3.2", "settings"}}};
-  for (const std::size_t i : {3u, 1u, 2u}) {
-    const generators::FractalSpec& o = generators::paper_objects()[i];
-    few["objects"].push_back(
-        {{"name", o.name},
-         {"body",
-          {{"generator", "fractal"},
-           {"parameters", {{"real_faces", o.real_faces}, {"total_faces", o.total_faces}}}}}});
-  }
-  folder.write("few.json", few.dump());
-  write_mesh(generators::generate("ball", {{"frequency", 4}}), folder / "ball.ply");
-}
-
-std::vector<std::string> few_command(const std::string& out, const std::string& jobs) {
-  return {"paper", "--experiment", "few.json", "--meshes", "ball.ply", "--resolutions",
-          "2",     "--jobs",       jobs,       "-o",       out};
-}
-
-std::vector<json> lines_of(const std::string& path) {
-  std::istringstream in(test::slurp(path));
-  std::vector<json> out;
-  for (std::string line; std::getline(in, line);) out.push_back(json::parse(line));
-  return out;
-}
-
-std::size_t line_count(const std::string& path) {
-  const std::string text = test::slurp(path);
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
-
-/// Starts the program and ends it by a signal, once it has kept so many collisions.
-void interrupt(const test::Folder& folder, const std::vector<std::string>& command, const char* signal,
-               const std::string& file, std::size_t collisions) {
-  std::string line = "cd '" + folder.path.string() + "' && env --default-signal=INT '" LRBSCOPE_BINARY "'";
-  for (const std::string& word : command) line += " '" + word + "'";
-  line += " >stdout 2>stderr </dev/null & pid=$!; while kill -0 $pid 2>/dev/null && [ $(cat '" +
-          folder / file + "' 2>/dev/null | wc -l) -lt " + std::to_string(collisions + 1) +
-          " ]; do sleep 0.01; done; kill -" + signal + " $pid; { wait $pid; } 2>/dev/null";
-  CHECK(std::system(line.c_str()) != 0);
-}
-
-}  // namespace
-
-TEST_CASE(
-    "paper: an interrupted run goes on where it stopped, and gives the same bytes for any number of jobs") {
-  const test::Folder folder;
-  write_few(folder);
-  REQUIRE(test::run(folder, few_command("whole", "1")).code == 0);
-  CHECK(!std::filesystem::exists(folder / "whole/unfinished.jsonl"));
-  const std::string kept = folder / "out/unfinished.jsonl";
-  interrupt(folder, few_command("out", "2"), "INT", "out/unfinished.jsonl", 10);
-  CHECK(test::slurp(folder / "stderr")
-            .find("interrupted by SIGINT: finished collisions are kept in "
-                  "out/unfinished.jsonl; the same command goes on from there\n") != std::string::npos);
-  const std::size_t first = line_count(kept);
-  CHECK(first > 10);
-  interrupt(folder, few_command("out", "3"), "KILL", "out/unfinished.jsonl", first + 40);
-  const std::size_t second = line_count(kept);
-  CHECK(second > first + 40);
-  // Other settings are refused, and nothing is lost.
-  const std::string before = test::slurp(kept);
-  for (const std::vector<std::string>& other :
-       {std::vector<std::string>{"--seed", "2"}, {"--step", "0.01"}, {"--steps-after", "4"}}) {
-    std::vector<std::string> command = few_command("out", "2");
-    command.insert(command.end(), other.begin(), other.end());
-    const test::Outcome o = test::run(folder, command);
-    CHECK(o.code == 2);
-    CHECK(o.error_lines() == 1);
-    CHECK(o.err.find("out/unfinished.jsonl: belongs to an interrupted run with other settings") !=
-          std::string::npos);
-  }
-  CHECK(test::slurp(kept) == before);
-  // The first collision loses its last step, to see that it is not run again.
-  {
-    std::vector<json> lines = lines_of(kept);
-    std::string text = before.substr(0, before.find('\n') + 1);
-    for (std::size_t i = 1; i < lines.size(); ++i) {
-      for (const char* key : {"records", "times"}) {
-        std::string& records = lines[i][key].get_ref<std::string&>();
-        records.pop_back();
-        if (i == 1) records.resize(records.rfind('\n'));
-        records += '\n';
-      }
-      text += lines[i].dump() + "\n";
-    }
-    std::filesystem::copy(folder / "out", folder / "marked");
-    folder.write("marked/unfinished.jsonl", text + "{\"collision\": \"cut o");
-  }
-  REQUIRE(test::run(folder, few_command("marked", "2")).code == 0);
-  CHECK(line_count(folder / "marked/records.jsonl") + line_count(folder / "marked/settings.jsonl") + 1 ==
-        line_count(folder / "whole/records.jsonl") + line_count(folder / "whole/settings.jsonl"));
-
-  const test::Outcome rest = test::run(folder, few_command("out", "2"));
-  REQUIRE(rest.code == 0);
-  CHECK(rest.err.find("continues an interrupted run, of which " + std::to_string(second - 1) +
-                      " collisions") != std::string::npos);
-  CHECK(!std::filesystem::exists(kept));
-  for (const char* file : {"/records.jsonl", "/settings.jsonl", "/series.jsonl", "/series.json",
-                           "/tables.json", "/table1.csv", "/table2.csv", "/ratios.csv", "/settings.csv"})
-    CHECK(test::slurp(folder / (std::string("out") + file)) ==
-          test::slurp(folder / (std::string("whole") + file)));
 }

@@ -120,16 +120,6 @@ TEST_CASE("charts for print: each panel has its series, and one legend has each 
   CHECK(count(report::gnuplot(panels).script, " title 'it''s'") == 2);
 }
 
-TEST_CASE("data URIs encode bytes in base64") {
-  const auto encoded = [](const std::string& s) {
-    return report::data_uri("t", reinterpret_cast<const std::uint8_t*>(s.data()), s.size());
-  };
-  CHECK(encoded("") == "data:t;base64,");
-  CHECK(encoded("f") == "data:t;base64,Zg==");
-  CHECK(encoded("fo") == "data:t;base64,Zm8=");
-  CHECK(encoded("foobar") == "data:t;base64,Zm9vYmFy");
-}
-
 TEST_CASE("pictures stay PNGs if they fit, and are reduced otherwise") {
   render::Image image(256, 192);
   for (int y = 0; y < 192; ++y)

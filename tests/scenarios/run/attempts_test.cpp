@@ -140,12 +140,3 @@ TEST_CASE("regions of two builds are matched by the real faces below them") {
         CHECK_FALSE(overlap(below_few[p], below_many[q]) >= compare::kSamePlace);
   }
 }
-
-TEST_CASE("a build matches itself, and nothing is matched across different meshes") {
-  const Built rock = build_recorded(shapes::bumpy_sphere(3, 7, 0.3), 12);
-  const compare::RegionMatching same = compare::match_regions(rock.rep, rock.rep);
-  CHECK(same.pairs.size() == rock.rep.region_count());
-  for (const compare::MatchedRegions& p : same.pairs) CHECK(p.of[0] == p.of[1]);
-  const Built other = build_recorded(shapes::bumpy_sphere(3, 8, 0.3), 12);
-  CHECK_FALSE(compare::same_real_faces(rock.rep, other.rep));
-}

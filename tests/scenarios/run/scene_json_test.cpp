@@ -12,6 +12,7 @@
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/report/assets.hpp"
+#include "tests/support/approach.hpp"
 #include <lrbscope/trace/trace.hpp>
 
 using namespace lrb;
@@ -21,22 +22,11 @@ namespace {
 
 run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised,
                                EventLevel level = EventLevel::faces, bool measured = false) {
-  spec::Scenario s;
+  spec::Scenario s = test::approach("rock", 6);
   s.events = level;
-  s.name = "rocks";
-  s.bodies.resize(2);
-  for (spec::BodySpec& body : s.bodies) {
-    body.generator = "rock";
-    body.parameters = {{"frequency", 6}};
-  }
   s.request.wrapper = mode;
   if (mode == WrapperMode::unregularised) s.request.recursion = Recursion::paper;
   s.more.distance = s.more.clash = measured;
-  s.motion.kind = spec::Motion::Kind::approach;
-  s.motion.from = {3, 0.2, 0.1};
-  s.motion.steps = 1000;
-  s.motion.before = 3;
-  s.motion.into = 4;
   return run::record(s, run::kSilent);
 }
 
@@ -56,13 +46,6 @@ std::size_t changes(const trace::Trace& trace) {
 }
 
 }  // namespace
-
-TEST_CASE("thinned events: all of them if they fit") {
-  const run::Recording r = rocks_that_meet();
-  const run::ThinnedEvents t = run::thin_events(r.trace, r.trace.events.size());
-  CHECK(t.all(r.trace));
-  CHECK(t.steps == r.trace.steps.size());
-}
 
 TEST_CASE("thinned events: changes of wrappers have priority, and the first contact is kept") {
   const run::Recording r = rocks_that_meet();
@@ -97,14 +80,6 @@ TEST_CASE("thinned events: if even those are too many, entire steps are omitted"
   CHECK(std::binary_search(t.kept.begin(), t.kept.end(), run::first_contact(r.trace)));
 }
 
-TEST_CASE("thinned events: a single step that is too long keeps its beginning") {
-  const run::Recording r = rocks_that_meet();
-  const run::ThinnedEvents t = run::thin_events(r.trace, 5);
-  CHECK(t.cut);
-  CHECK(t.steps == 1);
-  CHECK(t.kept.size() == 5);
-}
-
 TEST_CASE("thinned events: a refinement face by face keeps the test that caused it") {
   const run::Recording r = rocks_that_meet(WrapperMode::unregularised);
   const run::ThinnedEvents t = run::thin_events(r.trace, r.trace.events.size() - 1);
@@ -137,16 +112,6 @@ TEST_CASE("boxes of tree nodes contain the faces, and each depth the boxes of th
         CHECK(std::any_of(boxes.begin(), boxes.end(), [&](const run::TreeBox& b) {
           return b.depth == depth && holds(b, rep.vertices()[v]);
         }));
-}
-
-TEST_CASE("boxes of tree nodes: complete depths, as many as fit") {
-  const run::Recording r = rocks_that_meet();
-  const ObbTree& tree = r.bodies[0].rep.tree();
-  const std::vector<run::TreeBox> all = run::tree_boxes(tree, 100'000);
-  const auto upper = static_cast<std::size_t>(
-      std::count_if(all.begin(), all.end(), [](const run::TreeBox& b) { return b.depth <= 1; }));
-  CHECK(run::tree_boxes(tree, upper).size() == upper);
-  CHECK(run::tree_boxes(tree, upper - 1).size() == 1);
 }
 
 TEST_CASE("boxes of deep nodes: those on paths to faces, as many as fit, with the complete tree's boxes") {
@@ -218,30 +183,6 @@ TEST_CASE("page data of a run has the outcome of each event") {
   CHECK(words.size() == expected.size());
   CHECK(expected.count("cross") == 1);
   CHECK(expected.count(std::string(name_of(NodeStep::leaves))) == 1);
-}
-
-TEST_CASE("without recorded node pairs, page data takes tests of boxes and planes from the counters") {
-  const run::Recording r = rocks_that_meet();
-  const json scene = json::parse(run::scene_json(run_of(r), {"trace.json", ""}));
-  const json& work = scene["work"];
-  Counters all;
-  for (const trace::Step& step : r.trace.steps) {
-    all.box_tests += step.result.counters.box_tests;
-    all.prefilter_tests += step.result.counters.prefilter_tests;
-    all.face_tests += step.result.counters.face_tests;
-  }
-  std::map<std::string, std::uint64_t> operations, events;
-  for (const json& part : work["outcomes"]) {
-    operations[part["outcome"]] = part["operations"];
-    events[part["outcome"]] = part["events"];
-  }
-  CHECK(all.box_tests > 0);
-  CHECK(operations["boxes"] == all.box_tests);
-  CHECK(operations["planes of faces"] == all.prefilter_tests);
-  CHECK(operations["face tests"] == all.face_tests);
-  CHECK(events["boxes"] == 0);
-  CHECK(events["face tests"] == all.face_tests);
-  CHECK(work["timed"] == false);
 }
 
 TEST_CASE("page data of a run explains each pair of a step once, and each step without pairs") {

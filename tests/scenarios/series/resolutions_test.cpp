@@ -73,14 +73,6 @@ TEST_CASE("decimation: without the proof the thin shell would intersect itself")
   CHECK(series.face_count() > 200);
 }
 
-TEST_CASE("decimation: flat parts cost nothing, creases are kept") {
-  Mesh box = shapes::voxels(6, 6, 6, [](int, int, int) { return true; });
-  const std::uint32_t targets[] = {12};
-  const Mesh out = resolutions::decimate(box, targets).front();
-  CHECK(out.face_count() == 12);
-  CHECK(volume(out) == doctest::Approx(216).epsilon(5e-3));
-}
-
 TEST_CASE("decimation: deterministic, and ends at an unreachable target") {
   const Mesh mesh = generators::generate("rock", {{"frequency", 8}});
   const std::uint32_t targets[] = {300, 2};
