@@ -364,6 +364,7 @@ MeshFindings examine(const Mesh& mesh, std::size_t kept) {
   check_vertices(mesh, report);
   // Adjacency of faces: components, closedness, genus.
   found.topology = analyse_topology(mesh, found.use, report);
+  check_seams(mesh, found.use, report);
   report.components = found.topology.components;
   report.closed = found.topology.closed;
   report.bounds_solid = report.closed || is_cycle(mesh, found.use);
@@ -406,6 +407,7 @@ enum class ElementKind : std::uint8_t {
   vertex,
   face,
   face_and_vertex,
+  vertex_and_face,
   two_faces,
   two_vertices,
   edge,
@@ -447,6 +449,8 @@ constexpr std::array<Help, kMeshFaultCount> kHelp = {{
      "two segments have the same ends"},
     {MeshFault::open_edge, ElementKind::edge, "close the hole (lrbscope close)",
      "a vertex has only one segment", "add a segment (l) that joins it to another end"},
+    {MeshFault::t_junction, ElementKind::vertex_and_face, "make the vertex a corner of the face"},
+    {MeshFault::near_vertex, ElementKind::two_vertices, "merge them if the surface should be connected there"},
     {MeshFault::non_manifold_edge, ElementKind::edge, "separate the parts or remove inner faces",
      "a vertex has more than two segments",
      "separate the parts: one copy of the vertex for each pair of segments"},
@@ -472,6 +476,8 @@ std::string shown(ElementKind kind, const std::array<std::uint32_t, 2>& element)
   switch (kind) {
     case ElementKind::face_and_vertex:
       return first + " (vertex " + second + ")";
+    case ElementKind::vertex_and_face:
+      return first + " (face " + second + ")";
     case ElementKind::two_faces:
     case ElementKind::two_vertices:
       return first + " and " + second;
@@ -485,6 +491,7 @@ std::string shown(ElementKind kind, const std::array<std::uint32_t, 2>& element)
 std::string_view noun(ElementKind kind, int dim) {
   switch (kind) {
     case ElementKind::vertex:
+    case ElementKind::vertex_and_face:
     case ElementKind::two_vertices:
       return "vertex";
     case ElementKind::edge:
@@ -498,6 +505,8 @@ std::string_view noun(ElementKind kind, int dim) {
 
 /// Returns the advice on open edges, which depends on whether there is a hole at all.
 std::string advice_on_openings(const MeshReport& report) {
+  if (report[MeshFault::t_junction].count + report[MeshFault::near_vertex].count > 0)
+    return "mend the T-junctions or merge the vertices named below, which leave slits";
   const std::uint32_t sheets = report.sheets, open = report.open_components;
   // Only sheets: closing them would create a body without volume.
   if (sheets > 0 && sheets == open)

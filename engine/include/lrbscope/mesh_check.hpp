@@ -26,6 +26,8 @@ namespace lrb {
   MESH_FAULT(folded_face, "a polygon crosses itself or is far from planar", true, true)                   \
   MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                              \
   MESH_FAULT(open_edge, "an edge has only one face", false, true)                                         \
+  MESH_FAULT(t_junction, "a vertex lies on an open edge of a face (T-junction)", true, true)              \
+  MESH_FAULT(near_vertex, "two vertices of open edges nearly coincide", true, true)                       \
   MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                           \
   MESH_FAULT(flipped_face, "two adjacent faces are inconsistently oriented", false, true)                 \
   MESH_FAULT(non_manifold_vertex, "a vertex joins two separate fans of faces", true, true)                \
@@ -49,8 +51,8 @@ struct MeshFinding {
   static constexpr std::size_t kShown = 8;  ///< number of affected elements printed by default
   std::uint64_t count = 0;
   /// The first affected elements, ascending, at most MeshReport::kept. Each is one of: a vertex, face or
-  /// component (by its first face) and kNull; two faces or vertices; a face and its vertex; an edge by its
-  /// vertices (2D: a vertex and kNull).
+  /// component (by its first face) and kNull; two faces or vertices; a face and its vertex; a vertex and the face
+  /// that it touches; an edge by its vertices (2D: a vertex and kNull).
   std::vector<std::array<std::uint32_t, 2>> first;
 };
 
@@ -142,6 +144,10 @@ struct SurfaceTopology {
 /// vertices in the role of edges). Skips faces with fewer than three (2D: two) distinct corners, whose edges
 /// cancel each other.
 SurfaceTopology analyse_topology(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
+
+/// Reports the likely causes of open edges: vertices on the open edge of another face, and vertices that nearly
+/// coincide, within 1e-6 of the diagonal of the open edges' box. At most one of each for a vertex. 3D only.
+void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
 
 // A mesh with the results of its checks, so that no check runs twice.
 

@@ -1,0 +1,121 @@
+// Causes of open edges of a surface that looks closed: vertices on the open edge of another face (T-junctions), and
+// vertices that nearly coincide.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <unordered_set>
+#include <vector>
+
+#include "engine/mesh/box_tree.hpp"
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/mesh_repair.hpp>
+
+namespace lrb {
+namespace {
+
+constexpr double kSeam = 1e-6;        // the width of a seam, relative to the diagonal of the body's box
+constexpr double kMaxDiagonal = 1e150;  // squares of longer ones overflow
+
+struct OpenEdge {
+  VertexId from, to;
+  FaceId face;
+};
+
+/// Pairs of vertices.
+using Edges = std::unordered_set<std::uint64_t>;
+
+std::uint64_t key(VertexId from, VertexId to) {
+  return std::uint64_t{from} << 32 | to;
+}
+
+/// Returns true if a point lies on an edge, further than `width` from its ends.
+bool is_on(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double width) {
+  const Eigen::Vector3d along = b - a;
+  const double t = (x - a).dot(along) / along.squaredNorm();
+  if (!(t > 0 && t < 1)) return false;
+  return (x - (a + t * along)).norm() <= width && (x - a).norm() > width && (x - b).norm() > width;
+}
+
+void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges, const std::vector<VertexId>& corners,
+                      double width, MeshReport& report) {
+  std::vector<Box> boxes;
+  for (const OpenEdge& e : edges) {
+    Box box(mesh.vertices[e.from]);
+    box.extend(mesh.vertices[e.to]);
+    boxes.emplace_back(box.min().array() - width, box.max().array() + width);
+  }
+  const BoxTree tree(boxes);
+  for (const VertexId v : corners) {
+    bool found = false;  // the first edge is enough
+    const Eigen::Vector3d& x = mesh.vertices[v];
+    tree.for_each_near(
+        Box(x, x), [&](const Box&) { return !found; },
+        [&](std::uint32_t i) {
+          const OpenEdge& e = edges[i];
+          if (found || e.from == v || e.to == v) return;
+          found = is_on(x, mesh.vertices[e.from], mesh.vertices[e.to], width);
+          if (found) note(report, MeshFault::t_junction, v, e.face);
+        });
+  }
+}
+
+void find_near_vertices(const Mesh& mesh, const Edges& open, std::vector<VertexId> corners, double width,
+                        MeshReport& report) {
+  // One vertex for each position.
+  const auto before = [&](VertexId u, VertexId v) {
+    const Eigen::Vector3d &x = mesh.vertices[u], &y = mesh.vertices[v];
+    return std::tie(x[0], x[1], x[2], u) < std::tie(y[0], y[1], y[2], v);
+  };
+  std::sort(corners.begin(), corners.end(), before);
+  corners.erase(std::unique(corners.begin(), corners.end(),
+                            [&](VertexId u, VertexId v) { return mesh.vertices[u] == mesh.vertices[v]; }),
+                corners.end());
+  std::vector<Box> boxes;
+  for (const VertexId v : corners) boxes.emplace_back(mesh.vertices[v], mesh.vertices[v]);
+  const BoxTree tree(boxes);
+  for (std::uint32_t j = 0; j < corners.size(); ++j) {
+    const VertexId v = corners[j];
+    const Eigen::Vector3d& x = mesh.vertices[v];
+    bool found = false;
+    tree.for_each_near(
+        Box(x.array() - width, x.array() + width), [&](const Box&) { return !found; },
+        [&](std::uint32_t i) {
+          const VertexId u = corners[i];
+          if (found || i >= j || open.contains(key(u, v)) || open.contains(key(v, u))) return;
+          found = (mesh.vertices[u] - x).norm() <= width;
+          if (found) note(report, MeshFault::near_vertex, std::min(u, v), std::max(u, v));
+        });
+  }
+}
+
+}  // namespace
+
+void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report) {
+  if (mesh.dim == 2 || report[MeshFault::open_edge].count == 0) return;
+  Edges open;
+  for (const BoundaryLoop& loop : find_boundary_loops(mesh, use))
+    for (std::size_t i = 0; i < loop.edges(); ++i)
+      open.insert(key(loop.vertices[i], loop.vertices[(i + 1) % loop.vertices.size()]));
+  std::vector<OpenEdge> edges;
+  std::vector<VertexId> corners;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    if (use[f] < FaceUse::points) continue;
+    const auto face = mesh.face(FaceId(f));
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const VertexId from = face[i], to = face[(i + 1) % face.size()];
+      if (!open.contains(key(from, to))) continue;
+      edges.push_back({from, to, FaceId(f)});
+      corners.insert(corners.end(), {from, to});
+    }
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  Box box;
+  for (const VertexId v : corners) box.extend(mesh.vertices[v]);
+  const double diagonal = box.isEmpty() ? 0 : box.diagonal().norm();
+  if (!(diagonal > 0 && diagonal < kMaxDiagonal)) return;
+  find_t_junctions(mesh, edges, corners, kSeam * diagonal, report);
+  find_near_vertices(mesh, open, std::move(corners), kSeam * diagonal, report);
+}
+
+}  // namespace lrb
