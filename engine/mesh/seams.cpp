@@ -1,5 +1,5 @@
-// Causes of open edges of a surface that looks closed: vertices on the open edge of another face (T-junctions), and
-// vertices that nearly coincide.
+// Causes of open edges of a surface that looks closed: vertices on the open edge of another face
+// (T-junctions), and vertices that nearly coincide.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace lrb {
 namespace {
 
-constexpr double kSeam = 1e-6;        // the width of a seam, relative to the diagonal of the body's box
+constexpr double kSeam = 1e-6;          // the width of a seam, relative to the diagonal of the body's box
 constexpr double kMaxDiagonal = 1e150;  // squares of longer ones overflow
 
 struct OpenEdge {
@@ -22,9 +22,9 @@ struct OpenEdge {
 };
 
 /// Pairs of vertices.
-using Edges = std::unordered_set<std::uint64_t>;
+using OpenKeys = std::unordered_set<std::uint64_t>;
 
-std::uint64_t key(VertexId from, VertexId to) {
+std::uint64_t seam_key(VertexId from, VertexId to) {
   return std::uint64_t{from} << 32 | to;
 }
 
@@ -36,8 +36,8 @@ bool is_on(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vect
   return (x - (a + t * along)).norm() <= width && (x - a).norm() > width && (x - b).norm() > width;
 }
 
-void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges, const std::vector<VertexId>& corners,
-                      double width, MeshReport& report) {
+void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges,
+                      const std::vector<VertexId>& corners, double width, MeshReport& report) {
   std::vector<Box> boxes;
   for (const OpenEdge& e : edges) {
     Box box(mesh.vertices[e.from]);
@@ -59,7 +59,7 @@ void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges, cons
   }
 }
 
-void find_near_vertices(const Mesh& mesh, const Edges& open, std::vector<VertexId> corners, double width,
+void find_near_vertices(const Mesh& mesh, const OpenKeys& open, std::vector<VertexId> corners, double width,
                         MeshReport& report) {
   // One vertex for each position.
   const auto before = [&](VertexId u, VertexId v) {
@@ -81,7 +81,7 @@ void find_near_vertices(const Mesh& mesh, const Edges& open, std::vector<VertexI
         Box(x.array() - width, x.array() + width), [&](const Box&) { return !found; },
         [&](std::uint32_t i) {
           const VertexId u = corners[i];
-          if (found || i >= j || open.contains(key(u, v)) || open.contains(key(v, u))) return;
+          if (found || i >= j || open.contains(seam_key(u, v)) || open.contains(seam_key(v, u))) return;
           found = (mesh.vertices[u] - x).norm() <= width;
           if (found) note(report, MeshFault::near_vertex, std::min(u, v), std::max(u, v));
         });
@@ -92,10 +92,10 @@ void find_near_vertices(const Mesh& mesh, const Edges& open, std::vector<VertexI
 
 void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report) {
   if (mesh.dim == 2 || report[MeshFault::open_edge].count == 0) return;
-  Edges open;
+  OpenKeys open;
   for (const BoundaryLoop& loop : find_boundary_loops(mesh, use))
     for (std::size_t i = 0; i < loop.edges(); ++i)
-      open.insert(key(loop.vertices[i], loop.vertices[(i + 1) % loop.vertices.size()]));
+      open.insert(seam_key(loop.vertices[i], loop.vertices[(i + 1) % loop.vertices.size()]));
   std::vector<OpenEdge> edges;
   std::vector<VertexId> corners;
   for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
@@ -103,7 +103,7 @@ void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& 
     const auto face = mesh.face(FaceId(f));
     for (std::size_t i = 0; i < face.size(); ++i) {
       const VertexId from = face[i], to = face[(i + 1) % face.size()];
-      if (!open.contains(key(from, to))) continue;
+      if (!open.contains(seam_key(from, to))) continue;
       edges.push_back({from, to, FaceId(f)});
       corners.insert(corners.end(), {from, to});
     }

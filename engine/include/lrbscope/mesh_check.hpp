@@ -51,8 +51,8 @@ struct MeshFinding {
   static constexpr std::size_t kShown = 8;  ///< number of affected elements printed by default
   std::uint64_t count = 0;
   /// The first affected elements, ascending, at most MeshReport::kept. Each is one of: a vertex, face or
-  /// component (by its first face) and kNull; two faces or vertices; a face and its vertex; a vertex and the face
-  /// that it touches; an edge by its vertices (2D: a vertex and kNull).
+  /// component (by its first face) and kNull; two faces or vertices; a face and its vertex; a vertex and the
+  /// face that it touches; an edge by its vertices (2D: a vertex and kNull).
   std::vector<std::array<std::uint32_t, 2>> first;
 };
 
@@ -145,8 +145,9 @@ struct SurfaceTopology {
 /// cancel each other.
 SurfaceTopology analyse_topology(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
 
-/// Reports the likely causes of open edges: vertices on the open edge of another face, and vertices that nearly
-/// coincide, within 1e-6 of the diagonal of the open edges' box. At most one of each for a vertex. 3D only.
+/// Reports the likely causes of open edges: vertices on the open edge of another face, and vertices that
+/// nearly coincide, within 1e-6 of the diagonal of the open edges' box. At most one of each for a vertex. 3D
+/// only.
 void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
 
 // A mesh with the results of its checks, so that no check runs twice.

@@ -99,7 +99,8 @@ TEST_CASE("an animated PNG has all frames in one file") {
   }
   // Equal frames extend the one before; frames of another size are rejected.
   const std::string twice = run::animated_png({frames[0], frames[0], frames[1]});
-  CHECK(data_of(twice, "fcTL", 0).substr(20, 4) == std::string("\0\10\0\14", 4));  // 2 and 6 twelfths of a second
+  CHECK(data_of(twice, "fcTL", 0).substr(20, 4) ==
+        std::string("\0\10\0\14", 4));  // 2 and 6 twelfths of a second
   CHECK(twice.size() < png.size());
   const std::vector<std::uint8_t> small = render::encode_png(render::Image(5, 5));
   CHECK_THROWS_AS(run::animated_png({frames[0], {small.begin(), small.end()}}), InputError);
