@@ -12,10 +12,6 @@ namespace lrb::trace {
 
 namespace {
 
-std::uint16_t saturated(std::uint32_t value) {
-  return static_cast<std::uint16_t>(std::min(value, std::uint32_t{0xffff}));
-}
-
 /// Returns a deviation as stored in events; negative means not measured.
 float deviation_of(double off) {
   return off < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(off);
@@ -23,17 +19,23 @@ float deviation_of(double off) {
 
 }  // namespace
 
-ConstructRecorder::ConstructRecorder(RecorderSettings settings) : settings_(std::move(settings)) {
+EventStore::EventStore(RecorderSettings settings) : settings_(std::move(settings)) {
+  // Event ids must fit: kNull is reserved.
   settings_.event_cap = std::min(settings_.event_cap, kMaxId);
-  push(Event::of(payload::Step{}));
 }
 
-EventId ConstructRecorder::push(const Event& event) {
-  ++seen_;
-  if (trace_.events.size() >= settings_.event_cap) return kNull;
-  trace_.events.push_back(event);
-  if (settings_.clock == Clock::wall) trace_.wall_ns.push_back(clock_.now_ns());
-  return static_cast<EventId>(trace_.events.size() - 1);
+void EventStore::start_over() {
+  trace_ = {};
+  static_cast<TraceSettings&>(trace_.header) = settings_;
+  seen_ = 0;
+  clock_ = {};
+}
+
+ConstructRecorder::ConstructRecorder(RecorderSettings settings) : EventStore(std::move(settings)) {
+  settings_.level = EventLevel::faces;
+  settings_.coherent = false;
+  start_over();
+  push(Event::of(payload::Step{}));
 }
 
 void ConstructRecorder::pass(const PassStart& start) {
@@ -83,14 +85,8 @@ void ConstructRecorder::closed(std::uint32_t) {
 }
 
 Trace ConstructRecorder::take(const LrbRep& rep, const Pose& pose) {
-  TraceHeader& header = trace_.header;
-  header.scenario = settings_.scenario;
-  header.scenario_hash = settings_.scenario_hash;
-  header.bodies = {describe_body(rep, settings_.sources[0])};
-  header.request = settings_.request;
-  header.clock = settings_.clock;
-  header.event_cap = settings_.event_cap;
-  header.construction = true;
+  trace_.header.bodies = {describe_body(rep, settings_.sources[0])};
+  trace_.header.construction = true;
   // A construction is one step whose result is the body itself.
   Step step;
   step.pose_a = pose;
@@ -99,7 +95,7 @@ Trace ConstructRecorder::take(const LrbRep& rep, const Pose& pose) {
 
   // Regions are known only now: replay them outward from the mesh to add face counts.
   const LrbRep* reps[] = {&rep};
-  Replay front(reps, header.request.wrapper, true);
+  Replay front(reps, settings_.request.wrapper, true);
   for (Event& e : trace_.events) {
     if (e.kind == EventKind::region) {
       payload::WrapperChange change = e.wrapper_change();
@@ -174,38 +170,25 @@ void find_axes(Trace& trace, const std::array<const LrbRep*, 2>& reps) {
 }  // namespace
 
 Recorder::Recorder(const LrbRep& a, const LrbRep& b, RecorderSettings settings)
-    : reps_{&a, &b}, settings_(std::move(settings)) {
+    : EventStore(std::move(settings)), reps_{&a, &b} {
   start_over();
 }
 
 Recorder::Recorder(const LrbRep& a, RecorderSettings settings)
-    : reps_{&a, nullptr}, settings_(std::move(settings)) {
+    : EventStore(std::move(settings)), reps_{&a, nullptr} {
   start_over();
 }
 
 void Recorder::start_over() {
-  // Event ids must fit: kNull is reserved.
-  settings_.event_cap = std::min(settings_.event_cap, kMaxId);
-  trace_ = {};
-  TraceHeader& header = trace_.header;
-  header.scenario = settings_.scenario;
-  header.scenario_hash = settings_.scenario_hash;
-  header.request = settings_.request;
-  header.clock = settings_.clock;
-  header.event_cap = settings_.event_cap;
-  header.level = settings_.level;
-  header.engine = settings_.engine;
-  header.names = settings_.names;
-  header.coherent = settings_.coherent;
+  EventStore::start_over();
   for (std::size_t side = 0; side < 2; ++side) {
     if (!reps_[side]) continue;
-    header.bodies.push_back(describe_body(*reps_[side], settings_.sources[side]));
+    trace_.header.bodies.push_back(describe_body(*reps_[side], settings_.sources[side]));
     refined_by_[side].assign(reps_[side]->region_count(), 0);
   }
-  seen_ = seen_before_step_ = 0;
+  seen_before_step_ = 0;
   step_event_ = 0;
   last_hit_ = last_test_ = last_pair_ = phase_ = kNull;
-  clock_ = {};
 }
 
 void Recorder::close_step() {
@@ -237,30 +220,6 @@ void Recorder::begin_step(std::uint32_t index, const Pose& pose_a, const Pose& p
 Step& Recorder::step_to_add_to() {
   if (trace_.steps.empty()) throw std::logic_error("Recorder::add: call begin_step() first");
   return trace_.steps.back();
-}
-
-void Recorder::add(MeasuredDistance distance) {
-  step_to_add_to().result.distance = std::move(distance);
-}
-
-void Recorder::add(MeasuredClash clash) {
-  step_to_add_to().result.clash = std::move(clash);
-}
-
-void Recorder::add(MeasuredNearPairs near) {
-  step_to_add_to().result.near = std::move(near);
-}
-
-void Recorder::add(MeasuredManifolds manifold) {
-  step_to_add_to().result.manifold = std::move(manifold);
-}
-
-void Recorder::add(MeasuredPoints points) {
-  step_to_add_to().result.points = std::move(points);
-}
-
-void Recorder::add(EngineReport report) {
-  step_to_add_to().result.engine = std::move(report);
 }
 
 void Recorder::end_step(const CollideResult& result) {

@@ -210,13 +210,6 @@ bool equal(const Step& x, const Step& y) {
          x.result == y.result;
 }
 
-bool equal(const TraceHeader& x, const TraceHeader& y) {
-  return x.lrbscope == y.lrbscope && x.scenario == y.scenario && x.scenario_hash == y.scenario_hash &&
-         x.bodies == y.bodies && x.request == y.request && x.clock == y.clock && x.event_cap == y.event_cap &&
-         x.level == y.level && x.engine == y.engine && x.names == y.names && x.coherent == y.coherent &&
-         x.construction == y.construction && x.first_contact == y.first_contact && x.pictures == y.pictures;
-}
-
 /// Checks the parts of one trace; every failure is one line that names the event or step.
 class Checker {
  public:
@@ -398,7 +391,7 @@ class Checker {
 }  // namespace
 
 bool operator==(const Trace& x, const Trace& y) {
-  return equal(x.header, y.header) &&
+  return x.header == y.header &&
          std::equal(x.steps.begin(), x.steps.end(), y.steps.begin(), y.steps.end(),
                     [](const Step& p, const Step& q) { return equal(p, q); }) &&
          x.events == y.events && x.wall_ns == y.wall_ns && x.events_seen == y.events_seen &&

@@ -285,11 +285,7 @@ class QueryReplay {
 
 trace::RecorderSettings recorder_settings(const capture::Capture& capture,
                                           const CapturedRunSettings& settings) {
-  trace::RecorderSettings out;
-  out.scenario = settings.name;
-  out.scenario_hash = settings.hash;
-  out.sources = settings.sources;
-  out.event_cap = settings.event_cap;
+  trace::RecorderSettings out = settings;
   out.level = EventLevel::nodes;
   out.engine = capture.engine.empty() ? "another engine" : capture.engine;
   out.names = capture.names;
@@ -434,8 +430,8 @@ std::vector<bodies::LoadedBody> captured_bodies(const capture::Capture& c, const
 CapturedRunSettings captured_settings(const spec::Scenario& scenario, const capture::Capture& c,
                                       const TreePair& pair, const std::string& file) {
   CapturedRunSettings out;
-  out.name = scenario.name;
-  out.hash = scenario.hash;
+  out.scenario = scenario.name;
+  out.scenario_hash = scenario.hash;
   for (std::size_t side = 0; side < 2; ++side)
     out.sources[side] = file + ", " + mesh_name(c, pair.trees[side]);
   out.event_cap = scenario.event_cap;

@@ -13,6 +13,7 @@
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/trace/capture.hpp>
+#include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/work.hpp>
 
 namespace lrb::profile {
@@ -48,11 +49,7 @@ TreePairs tree_pairs(const capture::Capture& capture);
 /// mesh without triangles, or with coordinates that are not finite.
 bodies::LoadedBody captured_body(const capture::Mesh& mesh);
 
-struct CapturedRunSettings {
-  std::string name;        ///< of the run
-  std::uint64_t hash = 0;  ///< of what defines the run
-  std::array<std::string, 2> sources;
-  std::uint32_t event_cap = 1'000'000;
+struct CapturedRunSettings : trace::RecorderSettings {
   bool check = true;  ///< compute the exact answers
 };
 

@@ -62,7 +62,7 @@ std::vector<capture::Mesh> meshes_of_all_kinds() {
 
 run::Recording recorded(const capture::Capture& c, const profile::TreePair& pair,
                         profile::CapturedRunSettings settings = {}) {
-  settings.name = "test";
+  settings.scenario = "test";
   std::vector<bodies::LoadedBody> bodies;
   for (const std::uint32_t tree : pair.trees)
     bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));

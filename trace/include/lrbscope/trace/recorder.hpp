@@ -13,7 +13,10 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <lrbscope/build.hpp>
@@ -40,22 +43,39 @@ class WallClock {
   std::uint64_t last_ns_ = 0;
 };
 
-struct RecorderSettings {
-  std::string scenario;  ///< name
-  std::uint64_t scenario_hash = 0;
+struct RecorderSettings : TraceSettings {
   std::array<std::string, 2> sources;  ///< origin of the bodies, as given by the user
-  CollideRequest request;              ///< as passed to collide(): determines what can cause a refinement
-  Clock clock = Clock::event;
-  std::uint32_t event_cap =
-      1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
-  EventLevel level = EventLevel::faces;
-  /// Name of another engine whose traversal is recorded over its own trees; empty: lrbscope.
-  std::string engine;
-  std::vector<std::string> names;  ///< of that engine's counters and phases
-  bool coherent = false;           ///< each step continues from the previous one
 };
 
-class Recorder final : public CollideProbe {
+/// What recorders have in common: events with time stamps, up to the cap.
+class EventStore {
+ protected:
+  explicit EventStore(RecorderSettings settings);
+
+  static std::uint16_t saturated(std::uint32_t value) {
+    return static_cast<std::uint16_t>(std::min(value, std::uint32_t{0xffff}));
+  }
+
+  EventId push(const Event& event) {
+    ++seen_;
+    if (trace_.events.size() >= settings_.event_cap) return kNull;
+    trace_.events.push_back(event);
+    if (settings_.clock == Clock::wall) trace_.wall_ns.push_back(clock_.now_ns());
+    return static_cast<EventId>(trace_.events.size() - 1);
+  }
+
+  /// Empties the store, so that it can record another run with the same settings.
+  void start_over();
+
+  RecorderSettings settings_;
+  Trace trace_;
+  std::uint64_t seen_ = 0;
+
+ private:
+  WallClock clock_;
+};
+
+class Recorder final : public CollideProbe, private EventStore {
  public:
   static constexpr bool kEnabled = true;
 
@@ -67,13 +87,13 @@ class Recorder final : public CollideProbe {
   /// Begins a time step and resets both wrappers to the outermost ones. Throws InputError unless `index`
   /// ascends and the poses are finite.
   void begin_step(std::uint32_t index, const Pose& pose_a, const Pose& pose_b = {});
-  /// Adds a measurement to the current step. Call before end_step().
-  void add(MeasuredDistance distance);
-  void add(MeasuredClash clash);
-  void add(MeasuredNearPairs near);
-  void add(MeasuredManifolds manifold);
-  void add(MeasuredPoints points);
-  void add(EngineReport report);
+  /// Adds a measurement to the current step, as in StepResult. Call before end_step().
+  template <class Measured>
+  void add(Measured measured) {
+    StepResult& result = step_to_add_to().result;
+    std::get<std::optional<Measured>&>(std::tie(result.distance, result.clash, result.near, result.manifold,
+                                                result.points, result.engine)) = std::move(measured);
+  }
   void end_step(const CollideResult& result);
 
   void face_test(SimplexId a, SimplexId b, exact::Meet meet, std::uint32_t depth_a,
@@ -158,10 +178,6 @@ class Recorder final : public CollideProbe {
   Trace take();
 
  private:
-  static std::uint16_t saturated(std::uint32_t depth) {
-    return static_cast<std::uint16_t>(std::min(depth, std::uint32_t{0xffff}));
-  }
-
   /// In the paper's recursion, returns the face test that has just hit. Returns kNull for the complete query:
   /// it refines regions before it tests the faces behind them, because bounds overlap, so no event is the
   /// cause.
@@ -179,29 +195,17 @@ class Recorder final : public CollideProbe {
     return by > step_event_ ? by : 0;
   }
 
-  EventId push(const Event& event) {
-    ++seen_;
-    if (trace_.events.size() >= settings_.event_cap) return kNull;
-    trace_.events.push_back(event);
-    if (settings_.clock == Clock::wall) trace_.wall_ns.push_back(clock_.now_ns());
-    return static_cast<EventId>(trace_.events.size() - 1);
-  }
-
   Step& step_to_add_to();
   void start_over();
   void close_step();
 
   std::array<const LrbRep*, 2> reps_{};
-  RecorderSettings settings_;
-  Trace trace_;
   std::array<std::vector<std::uint32_t>, 2>
       refined_by_;  ///< per region: 1 + refine event, of this step or an earlier one
-  std::uint64_t seen_ = 0;
   std::uint64_t seen_before_step_ = 0;
   EventId step_event_ = 0;    ///< first event of the current step
   EventId last_hit_ = kNull;  ///< the last face test, if it hit
   EventId last_test_ = kNull, last_pair_ = kNull, phase_ = kNull;
-  WallClock clock_;
 };
 
 // Records the events of a builder as a trace.
@@ -213,7 +217,7 @@ class Recorder final : public CollideProbe {
 // Trace trace = recorder.take(rep, pose);
 // ```
 
-class ConstructRecorder final : public ConstructProbe {
+class ConstructRecorder final : public ConstructProbe, private EventStore {
  public:
   explicit ConstructRecorder(RecorderSettings settings);
 
@@ -233,12 +237,6 @@ class ConstructRecorder final : public ConstructProbe {
   Trace take(const LrbRep& rep, const Pose& pose);
 
  private:
-  EventId push(const Event& event);
-
-  RecorderSettings settings_;
-  Trace trace_;
-  WallClock clock_;
-  std::uint64_t seen_ = 0;
   EventId pass_ = kNull, patch_ = kNull, cap_ = kNull;
 };
 

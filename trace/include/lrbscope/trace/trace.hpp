@@ -80,24 +80,34 @@ struct Step {
   StepResult result;
 };
 
-struct TraceHeader {
-  std::string lrbscope = lrbscope_version();
+/// Settings of a recording that its trace repeats.
+struct TraceSettings {
   std::string scenario;  ///< name
   std::uint64_t scenario_hash =
-      0;  ///< hash of the scenario file's bytes, or of the other input that defines the run
-  std::vector<BodyInfo> bodies;  ///< A and B, or A alone
-  CollideRequest request;
+      0;                   ///< hash of the scenario file's bytes, or of the other input that defines the run
+  CollideRequest request;  ///< as passed to collide(): determines what can cause a refinement
   Clock clock = Clock::event;
-  std::uint32_t event_cap = 0;  ///< maximum number of stored events
+  std::uint32_t event_cap =
+      1'000'000;  ///< events beyond this number are counted but not stored (at most kMaxId)
   EventLevel level = EventLevel::faces;
-  std::string engine;              ///< name of the recorded engine; empty: lrbscope
+  /// Name of another engine whose traversal is recorded over its own trees; empty: lrbscope.
+  std::string engine;
   std::vector<std::string> names;  ///< of that engine's counters and phases
   bool coherent = false;           ///< each step continues from the previous one, by a CoherentQuery
+
+  friend bool operator==(const TraceSettings&, const TraceSettings&) = default;
+};
+
+struct TraceHeader : TraceSettings {
+  std::string lrbscope = lrbscope_version();
+  std::vector<BodyInfo> bodies;  ///< A and B, or A alone
   /// The construction of one body: its wrapper, the front, starts as the body itself and grows.
   bool construction = false;
   std::optional<MeasuredApproach> first_contact;  ///< of the motion; nullopt: not searched for
   std::string pictures;  ///< rendering options of the run, as a JSON object that is stored unread; empty: not
                          ///< recorded
+
+  friend bool operator==(const TraceHeader&, const TraceHeader&) = default;
 };
 
 struct Trace {
