@@ -162,20 +162,6 @@ report::Table engine_table(const RecordedRun& p) {
   const bool has_times = any([](const auto& r) { return r.duration_ns > 0; });
   const bool checked = is_checked(p);
   report::Table t{"Every query", {"query"}};
-  const auto column = [&](bool is_shown, const char* name) {
-    if (is_shown) t.columns.emplace_back(name);
-  };
-  column(has_kinds, "kind");
-  column(true, "engine's verdict");
-  column(checked, "exact");
-  column(true, "engine's pairs");
-  column(checked, "right");
-  column(checked, "missed");
-  column(checked, "false");
-  column(true, "tests of volumes");
-  column(true, "tests of triangles");
-  column(has_times, "microseconds");
-  column(has_threads, "thread");
   // With many queries, the wrong ones are shown, then those with the most tests.
   std::vector<std::size_t> order(trace.steps.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -195,28 +181,33 @@ report::Table engine_table(const RecordedRun& p) {
     std::vector<std::string>& row = t.rows.emplace_back();
     row.push_back(std::to_string(trace.steps[i].index));
     t.targets.push_back("step " + row.back());
-    const auto cell = [&](bool is_shown, std::string text) {
+    const auto cell = [&](bool is_shown, const char* column, std::string text) {
+      if (is_shown && t.rows.size() == 1) t.columns.emplace_back(column);
       if (is_shown) row.push_back(std::move(text));
     };
     const AnswerScore score = checked ? score_at(p, i) : AnswerScore();
     const bool is_compared = run::is_compared(report);
     const auto number = [&](std::uint64_t n) { return is_compared ? group_digits(n) : std::string(); };
-    cell(has_kinds, io::in_words(name_of(report.query)));
-    cell(true, std::string(name_of(report.verdict)) + (score.verdict == false ? ", wrong" : ""));
-    cell(checked, checked && is_compared ? (*p.results)[i].pairs.empty()
-                                               ? "no pairs"
-                                               : group_digits((*p.results)[i].pairs.size()) + " pairs"
-                                         : "");
-    cell(true, group_digits(report.pairs));
-    cell(checked, number(score.right));
-    cell(checked, number(score.missed));
-    cell(checked, number(score.false_pairs));
-    cell(true, group_digits(r.counters.box_tests) + (report.complete ? "" : ", incomplete"));
-    cell(true, group_digits(r.counters.face_tests));
+    cell(has_kinds, "kind", io::in_words(name_of(report.query)));
+    cell(true, "engine's verdict",
+         std::string(name_of(report.verdict)) + (score.verdict == false ? ", wrong" : ""));
+    cell(checked, "exact",
+         checked && is_compared ? (*p.results)[i].pairs.empty()
+                                      ? "no pairs"
+                                      : group_digits((*p.results)[i].pairs.size()) + " pairs"
+                                : "");
+    cell(true, "engine's pairs", group_digits(report.pairs));
+    cell(checked, "right", number(score.right));
+    cell(checked, "missed", number(score.missed));
+    cell(checked, "false", number(score.false_pairs));
+    cell(true, "tests of volumes",
+         group_digits(r.counters.box_tests) + (report.complete ? "" : ", incomplete"));
+    cell(true, "tests of triangles", group_digits(r.counters.face_tests));
     const double micros = 1e-3 * static_cast<double>(report.duration_ns);
-    cell(has_times, micros < 1000 ? render::short_number(micros)
-                                  : group_digits(static_cast<std::uint64_t>(std::llround(micros))));
-    cell(has_threads, std::to_string(report.thread));
+    cell(has_times, "microseconds",
+         micros < 1000 ? render::short_number(micros)
+                       : group_digits(static_cast<std::uint64_t>(std::llround(micros))));
+    cell(has_threads, "thread", std::to_string(report.thread));
   }
   t.note = "A click on a row shows the query.";
   if (checked)

@@ -262,63 +262,61 @@ std::string coarse_text(const CollideRequest& request) {
 }
 
 report::Table steps_table(const trace::Trace& trace) {
-  report::Table t{"Every time step", {"step", "relation", "pairs"}};
+  using render::group_digits;
+  using trace::StepResult;
+  report::Table t{"Every time step", {"step"}};
+  for (const trace::Step& s : trace.steps) {
+    t.rows.push_back({std::to_string(s.index)});
+    t.targets.push_back("step " + t.rows.back()[0]);
+  }
+  const auto column = [&](const char* name, const auto& cell) {
+    t.columns.emplace_back(name);
+    for (std::size_t i = 0; i < t.rows.size(); ++i) t.rows[i].push_back(cell(trace.steps[i].result));
+  };
+  const auto count = [&](const char* name, std::uint64_t Counters::*counter) {
+    column(name, [&](const StepResult& r) { return group_digits(r.counters.*counter); });
+  };
+  /// Adds a column of a measurement that some step has.
+  const auto measured = [&](const char* name, auto what, const auto& text) {
+    if (!was_measured(trace, what)) return;
+    column(name, [&](const StepResult& r) { return r.*what ? text(*(r.*what)) : std::string(); });
+  };
   const CollideRequest& request = trace.header.request;
   const bool timed = !trace.wall_ns.empty();
   const bool has_trees = request.recursion == Recursion::complete;
-  if (timed) t.columns.emplace_back("microseconds");
   const bool is_ours =
       trace.header.engine.empty();  // other engines have neither wrappers nor tests of planes
-  if (has_trees) t.columns.emplace_back("box tests");
-  if (has_trees && is_ours) t.columns.emplace_back("plane tests");
-  t.columns.emplace_back("face tests");
-  if (is_ours) t.columns.emplace_back("refinements");
-  t.columns.emplace_back("fingerprint");
-  if (request.is_coarse()) t.columns.insert(t.columns.end(), {"error bound", "finished"});
-  if (request.separation) t.columns.emplace_back("proof of separation");
-  const bool has_distance = was_measured(trace, &trace::StepResult::distance);
-  const bool has_clash = was_measured(trace, &trace::StepResult::clash);
-  if (has_distance) t.columns.emplace_back("distance");
-  if (has_clash) t.columns.insert(t.columns.end(), {"contact kind", "depth"});
-  const bool has_near = was_measured(trace, &trace::StepResult::near);
-  const bool has_manifold = was_measured(trace, &trace::StepResult::manifold);
-  if (has_near) t.columns.emplace_back("near pairs");
-  if (has_manifold) t.columns.insert(t.columns.end(), {"contact manifolds", "points"});
-  const bool has_points = was_measured(trace, &trace::StepResult::points);
-  if (has_points) t.columns.insert(t.columns.end(), {"points inside", "smallest distance"});
-  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
-    const trace::Step& s = trace.steps[i];
-    const Counters& counters = s.result.counters;
-    t.rows.push_back({std::to_string(s.index), io::in_words(name_of(s.result.relation)),
-                      render::group_digits(s.result.pair_count)});
-    t.targets.push_back("step " + t.rows.back()[0]);
-    std::vector<std::string>& row = t.rows.back();
-    constexpr double kMicros = 1e6;
-    if (timed) row.push_back(render::short_number(kMicros * std::fmax(0, trace::seconds_of_step(trace, i))));
-    if (has_trees) row.push_back(render::group_digits(counters.box_tests));
-    if (has_trees && is_ours) row.push_back(render::group_digits(counters.prefilter_tests));
-    row.push_back(render::group_digits(counters.face_tests));
-    if (is_ours) row.push_back(render::group_digits(counters.refinements));
-    row.push_back(trace::to_hex(s.result.fingerprint));
-    if (request.is_coarse())
-      row.insert(row.end(), {s.result.error_bound == 0 ? "0" : error_bound_text(s.result.error_bound),
-                             s.result.finished ? "yes" : "no"});
-    if (request.separation) row.push_back(s.result.separation ? faces_text(*s.result.separation) : "");
-    if (const auto& d = s.result.distance; has_distance)
-      row.push_back(d ? interval_text(d->lower, d->upper) : "");
-    if (const auto& c = s.result.clash; has_clash)
-      row.insert(row.end(), {c ? kind_text(c->kind, c->reason) : "",
-                             c && c->depth ? interval_text((*c->depth)[0], (*c->depth)[1]) : ""});
-    if (const auto& n = s.result.near; has_near) row.push_back(n ? render::group_digits(n->pairs) : "");
-    if (const auto& m = s.result.manifold; has_manifold)
-      row.insert(row.end(),
-                 {m ? render::group_digits(m->manifolds) : "", m ? render::group_digits(m->found) : ""});
-    if (const auto& p = s.result.points; has_points)
-      row.insert(
-          row.end(),
-          {p && p->has_sides ? render::group_digits(p->inside) : "",
-           p && !p->smallest.empty() ? interval_text(p->smallest[0].lower, p->smallest[0].upper) : ""});
+  column("relation", [](const StepResult& r) { return io::in_words(name_of(r.relation)); });
+  column("pairs", [](const StepResult& r) { return group_digits(r.pair_count); });
+  if (timed) t.columns.emplace_back("microseconds");
+  for (std::size_t i = 0; timed && i < t.rows.size(); ++i)
+    t.rows[i].push_back(render::short_number(1e6 * std::fmax(0, trace::seconds_of_step(trace, i))));
+  if (has_trees) count("box tests", &Counters::box_tests);
+  if (has_trees && is_ours) count("plane tests", &Counters::prefilter_tests);
+  count("face tests", &Counters::face_tests);
+  if (is_ours) count("refinements", &Counters::refinements);
+  column("fingerprint", [](const StepResult& r) { return trace::to_hex(r.fingerprint); });
+  if (request.is_coarse()) {
+    column("error bound",
+           [](const StepResult& r) { return r.error_bound == 0 ? "0" : error_bound_text(r.error_bound); });
+    column("finished", [](const StepResult& r) { return r.finished ? "yes" : "no"; });
   }
+  if (request.separation)
+    column("proof of separation",
+           [](const StepResult& r) { return r.separation ? faces_text(*r.separation) : ""; });
+  measured("distance", &StepResult::distance, [](const auto& d) { return interval_text(d.lower, d.upper); });
+  measured("contact kind", &StepResult::clash, [](const auto& c) { return kind_text(c.kind, c.reason); });
+  measured("depth", &StepResult::clash,
+           [](const auto& c) { return c.depth ? interval_text((*c.depth)[0], (*c.depth)[1]) : ""; });
+  measured("near pairs", &StepResult::near, [](const auto& n) { return group_digits(n.pairs); });
+  measured("contact manifolds", &StepResult::manifold,
+           [](const auto& m) { return group_digits(m.manifolds); });
+  measured("points", &StepResult::manifold, [](const auto& m) { return group_digits(m.found); });
+  measured("points inside", &StepResult::points,
+           [](const auto& p) { return p.has_sides ? group_digits(p.inside) : ""; });
+  measured("smallest distance", &StepResult::points, [](const auto& p) {
+    return p.smallest.empty() ? "" : interval_text(p.smallest[0].lower, p.smallest[0].upper);
+  });
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
   if (timed) t.note += " Microseconds: from the first to the last event of the step, recording included.";
   if (request.is_coarse()) t.note += " An error bound of 0: the answer is exact.";
