@@ -37,21 +37,9 @@ capture::Capture open_capture(const std::string& path, const QueryRange& range) 
 }
 
 ordered_json json_of(const profile::Prices& p) {
-  return {{"visits", p.visits},
-          {"needed", p.needed},
-          {"proof", p.proof},
-          {"test", p.test},
-          {"volumes", p.volumes},
-          {"order", p.order},
-          {"unsplit", p.unsplit},
-          {"unattributed", p.unattributed},
-          {"volume_tests", p.volume_tests},
-          {"triangle_tests", p.triangle_tests},
-          {"triangle_tests_for_nothing", p.triangle_tests_for_nothing},
-          {"crowded_tests", p.crowded_tests},
-          {"triangles_by_volumes", p.triangles_by_volumes},
-          {"triangles_by_test", p.triangles_by_test},
-          {"triangles_by_order", p.triangles_by_order}};
+  ordered_json out;
+  for (const auto& [name, count] : profile::kPriceCounts) out[name] = p.*count;
+  return out;
 }
 
 ordered_json json_of(const profile::WrongPair& w) {
@@ -101,30 +89,6 @@ std::string json_lines(const profile::Check& c) {
   return out + one_line(std::move(last));
 }
 
-/// Returns the number of characters of UTF-8 text.
-std::size_t display_width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-/// Returns a table in columns: text to the left, numbers to the right.
-std::string columns_of(const report::Table& table) {
-  std::vector<std::vector<std::string>> rows{table.columns};
-  rows.insert(rows.end(), table.rows.begin(), table.rows.end());
-  std::string out;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      std::size_t width = 0;
-      for (const auto& other : rows) width = std::max(width, display_width(other[i]));
-      const std::string gap(width - display_width(row[i]), ' ');
-      constexpr std::size_t kTexts = 2;  // the engine and the kind of query
-      out += (i == 0 ? "" : "  ") + (i < kTexts ? row[i] + gap : gap + row[i]);
-    }
-    out += "\n";
-  }
-  return out;
-}
-
 /// Returns the first lines of a list, and how many are left out.
 std::string first_lines(const std::vector<std::string>& lines) {
   constexpr std::size_t kShown = 10;
@@ -141,7 +105,8 @@ std::string text_of(const std::vector<profile::Check>& checks) {
          {std::pair{"wrong", &c.wrong}, {"undecidable in floats", &c.undecidable}})
       if (!lines->empty())
         out += c.engine + ": " + std::to_string(lines->size()) + " " + head + "\n" + first_lines(*lines);
-  out += columns_of(profile::verdict_table(checks)) + "\n" + columns_of(profile::price_table(checks)) + "\n";
+  out += report::in_columns(profile::verdict_table(checks), 2) + "\n" +
+         report::in_columns(profile::price_table(checks), 2) + "\n";
   for (const profile::Check& c : checks) {
     for (const std::string& doubt : {c.pose_error, c.tree_faults})
       if (!doubt.empty()) out += c.engine + ": " + doubt + "\n";

@@ -7,6 +7,7 @@
 #include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/assets.hpp"
+#include "scenarios/report/document.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -153,9 +154,7 @@ void add_legend(Sheet& sheet, double y, double columns, const std::string& absen
   double x = -kLeft + 0.1;
   const auto item = [&](render::Rgba c, const std::string& text) {
     constexpr double kCharacter = 0.066;
-    const auto characters = std::count_if(
-        text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; });  // UTF-8 code points
-    const double needed = 0.35 + kCharacter * static_cast<double>(characters) + 0.2;
+    const double needed = 0.35 + kCharacter * static_cast<double>(report::characters_of(text)) + 0.2;
     if (x + needed > columns) {
       x = -kLeft + 0.1;
       y -= 0.42;

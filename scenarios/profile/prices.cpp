@@ -209,21 +209,7 @@ bool is_crowded(const QueryWalk& walk, std::size_t event) {
 }  // namespace
 
 Prices& Prices::operator+=(const Prices& other) {
-  visits += other.visits;
-  needed += other.needed;
-  proof += other.proof;
-  test += other.test;
-  volumes += other.volumes;
-  order += other.order;
-  unsplit += other.unsplit;
-  unattributed += other.unattributed;
-  volume_tests += other.volume_tests;
-  triangle_tests += other.triangle_tests;
-  triangle_tests_for_nothing += other.triangle_tests_for_nothing;
-  crowded_tests += other.crowded_tests;
-  triangles_by_volumes += other.triangles_by_volumes;
-  triangles_by_test += other.triangles_by_test;
-  triangles_by_order += other.triangles_by_order;
+  for (const auto& [name, count] : kPriceCounts) this->*count += other.*count;
   for (std::size_t i = 0; i < saved_by_leaves.size(); ++i) saved_by_leaves[i] += other.saved_by_leaves[i];
   return *this;
 }

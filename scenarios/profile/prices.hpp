@@ -39,6 +39,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/profile/query_walk.hpp"
@@ -86,6 +87,25 @@ struct Prices {
   std::uint64_t wasted() const { return test + volumes + order + unsplit; }
   Prices& operator+=(const Prices& other);
   friend bool operator==(const Prices&, const Prices&) = default;
+};
+
+/// The names of the counts in JSON.
+inline constexpr std::pair<const char*, std::uint64_t Prices::*> kPriceCounts[] = {
+    {"visits", &Prices::visits},
+    {"needed", &Prices::needed},
+    {"proof", &Prices::proof},
+    {"test", &Prices::test},
+    {"volumes", &Prices::volumes},
+    {"order", &Prices::order},
+    {"unsplit", &Prices::unsplit},
+    {"unattributed", &Prices::unattributed},
+    {"volume_tests", &Prices::volume_tests},
+    {"triangle_tests", &Prices::triangle_tests},
+    {"triangle_tests_for_nothing", &Prices::triangle_tests_for_nothing},
+    {"crowded_tests", &Prices::crowded_tests},
+    {"triangles_by_volumes", &Prices::triangles_by_volumes},
+    {"triangles_by_test", &Prices::triangles_by_test},
+    {"triangles_by_order", &Prices::triangles_by_order},
 };
 
 /// The visits of one depth of the descent; 0: the roots.

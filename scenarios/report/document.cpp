@@ -8,7 +8,6 @@
 
 #include "render/page_palette.hpp"
 #include <lrbscope/core/file.hpp>
-#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -108,17 +107,22 @@ Folder::~Folder() {
   if (!existed_ && std::filesystem::is_empty(path_, ignored)) std::filesystem::remove(path_, ignored);
 }
 
+std::size_t characters_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
 std::string in_columns(const std::vector<std::vector<std::string>>& rows, std::size_t left) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t i = 0; i + (row.size() == rows[0].size() ? 0 : 1) < row.size(); ++i)
-      widths[i] = std::max(widths[i], row[i].size());
+      widths[i] = std::max(widths[i], characters_of(row[i]));
   }
   std::string out;
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string room(widths[i] - std::min(widths[i], row[i].size()), ' ');
+      const std::string room(widths[i] - std::min(widths[i], characters_of(row[i])), ' ');
       out += (i > 0 ? "  " : "") + (i < left ? row[i] + room : room + row[i]);
     }
     out.erase(out.find_last_not_of(' ') + 1) += "\n";

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,6 +39,8 @@ struct Table {
 /// Returns columns and rows of a table as CSV (RFC 4180), for other programs. Cells with a comma, a quote or
 /// a line break are quoted.
 std::string csv(const Table& table);
+/// Returns the number of characters (code points) of UTF-8 text.
+std::size_t characters_of(std::string_view text);
 /// Returns rows as lines of columns that are two spaces apart: the first `left` aligned left, the others
 /// right. The last cell of a row with more or fewer cells than the first row may exceed its column.
 std::string in_columns(const std::vector<std::vector<std::string>>& rows, std::size_t left = 1);
