@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include <nlohmann/json.hpp>
-#include <poll.h>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/workers/worker_json.hpp"
@@ -225,7 +224,9 @@ class Experiment {
       while (running_.size() < o_.jobs && start_one()) {
       }
       if (running_.empty()) break;
-      wait_for_news();
+      std::vector<workers::Job*> jobs;
+      for (const Running& r : running_) jobs.push_back(r.job.get());
+      workers::wait_for_news(jobs);
       std::erase_if(running_, [](const Running& r) {
         if (r.job->done()) r.on_done();
         return r.job->done();
@@ -337,25 +338,6 @@ class Experiment {
       for (std::vector<Record>& r : open_.front()->records)
         std::move(r.begin(), r.end(), std::back_inserter(records_));
       open_.pop_front();
-    }
-  }
-
-  void wait_for_news() {
-    std::vector<pollfd> waiting;
-    auto deadline = workers::Job::Clock::time_point::max();
-    for (const Running& r : running_) {
-      waiting.push_back({r.job->output(), POLLIN, 0});
-      deadline = std::min(deadline, r.job->deadline());
-    }
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(deadline - workers::Job::Clock::now()).count();
-    poll(waiting.data(), waiting.size(), static_cast<int>(std::max<std::int64_t>(0, left)));
-    std::size_t i = 0;
-    for (const Running& r : running_) {
-      if (waiting[i++].revents != 0)
-        r.job->receive();
-      else if (workers::Job::Clock::now() > r.job->deadline())
-        r.job->expire();
     }
   }
 

@@ -283,15 +283,26 @@ void Job::go_on(const WorkerFailure& failure) {
   start();
 }
 
-void run_to_end(Job job) {
-  while (!job.done()) {
-    pollfd waiting{job.output(), POLLIN, 0};
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(job.deadline() - Job::Clock::now());
-    if (poll(&waiting, 1, static_cast<int>(std::max<std::int64_t>(0, left.count()))) > 0)
-      job.receive();
-    else if (Job::Clock::now() > job.deadline())
-      job.expire();
+void wait_for_news(std::span<Job* const> jobs) {
+  std::vector<pollfd> waiting;
+  auto deadline = Job::Clock::time_point::max();
+  for (const Job* job : jobs) {
+    waiting.push_back({job->output(), POLLIN, 0});
+    deadline = std::min(deadline, job->deadline());
   }
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Job::Clock::now()).count();
+  poll(waiting.data(), waiting.size(), static_cast<int>(std::max<std::int64_t>(0, left)));
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (waiting[i].revents != 0)
+      jobs[i]->receive();
+    else if (Job::Clock::now() > jobs[i]->deadline())
+      jobs[i]->expire();
+  }
+}
+
+void run_to_end(Job job) {
+  Job* const jobs[] = {&job};
+  while (!job.done()) wait_for_news(jobs);
 }
 
 namespace {

@@ -3,10 +3,10 @@
 /// beside lrbscope, and their methods.
 
 #include <chrono>
-#include <cstddef>
 #include <deque>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -168,6 +168,8 @@ class Job {
   Clock::time_point deadline_;
 };
 
+/// Waits for the next output or deadline of jobs that are not done, and passes it to them.
+void wait_for_news(std::span<Job* const> jobs);
 /// Runs a job to its end, with all its lines and failures.
 void run_to_end(Job job);
 
