@@ -89,16 +89,10 @@ NumberAnswer by_tree(const NumberQuery& q, Setting) {
   return out;
 }
 
-NumberMethod cgal_method(const char* name, const char* what, const char* remark,
-                         NumberAnswer (*ask)(const NumberQuery&, Setting), methods::MethodStyle style) {
-  NumberMethod m;
-  m.info.name = name;
-  m.info.title = std::string("CGAL " CGAL_VERSION_STR ", ") + what;
-  m.info.remark = remark;
-  m.info.style = std::move(style);
-  m.quantity = Quantity::near_pairs;
-  m.ask = ask;
-  return m;
+NumberMethod cgal_method(const char* name, const char* what, const char* remark, const Ask& ask,
+                         methods::MethodStyle style) {
+  return number_method(name, std::string("CGAL " CGAL_VERSION_STR ", ") + what, remark, Quantity::near_pairs,
+                       ask, std::move(style));
 }
 
 }  // namespace

@@ -124,17 +124,10 @@ NumberAnswer fcl_near(const NumberQuery& q, Setting) {
   return out;
 }
 
-NumberMethod fcl_method(const char* name, const char* what, const char* remark, Quantity quantity,
-                        std::function<NumberAnswer(const NumberQuery&, Setting)> ask,
+NumberMethod fcl_method(const char* name, const char* what, const char* remark, Quantity quantity, Ask ask,
                         methods::MethodStyle style) {
-  NumberMethod m;
-  m.info.name = name;
-  m.info.title = std::string("FCL " FCL_VERSION ", ") + what;
-  m.info.remark = remark;
-  m.info.style = std::move(style);
-  m.quantity = quantity;
-  m.ask = std::move(ask);
-  return m;
+  return number_method(name, std::string("FCL " FCL_VERSION ", ") + what, remark, quantity, std::move(ask),
+                       std::move(style));
 }
 
 NumberMethod fcl_sweep(const char* name, const char* what, const char* remark, fcl::CCDSolverType solver,

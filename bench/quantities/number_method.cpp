@@ -1,7 +1,6 @@
 #include "bench/quantities/number_method.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -27,6 +26,18 @@ bool is_special(Quantity quantity, double least, double most) {
 }
 
 }  // namespace
+
+NumberMethod number_method(const std::string& name, const std::string& title, const char* remark,
+                           Quantity quantity, Ask ask, methods::MethodStyle style) {
+  NumberMethod m;
+  m.info.name = name;
+  m.info.title = title;
+  m.info.remark = remark;
+  m.info.style = std::move(style);
+  m.quantity = quantity;
+  m.ask = std::move(ask);
+  return m;
+}
 
 NumberMethod with_parameter(NumberMethod m, const char* parameter, std::vector<double> settings) {
   m.info.parameter = parameter;

@@ -65,15 +65,20 @@ struct NumberAnswer {
 /// The value of a method's parameter. nullopt: the setting for tests of correctness.
 using Setting = std::optional<double>;
 
+/// Throws InputError if it has no answer, which counts as a rejection.
+using Ask = std::function<NumberAnswer(const NumberQuery&, Setting)>;
+
 /// A method for one quantity.
 struct NumberMethod {
   methods::MethodInfo info;
   Quantity quantity = Quantity::distance;
   bool proves = false;  ///< its interval must contain the number
-  /// Throws InputError if it has no answer, which counts as a rejection.
-  std::function<NumberAnswer(const NumberQuery&, Setting)> ask;
+  Ask ask;
 };
 
+/// Returns a method without a parameter.
+NumberMethod number_method(const std::string& name, const std::string& title, const char* remark,
+                           Quantity quantity, Ask ask, methods::MethodStyle style);
 /// Returns a method with a parameter named `parameter`, and its settings from coarse to fine.
 NumberMethod with_parameter(NumberMethod m, const char* parameter, std::vector<double> settings);
 

@@ -208,103 +208,72 @@ NumberAnswer plain_self_intersections(const NumberQuery& q, Setting) {
   return out;
 }
 
-NumberMethod plain_list(Quantity quantity, const char* title, const char* remark,
-                        NumberAnswer (*ask)(const NumberQuery&, Setting)) {
-  NumberMethod m;
-  m.info.name = "plain";
-  m.info.title = title;
-  m.info.remark = remark;
+NumberMethod plain_list(Quantity quantity, const char* remark, const Ask& ask) {
+  NumberMethod m = number_method("plain", "brute force, double", remark, quantity, ask,
+                                 {"brute force", "#6b6b6b", "crossRot"});
   m.info.role = methods::Role::no_peer;
-  m.info.style = {"brute force", "#6b6b6b", "crossRot"};
-  m.quantity = quantity;
-  m.ask = ask;
   return m;
 }
 
-NumberMethod our_list(Quantity quantity, const char* title, const char* remark,
-                      NumberAnswer (*ask)(const NumberQuery&, Setting)) {
-  NumberMethod m = plain_list(quantity, title, remark, ask);
-  m.info.name = "ours";
+NumberMethod ours(Quantity quantity, const char* title, const Ask& ask, const char* remark = nullptr) {
+  NumberMethod m = number_method("ours", title, remark ? remark : "An interval that must contain the number.",
+                                 quantity, ask, {"lrbscope", "#0072b2", "circle"});
   m.info.role = methods::Role::ours;
-  m.info.style = {"lrbscope", "#0072b2", "circle"};
-  return m;
-}
-
-NumberMethod proven(NumberMethod m) {
-  m.proves = true;
-  return m;
-}
-
-NumberMethod ours(Quantity quantity, const char* title, NumberAnswer (*ask)(const NumberQuery&, Setting)) {
-  NumberMethod m;
-  m.info.name = "ours";
-  m.info.title = title;
-  m.info.remark = "An interval that must contain the number.";
-  m.info.role = methods::Role::ours;
-  m.info.style = {"lrbscope", "#0072b2", "circle"};
-  m.quantity = quantity;
-  m.proves = true;
-  m.ask = ask;
+  m.proves = quantity != Quantity::self_intersections;
   return m;
 }
 
 /// Returns a method of lrbscope that computes less than the narrowest interval. For charts only.
 NumberMethod less(const char* name, const char* title, const char* remark, methods::MethodStyle style,
-                  NumberAnswer (*ask)(const NumberQuery&, Setting)) {
-  NumberMethod m = ours(Quantity::distance, title, ask);
-  m.info.name = name;
-  m.info.remark = remark;
+                  const Ask& ask) {
+  NumberMethod m = number_method(name, title, remark, Quantity::distance, ask, std::move(style));
   m.info.role = methods::Role::ours_other;
   m.info.traits.set(methods::Trait::hard_cases, false);
-  m.info.style = std::move(style);
+  m.proves = true;
   return m;
 }
 
 NumberMethod sampled_method(int n) {
   constexpr int kTooFewForHardCases = 10;
-  NumberMethod m;
-  m.info.name = "sampled-" + std::to_string(n);
-  m.info.title = "exact query, " + std::to_string(n) + " steps";
-  m.info.remark =
-      "lrbscope's exact query at equally spaced times; returns the first at which the bodies collide.";
+  NumberMethod m = number_method(
+      "sampled-" + std::to_string(n), "exact query, " + std::to_string(n) + " steps",
+      "lrbscope's exact query at equally spaced times; returns the first at which the bodies collide.",
+      Quantity::first_contact, [n](const NumberQuery& q, Setting) { return sampled(q, n); },
+      {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot"});
   m.info.traits.set(methods::Trait::hard_cases, n > kTooFewForHardCases);
-  m.info.style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot"};
-  m.quantity = Quantity::first_contact;
-  m.ask = [n](const NumberQuery& q, Setting) { return sampled(q, n); };
   return m;
 }
 
 }  // namespace
 
 std::vector<NumberMethod> own_number_methods() {
-  return {
-      with_parameter(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
-                     {0.1, 0.01, 1e-3, 1e-6, 0}),
-      with_parameter(less("ours-budget", "lrbscope, distance in N steps",
-                          "The interval after N steps (pairs of nodes expanded).",
-                          {"lrbscope, within a budget", "#56b4e9", "rect"}, distance_in_steps),
-                     "steps", {3, 10, 30, 100, 300}),
-      with_parameter(less("ours-within", "lrbscope, within 5 % of the diagonal?",
-                          "A proven yes or no; the interval is the bound known by then.",
-                          {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"}, within),
-                     "within", {0.05}),
-      with_parameter(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact), "tolerance",
-                     {1e-6, 1e-9, 1e-12}),
-      ours(Quantity::depth, "lrbscope, clash", our_depth),
-      proven(our_list(Quantity::near_pairs, "lrbscope, near pairs",
-                      "near_pairs(), all pairs, each with the interval of its distance.", our_near_pairs)),
-      plain_list(Quantity::near_pairs, "brute force, double",
-                 "Boxes of every pair, then the distance by corners, edges and Moeller's test (1997).",
-                 plain_near_pairs),
-      our_list(Quantity::self_intersections, "lrbscope, self-intersections",
-               "self_intersections() of a mesh.", our_self_intersections),
-      plain_list(Quantity::self_intersections, "brute force, double",
-                 "Every pair without a common corner by Moeller's test (1997); others are left out, as "
-                 "usual.",
-                 plain_self_intersections),
-      sampled_method(10),
-      sampled_method(100),
-      sampled_method(1000)};
+  return {with_parameter(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
+                         {0.1, 0.01, 1e-3, 1e-6, 0}),
+          with_parameter(less("ours-budget", "lrbscope, distance in N steps",
+                              "The interval after N steps (pairs of nodes expanded).",
+                              {"lrbscope, within a budget", "#56b4e9", "rect"}, distance_in_steps),
+                         "steps", {3, 10, 30, 100, 300}),
+          with_parameter(less("ours-within", "lrbscope, within 5 % of the diagonal?",
+                              "A proven yes or no; the interval is the bound known by then.",
+                              {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"}, within),
+                         "within", {0.05}),
+          with_parameter(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact),
+                         "tolerance", {1e-6, 1e-9, 1e-12}),
+          ours(Quantity::depth, "lrbscope, clash", our_depth),
+          ours(Quantity::near_pairs, "lrbscope, near pairs", our_near_pairs,
+               "near_pairs(), all pairs, each with the interval of its distance."),
+          plain_list(Quantity::near_pairs,
+                     "Boxes of every pair, then the distance by corners, edges and Moeller's test (1997).",
+                     plain_near_pairs),
+          ours(Quantity::self_intersections, "lrbscope, self-intersections", our_self_intersections,
+               "self_intersections() of a mesh."),
+          plain_list(Quantity::self_intersections,
+                     "Every pair without a common corner by Moeller's test (1997); others are left out, as "
+                     "usual.",
+                     plain_self_intersections),
+          sampled_method(10),
+          sampled_method(100),
+          sampled_method(1000)};
 }
 
 }  // namespace lrb::stability
