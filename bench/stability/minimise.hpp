@@ -3,13 +3,12 @@
 /// debugging (A. Zeller, R. Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", IEEE
 /// Transactions on Software Engineering 28(2), 2002).
 
-#include <array>
 #include <cstdint>
 #include <functional>
 
 #include "bench/stability/case_meshes.hpp"
 #include "bench/stability/stability_experiment.hpp"
-#include <lrbscope/enum_names.hpp>
+#include <lrbscope/declared_names.hpp>
 
 namespace lrb::stability {
 
@@ -24,13 +23,7 @@ enum class FailureKind : std::uint8_t {
   times_out,
 };
 constexpr auto enum_names(FailureKind) {
-  return std::to_array<EnumName<FailureKind>>({{FailureKind::none, "none"},
-                                               {FailureKind::misses_crossing, "misses_crossing"},
-                                               {FailureKind::misses_touching, "misses_touching"},
-                                               {FailureKind::adds, "adds"},
-                                               {FailureKind::relation, "relation"},
-                                               {FailureKind::crashes, "crashes"},
-                                               {FailureKind::times_out, "times_out"}});
+  return names_as_declared<FailureKind::times_out>();
 }
 
 /// Returns how the answer to a case fails.

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include <lrbscope/enum_names.hpp>
+#include <lrbscope/declared_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/trace/measured.hpp>
@@ -49,12 +49,7 @@ struct Motion {
                        ///< equal steps
 };
 constexpr auto enum_names(Motion::Kind) {
-  using Kind = Motion::Kind;
-  return std::to_array<EnumName<Kind>>({{Kind::poses, "poses"},
-                                        {Kind::keyframes, "keyframes"},
-                                        {Kind::sweep, "sweep"},
-                                        {Kind::approach, "approach"},
-                                        {Kind::spin, "spin"}});
+  return names_as_declared<Motion::Kind::spin>();
 }
 
 /// Returns the pose that applies `first`, then `second`.
