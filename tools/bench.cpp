@@ -124,11 +124,7 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
     }
   }
   Progress bar("bench", 0, globals.quiet);
-  const std::vector<bench::Record> records =
-      bench::survey(survey_options, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
-        bar.set_total(total);
-        bar.set(done, what);
-      });
+  const std::vector<bench::Record> records = bench::survey(survey_options, bar.setter());
   bar.finish();
   const bench::PeerTable table = bench::peer_table(survey_options.sets, workers::infos_of(methods), records);
   const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n\n";

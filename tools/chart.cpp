@@ -65,10 +65,7 @@ void measure(const ChartOptions& o, const std::vector<workers::WorkerMethod>& me
   bench::write_plan(options, names);
   for (const bench::BodyPair& p : pairs) options.sets.push_back(bench::make_data_set(p, o.set, o.folder));
   Progress bar("measure", 0, globals.quiet);
-  bench::survey(options, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
-    bar.set_total(total);
-    bar.set(done, what);
-  });
+  bench::survey(options, bar.setter());
   print(o.folder + "/records.jsonl\n");
 }
 

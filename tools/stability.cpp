@@ -183,11 +183,7 @@ Grid run_grid(const StabilityOptions& o, const std::vector<workers::WorkerMethod
   experiment.timeout = o.timeout;
   experiment.unfinished_file = o.folder + "/unfinished.jsonl";
   Progress bar("stability", 0, globals.quiet);
-  const std::vector<stability::Record> records =
-      run_experiment(experiment, [&](std::uint64_t done, std::uint64_t total, const std::string& what) {
-        bar.set_total(total);
-        bar.set(done, what);
-      });
+  const std::vector<stability::Record> records = run_experiment(experiment, bar.setter());
   bar.finish();
   io::write_text(o.folder + "/records.jsonl", to_lines(records));
   Grid grid = count_grid(workers::infos_of(methods), families, records);
@@ -218,10 +214,7 @@ void write_report(const StabilityOptions& o, const std::vector<workers::WorkerMe
         });
         return replay(*method, r, o.timeout, o.quantity);
       },
-      [&](std::size_t done, std::size_t total) {
-        bar.set_total(total);
-        bar.set(done, "worst cases");
-      });
+      [&](std::size_t done, std::size_t total) { bar.setter()(done, total, "worst cases"); });
   bar.finish();
   options.command = [&](const stability::Record& r) { return command_of(r, o.quantity); };
   options.links = {{"records.jsonl", "every answer of every method, one JSON object a line"}};

@@ -22,6 +22,13 @@ class Progress {
 
   void set(std::uint64_t done, const std::string& detail = {});
   void set_total(std::uint64_t total) { total_ = total; }
+  /// Returns a function that sets all of it.
+  auto setter() {
+    return [this](std::uint64_t done, std::uint64_t total, const std::string& detail) {
+      set_total(total);
+      set(done, detail);
+    };
+  }
   /// Shows a share of the work, from 0 to 1, as a percentage instead of a number out of the total.
   void set_share(double share, const std::string& detail = {});
   void finish();
