@@ -12,7 +12,6 @@
 #include "scenarios/golden/check.hpp"
 #include "scenarios/golden/golden_report.hpp"
 #include "scenarios/io/files.hpp"
-#include "scenarios/spec/scenario.hpp"
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"

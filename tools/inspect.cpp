@@ -17,7 +17,6 @@
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/frames/frames.hpp"
-#include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/document.hpp"
 #include "tools/commands.hpp"

@@ -1,7 +1,6 @@
 /// Commands that answer a question for each pose of B: distance, near, manifold, clash.
 #include <cmath>
 #include <iomanip>
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <utility>

@@ -6,7 +6,6 @@
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/frames/framing.hpp"
-#include "scenarios/io/files.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_page.hpp"
 #include "scenarios/spec/scenario.hpp"

@@ -11,7 +11,6 @@
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::cli {
 namespace {

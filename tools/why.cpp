@@ -5,7 +5,6 @@
 
 #include "render/pictures/answer_picture.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/io/files.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/explanations.hpp"

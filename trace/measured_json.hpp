@@ -3,7 +3,6 @@
 /// (trace_json_parts.cpp) and for reading (record_read.cpp): members(io, record) passes them to `io` in
 /// order.
 
-#include <cmath>
 #include <concepts>
 #include <type_traits>
 

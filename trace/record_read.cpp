@@ -1,7 +1,6 @@
 /// Reads the records of traces, which trace_json_parts.cpp writes.
 
 #include <limits>
-#include <optional>
 #include <ranges>
 #include <type_traits>
 #include <vector>

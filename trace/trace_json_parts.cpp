@@ -1,7 +1,6 @@
 #include "trace/trace_json_parts.hpp"
 
 #include <array>
-#include <optional>
 #include <type_traits>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "bench/speed/bench_runner.hpp"
 
 #include <cstddef>
-#include <iterator>
 
 #include <malloc.h>
 

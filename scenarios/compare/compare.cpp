@@ -12,7 +12,6 @@
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/attempts.hpp"
-#include "scenarios/run/run_page.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>

@@ -4,7 +4,6 @@
 #include "render/pictures/body_picture.hpp"
 #include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
-#include "scenarios/frames/face_colours.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/trace.hpp>

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "render/gl.hpp"
-#include "scenarios/io/files.hpp"
 #include "scenarios/profile/captured_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include <lrbscope/core/file.hpp>

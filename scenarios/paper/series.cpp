@@ -1,7 +1,6 @@
 #include "scenarios/paper/series.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
@@ -15,11 +14,9 @@
 
 #include "scenarios/bodies/generators.hpp"
 #include <lrbscope/core/file.hpp>
-#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/trace/json_write.hpp>
-#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::resolutions {
 

@@ -11,7 +11,6 @@
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/report/document.hpp"
 #include "trace/json_records.hpp"
-#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::paper {
 namespace {

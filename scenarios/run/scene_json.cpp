@@ -12,7 +12,6 @@
 #include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/frame_state.hpp"
-#include "scenarios/frames/framing.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/report/assets.hpp"
 #include "scenarios/run/run_charts.hpp"
