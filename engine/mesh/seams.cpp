@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "engine/core/geometry.hpp"
 #include "engine/mesh/box_tree.hpp"
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/mesh_repair.hpp>
@@ -31,9 +32,9 @@ std::uint64_t seam_key(VertexId from, VertexId to) {
 /// Returns true if a point lies on an edge, further than `width` from its ends.
 bool is_on(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double width) {
   const Eigen::Vector3d along = b - a;
-  const double t = (x - a).dot(along) / along.squaredNorm();
+  const double t = dot3(x - a, along) / squared_norm3(along);
   if (!(t > 0 && t < 1)) return false;
-  return (x - (a + t * along)).norm() <= width && (x - a).norm() > width && (x - b).norm() > width;
+  return norm3(x - (a + t * along)) <= width && norm3(x - a) > width && norm3(x - b) > width;
 }
 
 void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges,
@@ -82,7 +83,7 @@ void find_near_vertices(const Mesh& mesh, const OpenKeys& open, std::vector<Vert
         [&](std::uint32_t i) {
           const VertexId u = corners[i];
           if (found || i >= j || open.contains(seam_key(u, v)) || open.contains(seam_key(v, u))) return;
-          found = (mesh.vertices[u] - x).norm() <= width;
+          found = norm3(mesh.vertices[u] - x) <= width;
           if (found) note(report, MeshFault::near_vertex, std::min(u, v), std::max(u, v));
         });
   }
@@ -112,7 +113,7 @@ void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& 
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   Box box;
   for (const VertexId v : corners) box.extend(mesh.vertices[v]);
-  const double diagonal = box.isEmpty() ? 0 : box.diagonal().norm();
+  const double diagonal = box.isEmpty() ? 0 : norm3(box.diagonal());
   if (!(diagonal > 0 && diagonal < kMaxDiagonal)) return;
   find_t_junctions(mesh, edges, corners, kSeam * diagonal, report);
   find_near_vertices(mesh, open, std::move(corners), kSeam * diagonal, report);
