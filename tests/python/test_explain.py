@@ -30,12 +30,6 @@ def test_coherent_answers_are_those_of_collide(ball, cube, always):
         CoherentQuery(3, cube)
 
 
-def test_contacts_of_coherent_queries(cube):
-    q = CoherentQuery(cube, cube, contacts=True)
-    pose = shifted(0.5, 0.25, 0.125)
-    assert len(q.collide(pose).regions) == len(lrbscope.contacts(cube, cube, pose)) == 1
-
-
 def test_every_pair_is_explained(cube):
     pose = shifted(0.5, 0.25, 0.125)
     result = lrbscope.collide(cube, cube, pose, contacts=True)
@@ -73,10 +67,3 @@ def test_bodies_apart_are_explained(ball):
 def test_pairs_that_are_none(cube, pair):
     with pytest.raises(InputError, match="pair: expected a triangle of A and one of B"):
         lrbscope.explain_pair(cube, cube, pair)
-
-
-def test_pairs_that_do_not_exist(cube):
-    with pytest.raises(InputError):
-        lrbscope.explain_pair(cube, cube, (0, 12))
-    with pytest.raises(InputError, match="pair"):
-        lrbscope.explain_pair(cube, cube, (0, -1))

@@ -170,6 +170,8 @@ REFUSED = [
     ("lrbscope.signed_distance(cube, [[0, 0]])", InputError, "3 coordinates"),
     ("lrbscope.signed_distance(cube, [[0, 0, np.nan]])", InputError, "point 0"),
     ("lrbscope.signed_distance(cube, [0, 0, 0])", InputError, "shape"),
+    ("lrbscope.explain_pair(cube, cube, (0, 12))", InputError, "simplex of B: expected a number below 12"),
+    ("lrbscope.explain_pair(cube, cube, (0, -1))", InputError, "pair"),
     ("lrbscope.Wrapper(cube, 'neither')", InputError, "mode"),
     ("lrbscope.Wrapper.at(cube, -1)", InputError, "tolerance"),
     ("lrbscope.Wrapper(cube).refine(10**6)", InputError, "region: expected a number below"),

