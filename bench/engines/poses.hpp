@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <lrbscope/core/random.hpp>
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 
@@ -90,7 +90,10 @@ enum class Hard : std::uint8_t {
   vertices,        ///< a vertex of B on one of A; axes of B along axes of A
 };
 constexpr auto enum_names(Hard) {
-  return names_as_declared<Hard::vertices>();
+  return std::to_array<EnumName<Hard>>({{Hard::first_contact, "first_contact"},
+                                        {Hard::coplanar_faces, "coplanar_faces"},
+                                        {Hard::parallel_edges, "parallel_edges"},
+                                        {Hard::vertices, "vertices"}});
 }
 
 struct HardPose {

@@ -16,7 +16,7 @@
 
 #include "bench/methods/method.hpp"
 #include <lrbscope/collide.hpp>
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 
 namespace lrb::bench {
 
@@ -43,7 +43,21 @@ enum class PoseClass : std::uint8_t {
   near_20th,
 };
 constexpr auto enum_names(PoseClass) {
-  return names_as_declared<PoseClass::near_20th>();
+  return std::to_array<EnumName<PoseClass>>({{PoseClass::apart, "apart"},
+                                             {PoseClass::shallow, "shallow"},
+                                             {PoseClass::deep, "deep"},
+                                             {PoseClass::identical, "identical"},
+                                             {PoseClass::small, "small"},
+                                             {PoseClass::gap_1000th, "gap_1000th"},
+                                             {PoseClass::gap_100th, "gap_100th"},
+                                             {PoseClass::gap_10th, "gap_10th"},
+                                             {PoseClass::gap_whole, "gap_whole"},
+                                             {PoseClass::into, "into"},
+                                             {PoseClass::graze, "graze"},
+                                             {PoseClass::past, "past"},
+                                             {PoseClass::near_1000th, "near_1000th"},
+                                             {PoseClass::near_100th, "near_100th"},
+                                             {PoseClass::near_20th, "near_20th"}});
 }
 /// Returns the pose classes used for a quantity, in their order.
 std::span<const PoseClass> classes_of(Quantity quantity);

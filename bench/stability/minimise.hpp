@@ -3,12 +3,13 @@
 /// debugging (A. Zeller, R. Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", IEEE
 /// Transactions on Software Engineering 28(2), 2002).
 
+#include <array>
 #include <cstdint>
 #include <functional>
 
 #include "bench/stability/case_meshes.hpp"
 #include "bench/stability/stability_experiment.hpp"
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 
 namespace lrb::stability {
 
@@ -23,7 +24,13 @@ enum class FailureKind : std::uint8_t {
   times_out,
 };
 constexpr auto enum_names(FailureKind) {
-  return names_as_declared<FailureKind::times_out>();
+  return std::to_array<EnumName<FailureKind>>({{FailureKind::none, "none"},
+                                               {FailureKind::misses_crossing, "misses_crossing"},
+                                               {FailureKind::misses_touching, "misses_touching"},
+                                               {FailureKind::adds, "adds"},
+                                               {FailureKind::relation, "relation"},
+                                               {FailureKind::crashes, "crashes"},
+                                               {FailureKind::times_out, "times_out"}});
 }
 
 /// Returns how the answer to a case fails.

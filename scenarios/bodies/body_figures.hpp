@@ -1,6 +1,7 @@
 #pragma once
 /// Statistics of a body, of its wrappers, and of its regions: identifies those that degrade its wrappers.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -10,7 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <lrbscope/build.hpp>
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -66,7 +67,10 @@ struct RegionFigures {
 
 enum class RegionOrder : std::uint8_t { waste, thickness, volume, lids };
 constexpr auto enum_names(RegionOrder) {
-  return names_as_declared<RegionOrder::lids>();
+  return std::to_array<EnumName<RegionOrder>>({{RegionOrder::waste, "waste"},
+                                               {RegionOrder::thickness, "thickness"},
+                                               {RegionOrder::volume, "volume"},
+                                               {RegionOrder::lids, "lids"}});
 }
 
 /// Returns the statistics of all regions, in descending `order`, measured on `threads` threads.

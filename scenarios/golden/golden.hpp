@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "scenarios/spec/scenario.hpp"
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/image.hpp>
@@ -33,7 +33,10 @@ enum class Level : std::uint8_t {
   work,      ///< the sum of each counter over all steps: it may decrease, or increase within a tolerance
 };
 constexpr auto enum_names(Level) {
-  return names_as_declared<Level::work>();
+  return std::to_array<EnumName<Level>>({{Level::answers, "answers"},
+                                         {Level::events, "events"},
+                                         {Level::pictures, "pictures"},
+                                         {Level::work, "work"}});
 }
 inline constexpr int kLevels = 4;
 

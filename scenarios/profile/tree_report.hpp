@@ -14,7 +14,7 @@
 
 #include "scenarios/profile/query_walk.hpp"
 #include "scenarios/profile/volumes.hpp"
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/obb_tree.hpp>
@@ -36,7 +36,19 @@ enum class TreeFault : std::uint8_t {
   leaf_without_triangles,
 };
 constexpr auto enum_names(TreeFault) {
-  return names_as_declared<TreeFault::leaf_without_triangles>();
+  return std::array<EnumName<TreeFault>, 11>{{
+      {TreeFault::two_parents, "two_parents"},
+      {TreeFault::no_parent, "no_parent"},
+      {TreeFault::cycle, "cycle"},
+      {TreeFault::nonexistent_triangle, "nonexistent_triangle"},
+      {TreeFault::triangle_in_two_leaves, "triangle_in_two_leaves"},
+      {TreeFault::triangle_twice_in_leaf, "triangle_twice_in_leaf"},
+      {TreeFault::triangle_in_no_leaf, "triangle_in_no_leaf"},
+      {TreeFault::corner_outside, "corner_outside"},
+      {TreeFault::empty_volume, "empty_volume"},
+      {TreeFault::inner_node_with_triangles, "inner_node_with_triangles"},
+      {TreeFault::leaf_without_triangles, "leaf_without_triangles"},
+  }};
 }
 inline constexpr std::size_t kTreeFaults = kEnumNames<TreeFault>.size();
 

@@ -22,7 +22,7 @@
 #include <Eigen/Core>
 
 #include "scenarios/profile/query_walk.hpp"
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/trace/capture.hpp>
 #include <lrbscope/workspace.hpp>
 
@@ -63,7 +63,14 @@ enum class Culprit : std::uint8_t {
   unrecorded,     ///< the events of the query are not complete
 };
 constexpr auto enum_names(Culprit) {
-  return names_as_declared<Culprit::unrecorded>();
+  return std::to_array<EnumName<Culprit>>({{Culprit::none, "none"},
+                                           {Culprit::triangle_test, "triangle_test"},
+                                           {Culprit::volumes, "volumes"},
+                                           {Culprit::child_volumes, "child_volumes"},
+                                           {Culprit::traversal, "traversal"},
+                                           {Culprit::not_visited, "not_visited"},
+                                           {Culprit::in_no_leaf, "in_no_leaf"},
+                                           {Culprit::unrecorded, "unrecorded"}});
 }
 
 /// A pair of triangles about which the engine is wrong.
@@ -83,7 +90,10 @@ struct WrongPair {
 /// From best to worst.
 enum class Judgement : std::uint8_t { unchecked, right, undecidable, wrong };
 constexpr auto enum_names(Judgement) {
-  return names_as_declared<Judgement::wrong>();
+  return std::to_array<EnumName<Judgement>>({{Judgement::unchecked, "unchecked"},
+                                             {Judgement::right, "right"},
+                                             {Judgement::undecidable, "undecidable"},
+                                             {Judgement::wrong, "wrong"}});
 }
 
 struct QueryVerdict {

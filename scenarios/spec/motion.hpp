@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/trace/measured.hpp>
@@ -49,7 +49,12 @@ struct Motion {
                        ///< equal steps
 };
 constexpr auto enum_names(Motion::Kind) {
-  return names_as_declared<Motion::Kind::spin>();
+  using Kind = Motion::Kind;
+  return std::to_array<EnumName<Kind>>({{Kind::poses, "poses"},
+                                        {Kind::keyframes, "keyframes"},
+                                        {Kind::sweep, "sweep"},
+                                        {Kind::approach, "approach"},
+                                        {Kind::spin, "spin"}});
 }
 
 /// Returns the pose that applies `first`, then `second`.

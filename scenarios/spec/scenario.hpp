@@ -2,6 +2,7 @@
 /// A scenario: two bodies (or one), their motion, the queries, the recording and the pictures, and the
 /// expected results. schema/scenario.schema.json describes the file format.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -15,7 +16,7 @@
 #include "scenarios/spec/motion.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
-#include <lrbscope/declared_names.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/trace/event.hpp>
 
@@ -33,7 +34,9 @@ enum class Show : std::uint8_t {
                  ///< outward
 };
 constexpr auto enum_names(Show) {
-  return names_as_declared<Show::construction>();
+  return std::to_array<EnumName<Show>>({{Show::collision, "collision"},
+                                        {Show::refinement, "refinement"},
+                                        {Show::construction, "construction"}});
 }
 
 struct BodySpec {

@@ -11,8 +11,8 @@
 
 #include <lrbscope/clash.hpp>
 #include <lrbscope/contact_manifold.hpp>
-#include <lrbscope/declared_names.hpp>
 #include <lrbscope/distance.hpp>
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/near_pairs.hpp>
@@ -140,11 +140,18 @@ std::string to_text(const MeasuredApproach& m);
 /// The kind of query. shape: of a tree with a shape whose mesh is for pictures only; not checked.
 enum class EngineQuery : std::uint8_t { all_pairs, any, distance, first_contact, self, shape };
 constexpr auto enum_names(EngineQuery) {
-  return names_as_declared<EngineQuery::shape>();
+  return std::to_array<EnumName<EngineQuery>>({{EngineQuery::all_pairs, "all_pairs"},
+                                               {EngineQuery::any, "any"},
+                                               {EngineQuery::distance, "distance"},
+                                               {EngineQuery::first_contact, "first_contact"},
+                                               {EngineQuery::self, "self"},
+                                               {EngineQuery::shape, "shape"}});
 }
 enum class EngineVerdict : std::uint8_t { separate, intersecting, unreported };
 constexpr auto enum_names(EngineVerdict) {
-  return names_as_declared<EngineVerdict::unreported>();
+  return std::to_array<EnumName<EngineVerdict>>({{EngineVerdict::separate, "separate"},
+                                                 {EngineVerdict::intersecting, "intersecting"},
+                                                 {EngineVerdict::unreported, "unreported"}});
 }
 
 struct EngineReport {
