@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -498,11 +499,15 @@ report::Chart summary_chart(const std::vector<DataSet>& sets, const std::vector<
   all.quantity = sets.front().quantity;
   const std::span<const PoseClass> classes = classes_of(all.quantity);
   std::map<std::string, std::vector<const Point*>> by_name;
-  for (const Point& p : points) by_name[name_of(p.method, p.setting)].push_back(&p);
+  std::set<std::pair<std::string, PoseClass>> panels;  // an unfinished survey lacks some
+  for (const Point& p : points) {
+    by_name[name_of(p.method, p.setting)].push_back(&p);
+    panels.insert({p.set, p.pose_class});
+  }
   std::vector<Point> means;
   for (const Point& like : points) {  // in the order of the methods
     std::vector<const Point*>& of = by_name[name_of(like.method, like.setting)];
-    if (of.size() == sets.size() * classes.size() &&
+    if (of.size() == panels.size() &&
         std::all_of(of.begin(), of.end(), [](const Point* p) { return p->median > 0; })) {
       Point& mean = means.emplace_back(**std::max_element(
           of.begin(), of.end(), [](const Point* p, const Point* q) { return p->error() < q->error(); }));
@@ -546,10 +551,7 @@ report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& se
   if (!unfinished.empty()) doc.verdict("unfinished", false).purpose(unfinished);
   if (!sets.empty()) doc.chart(summary_chart(sets, points, methods));
   doc.table(table_of_settings(sets, points, methods)).each(charts, &report::Document::chart);
-  for (report::Text text : words.texts) {
-    text.folded = true;
-    doc.text(text);
-  }
+  doc.each(words.texts, &report::Document::reading);
   return doc.table(table_of_metrics(points)).table(table_of_methods(methods)).table(table_of_points(points));
 }
 

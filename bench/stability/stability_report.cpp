@@ -436,7 +436,7 @@ report::Document stability_page(const Grid& whole, const std::string& folder, co
   const bool pairs = grid.quantity == Quantity::pairs;
   report::Document doc(pairs ? "Where collision methods fail"
                              : "Where methods fail: " + io::in_words(name_of(grid.quantity)));
-  doc.each(pairs ? texts() : texts_of_numbers(grid.quantity), &report::Document::text)
+  doc.each(pairs ? texts() : texts_of_numbers(grid.quantity), &report::Document::reading)
       .number({"Families", render::group_digits(grid.families.size()),
                std::to_string(kDifficulties) + " difficulties each"})
       .number(

@@ -275,8 +275,12 @@ std::string Document::tooltip(std::string_view name) const {
 }
 
 Document& Document::text(const Text& text) {
-  (text.folded ? folded_texts_ : texts_) +=
-      fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
+  texts_ += fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
+  return *this;
+}
+
+Document& Document::reading(const Text& text) {
+  reading_ += fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
   return *this;
 }
 
@@ -501,9 +505,9 @@ std::string Document::html() const {
                    l.note.empty() ? "" : fill(" <span>{}</span>", {l.note})});
   if (!files.empty())
     source += "<section><h2>Files</h2>\n<ul class=\"links\">\n" + files + "</ul></section>\n";
-  if (!folded_texts_.empty())
+  if (!reading_.empty())
     source = "<section><details><summary><h2>How to read this page</h2></summary><div class=\"texts\">\n" +
-             folded_texts_ + "</div></details></section>\n" + source;
+             reading_ + "</div></details></section>\n" + source;
   const std::string texts = texts_.empty() ? "" : "<div class=\"texts\">\n" + texts_ + "</div>\n";
   std::string numbers = numbers_.empty() ? "" : "<dl class=\"numbers\">\n" + numbers_ + "</dl>\n";
   std::string head = purpose_.empty() ? "" : fill("<p class=\"purpose\">{}</p>", {purpose_});

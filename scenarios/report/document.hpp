@@ -55,7 +55,6 @@ std::string booktabs(const Table& table);
 /// A heading and a paragraph.
 struct Text {
   std::string title, text;
-  bool folded = false;  ///< at the end of the page, under "How to read this page", instead of at the top
 };
 
 /// A picture of a sequence, which is in the report's folder.
@@ -168,7 +167,8 @@ class Document {
   /// Puts the parts that are added from now on into a tab of the page of a run. Tabs of one name are one.
   Document& tab(const std::string& name);
 
-  Document& text(const Text& text);        ///< side by side
+  Document& text(const Text& text);        ///< at the top, side by side
+  Document& reading(const Text& text);     ///< folded under "How to read this page", at the end
   Document& number(const Number& number);  ///< below the texts, in a row
   Document& chart(const Chart& chart);
   Document& table(const Table& table);
@@ -225,7 +225,7 @@ class Document {
 
   std::string title_, purpose_, summary_, verdict_, footer_, command_, tab_;
   std::string_view (*meaning_of_)(std::string_view) = nullptr;
-  std::string texts_, folded_texts_, numbers_, body_;
+  std::string texts_, reading_, numbers_, body_;
   std::string styles_, libraries_, view_data_, charts_, frames_ = "[]";
   std::vector<std::string> modules_{"page"};
   bool of_run_ = false, framing_ = false, in_charts_ = false, tables_as_tex_ = false;
