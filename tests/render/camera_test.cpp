@@ -56,56 +56,6 @@ TEST_CASE("a fitted camera shows every point within the margin, and fills the fr
   }
 }
 
-TEST_CASE("single points, flat and distant scenes can be fitted") {
-  for (const Vector3d& at : {Vector3d(0, 0, 0), Vector3d(1e6, -1e6, 3), Vector3d(1e-8, 0, 0)}) {
-    for (const bool orthographic : {false, true}) {
-      render::FitOptions options;
-      options.orthographic = orthographic;
-      const std::vector<Vector3d> points{at};
-      const render::Camera camera = render::fit_camera(points, 640, 360, options);
-      const render::Projection projection(camera, 640, 360, box_of(points));
-      const auto pixel = projection.to_pixel(at);
-      REQUIRE(pixel.has_value());
-      CHECK((*pixel - Eigen::Vector2d(320, 180)).norm() < 1);
-    }
-  }
-  CHECK_THROWS_AS(render::fit_camera(std::vector<Vector3d>{}, 640, 360), InputError);
-  CHECK_THROWS_AS(render::fit_camera(std::vector<Vector3d>{{0, 0, std::nan("")}}, 640, 360), InputError);
-}
-
-TEST_CASE("a camera on the contact shows it with its surroundings") {
-  const std::vector<Vector3d> contact{{1, 1, 1}, {1.1, 1, 1}, {1.05, 1.04, 1.02}};
-  Eigen::AlignedBox3d scene(Vector3d(-2, -2, -2), Vector3d(2, 2, 2));
-  for (const bool orthographic : {false, true}) {
-    render::FitOptions options;
-    options.orthographic = orthographic;
-    const render::Camera camera = render::fit_contact(contact, scene, 800, 600, options, 3.0, 0.01);
-    const render::Projection projection(camera, 800, 600, scene);
-    Eigen::AlignedBox2d seen;
-    for (const Vector3d& p : contact) seen.extend(*projection.to_pixel(p));
-    CHECK(seen.min().minCoeff() > 100);
-    CHECK(seen.max().x() < 700);
-    CHECK(seen.max().y() < 500);
-    CHECK(seen.diagonal().norm() > 60);
-  }
-  // In the middle is what is seen of the contact, also where its near side looks larger.
-  std::vector<Vector3d> deep;
-  for (int i = 0; i < 40; ++i) deep.push_back(Vector3d(std::sin(i * 0.157), 0.1, 3 * std::cos(i * 0.157)));
-  deep.emplace_back(0, 0, 4);
-  render::FitOptions wide_angle;
-  wide_angle.fov_y = 1.2;
-  const render::Camera fitted = render::fit_contact(deep, scene, 800, 600, wide_angle);
-  Eigen::AlignedBox2d extent;
-  for (const Vector3d& p : deep) extent.extend(*render::Projection(fitted, 800, 600, scene).to_pixel(p));
-  CHECK((extent.center() - Eigen::Vector2d(400, 300)).norm() < 0.05 * extent.diagonal().norm());
-  // A contact in one point is shown at the least size asked for.
-  const render::Camera near =
-      render::fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.01);
-  const render::Camera wide =
-      render::fit_contact(std::vector<Vector3d>{{1, 1, 1}}, scene, 800, 600, {}, 3.0, 0.1);
-  CHECK((wide.eye - wide.target).norm() > 5 * (near.eye - near.target).norm());
-}
-
 TEST_CASE("a shifted camera shows a part of the picture, at any scale") {
   std::mt19937 random(7);
   const std::vector<Vector3d> points = cloud(random, {1, 2, 3}, {2, 1, 3});
@@ -127,14 +77,4 @@ TEST_CASE("a shifted camera shows a part of the picture, at any scale") {
       CHECK((small.towards_viewer(p) - large.towards_viewer(p)).norm() < 1e-12);
     }
   }
-}
-
-TEST_CASE("cameras without a direction or a field of view are rejected") {
-  render::Camera camera;
-  camera.eye = camera.target;
-  const Eigen::AlignedBox3d scene(Vector3d(-1, -1, -1), Vector3d(1, 1, 1));
-  CHECK_THROWS_AS(render::Projection(camera, 10, 10, scene), InputError);
-  camera.eye = {0, 0, 5};
-  camera.fov_y = 0;
-  CHECK_THROWS_AS(render::Projection(camera, 10, 10, scene), InputError);
 }

@@ -44,48 +44,6 @@ TEST_CASE("rectangles are clipped to the image") {
   CHECK_THROWS_AS(render::Image(5, 40000), InputError);
 }
 
-TEST_CASE("hash follows every pixel and the shape") {
-  const render::Image a(4, 6);
-  render::Image b = a;
-  CHECK(render::hash(a) == render::hash(b));
-  b.at(3, 5).b = 254;
-  CHECK(render::hash(a) != render::hash(b));
-  CHECK(render::hash(render::Image(4, 6)) != render::hash(render::Image(6, 4)));
-}
-
-TEST_CASE("image difference counts in buckets") {
-  const render::Image a(100, 100, {100, 100, 100});
-  render::Image b = a;
-  CHECK(render::compare(a, b).within());
-  CHECK(render::compare(a, b).text() == "the images are identical");
-  for (int x = 0; x < 100; ++x) b.at(x, 0).g = 102;  // 1 % by 2
-  for (int x = 0; x < 50; ++x) b.at(x, 1).g = 106;   // 0.5 % by 6
-  for (int x = 0; x < 5; ++x) b.at(x, 2).r = 150;    // 0.05 % by 50
-  render::ImageDifference d = render::compare(a, b);
-  CHECK(d.small == 100);
-  CHECK(d.medium == 50);
-  CHECK(d.large == 5);
-  CHECK(d.largest == 50);
-  CHECK(d.equal == 100 * 100 - 155);
-  CHECK(d.within());
-  b.at(5, 2).a = 200;
-  d = render::compare(a, b);
-  CHECK(!d.within());
-  CHECK(d.text().find("strongly") != std::string::npos);
-  render::Image noisy(100, 100, {101, 100, 100});
-  d = render::compare(a, noisy);
-  CHECK(!d.within());
-  CHECK(d.text().find("slightly") != std::string::npos);
-  CHECK(!render::compare(a, render::Image(100, 99)).within());
-
-  const render::Image shown = render::difference_image(a, b);
-  CHECK(shown.at(0, 0) == render::Rgba{0, 32, 0});
-  CHECK(shown.at(0, 1) == render::Rgba{0, 96, 0});
-  CHECK(shown.at(0, 2) == render::Rgba{255, 0, 0});
-  CHECK(shown.at(5, 2) == render::Rgba{255, 255, 255});
-  CHECK(shown.at(50, 50) == render::Rgba{0, 0, 0});
-}
-
 namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -175,15 +133,4 @@ TEST_CASE("texts, lines and bodies stand out from the background of each style")
                      lab(style.body(side), {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}})[0]) > 8);
     }
   }
-}
-
-TEST_CASE("viridis brightens from end to end and is clamped") {
-  CHECK(render::palette::viridis(0) == render::Rgba{68, 1, 84});
-  CHECK(render::palette::viridis(1) == render::Rgba{253, 231, 37});
-  CHECK(render::palette::viridis(-1) == render::palette::viridis(0));
-  CHECK(render::palette::viridis(7) == render::palette::viridis(1));
-  CHECK(render::palette::viridis(std::nan("")) == render::palette::viridis(0));
-  for (int i = 0; i < 100; ++i)
-    CHECK(render::luma(render::palette::viridis(i / 100.0)) <
-          render::luma(render::palette::viridis((i + 1) / 100.0)));
 }

@@ -62,37 +62,6 @@ TEST_CASE("in frames of the usual sizes nothing overlaps or is cut off" * doctes
   CHECK_THROWS_AS(render::lay_out(overlay, 100, 60), InputError);
 }
 
-TEST_CASE("a logarithmic scale has its values below it, at their positions" * doctest::test_suite("font")) {
-  test::need_font();
-  render::Overlay overlay = full_overlay();
-  overlay.scale = render::ScaleBar{"distance / largest side", 0.0005, 0.1, true};
-  const render::ScaleBar& scale = *overlay.scale;
-  CHECK(render::place_on(scale, 0.0005) == 0);
-  CHECK(render::place_on(scale, 0.1) == 1);
-  CHECK(render::place_on(scale, 0) == 0);
-  CHECK(render::place_on(scale, 7) == 1);
-  CHECK(render::place_on(scale, std::sqrt(0.0005 * 0.1)) == doctest::Approx(0.5));
-  CHECK(render::place_on({"linear", 2, 4}, 3) == 0.5);
-  const render::OverlayLayout layout = render::lay_out(overlay, 1280, 720);
-  const auto all = boxes(layout);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    CHECK(render::PixelRect{0, 0, 1280, 720}.contains(all[i]));
-    for (std::size_t j = 0; j < i; ++j) CHECK(!all[i].overlaps(all[j]));
-  }
-  const std::vector<std::string> values = {"0.0005", "0.001", "0.002", "0.005",
-                                           "0.01",   "0.02",  "0.05",  "0.1"};
-  REQUIRE(layout.ticks.size() == values.size());
-  REQUIRE(layout.texts.size() > values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double at = layout.bar.x + render::place_on(scale, std::stod(values[i])) * (layout.bar.width - 1);
-    CHECK(std::abs(layout.ticks[i] - at) <= 0.5);
-    const auto text = std::find_if(layout.texts.begin(), layout.texts.end(),
-                                   [&](const auto& t) { return t.text == values[i]; });
-    REQUIRE(text != layout.texts.end());
-    CHECK(std::abs(text->box.x + text->box.width / 2 - layout.ticks[i]) <= 1);
-  }
-}
-
 TEST_CASE("the overlay draws only within its layout" * doctest::test_suite("font")) {
   test::need_font();
   const render::Overlay overlay = full_overlay();
@@ -124,36 +93,4 @@ TEST_CASE("numbers are short and grouped") {
   CHECK(render::short_number(1653.4) == "1\u202f653");
   CHECK(render::short_number(0.12345) == "0.123");
   CHECK(render::short_number(3e9) == "3e+09");
-}
-
-TEST_CASE("panels of a montage form a grid and do not overlap" * doctest::test_suite("font")) {
-  test::need_font();
-  std::vector<render::Panel> panels;
-  for (int i = 0; i < 5; ++i) {
-    panels.push_back({render::Image(120 + 10 * i, 90, {static_cast<std::uint8_t>(50 * i), 0, 0}),
-                      i == 2 ? "a caption that surely needs more than one line here" : "short"});
-  }
-  render::MontageOptions options;
-  options.columns = 3;
-  const render::MontageLayout layout = render::lay_out(panels, options);
-  REQUIRE(layout.panels.size() == 5);
-  std::vector<render::PixelRect> all = layout.panels;
-  all.insert(all.end(), layout.captions.begin(), layout.captions.end());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    CHECK(render::PixelRect{0, 0, layout.width, layout.height}.contains(all[i]));
-    for (std::size_t j = 0; j < i; ++j) CHECK(!all[i].overlaps(all[j]));
-  }
-  CHECK(layout.panels[0].y == layout.panels[2].y);
-  CHECK(layout.panels[3].y >= layout.captions[2].bottom());
-  CHECK(layout.lines[2].size() > 1);
-  CHECK(layout.lines[3][0] == "(d) short");
-  const render::Image image = render::montage(panels, options);
-  CHECK(image.width() == layout.width);
-  for (int i = 0; i < 5; ++i) {
-    const render::PixelRect& r = layout.panels[static_cast<std::size_t>(i)];
-    CHECK(image.at(r.x, r.y).r == 50 * i);
-    CHECK(image.at(r.right() - 1, r.bottom() - 1).r == 50 * i);
-  }
-  CHECK(image.at(1, 1) == render::kWhite);
-  CHECK_THROWS_AS(render::montage({}), InputError);
 }

@@ -33,26 +33,6 @@ int others(const render::Image& image, const render::PixelRect& r, render::Rgba 
 
 }  // namespace
 
-TEST_CASE("panels are placed along the longer side, with a rule between") {
-  const render::Look look;
-  render::Rasterizer rasterizer;
-  for (const render::PixelRect& picture : {render::PixelRect{0, 0, 304, 150}, {0, 0, 150, 304}}) {
-    const std::vector<run::Panel> panels = {red(""), red("")};
-    const render::Image image = run::draw_row(rasterizer, panels, look, picture);
-    REQUIRE(image.rect() == picture);
-    const auto places = run::panel_places(picture, 2, 1);
-    for (const render::PixelRect& place : places) {
-      CHECK(picture.contains(place));
-      const render::PixelRect inner{place.x + 30, place.y + 30, place.width - 60, place.height - 60};
-      CHECK(others(image, inner, kPanelRed) == 0);
-      CHECK(image.at(place.x, place.y) == render::kWhite);
-    }
-    CHECK(!places[0].overlaps(places[1]));
-    CHECK(image.at(places[0].right() % picture.width, places[0].bottom() % picture.height) ==
-          render::style_of(look.style).rule);
-  }
-}
-
 TEST_CASE("titles are in their panels, and a look can omit them; transparent panels keep their alpha" *
           doctest::test_suite("font")) {
   test::need_font();

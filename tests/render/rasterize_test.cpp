@@ -93,25 +93,6 @@ TEST_CASE("supersampling averages in integers; the background may be transparent
   CHECK(rasterizer().draw({}, pixel_camera(32, 32), o).at(3, 3) == render::Rgba{7, 8, 9});
 }
 
-TEST_CASE("edges are drawn with their width, and only the requested ones") {
-  for (const int supersample : {1, 2, 4}) {
-    render::DrawList list;
-    render::DrawTriangle t = flat(render::kWhite);
-    t.edges = 7;
-    t.edge_style = list.edge_style({render::kBlack, 6});
-    square(list, 10, 10, 90, 90, 0, t);
-    const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100, supersample));
-    CHECK(image.at(10, 50) == render::kBlack);  // half of the width lies on this face: pixels 10 to 12
-    CHECK(image.at(12, 50) == render::kBlack);
-    CHECK(near(image.at(14, 50), render::kWhite));
-    CHECK(image.at(88, 50) == render::kBlack);
-    CHECK(image.at(50, 12) == render::kBlack);
-    CHECK(image.at(50, 87) == render::kBlack);
-    CHECK(image.at(50, 50) == render::kWhite);  // on the diagonal of the fan: no edge
-    CHECK(image.at(40, 60) == render::kWhite);
-  }
-}
-
 TEST_CASE("in a close-up among large bodies, lines on top are hidden correctly") {
   // A slope across the view, a line on it and one as far behind it as it is wide, and then some.
   render::DrawList list;
@@ -177,66 +158,6 @@ TEST_CASE("a depth bias orders coplanar faces") {
   }
 }
 
-TEST_CASE("lines have their width, round ends, dashes and halos") {
-  render::DrawList list;
-  render::DrawLine line;
-  line.points = {{20, 30, 0}, {80, 30, 0}};
-  line.colour = render::kBlack;
-  line.width = 6;
-  line.halo = kRed;
-  line.halo_width = 3;
-  list.lines.push_back(line);
-  line.halo_width = 0;
-  line.dash = 10;
-  line.points = {{20, 60, 0}, {50, 60, 0}, {80, 60, 0}};
-  list.lines.push_back(line);
-  square(list, 0, 0, 100, 100, -1, flat(render::kWhite));
-  const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
-  const auto at = [&](int x, int y) { return image.at(x, 99 - y); };
-  CHECK(at(50, 28) == render::kBlack);
-  CHECK(at(50, 31) == render::kBlack);
-  CHECK(near(at(50, 34), kRed));
-  CHECK(near(at(50, 25), kRed));
-  CHECK(near(at(50, 37), render::kWhite));
-  CHECK(near(at(18, 30), render::kBlack));  // the round end reaches half a width beyond the point
-  CHECK(near(at(15, 30), kRed));
-  CHECK(near(at(12, 30), render::kWhite));
-  CHECK(near(at(14, 36), render::kWhite));  // ... and is round
-  for (const int x : {25, 45, 65}) CHECK(near(at(x, 60), render::kBlack));
-  for (const int x : {35, 55, 75}) CHECK(near(at(x, 60), render::kWhite));
-}
-
-TEST_CASE("overlays shine through, ghosted") {
-  render::DrawList list;
-  square(list, 0, 0, 50, 100, 15,
-         flat(render::kWhite));  // hides the left half, and is farther off than dots are thick
-  square(list, 0, 0, 100, 100, -5, flat(render::kWhite));
-  render::DrawLine line;
-  line.points = {{10, 50, 0}, {90, 50, 0}};
-  line.colour = kRed;
-  line.width = 4;
-  line.layer = render::Layer::on_top;
-  list.lines.push_back(line);
-  square(list, 10, 70, 90, 90, 0, flat(kBlue, render::Layer::on_top));
-  list.points.push_back({{30, 20, 0}, kGreen, 8, render::kTransparent, 0, render::Layer::on_top, 1});
-  list.points.push_back({{70, 20, 0}, kGreen, 8, render::kTransparent, 0, render::Layer::on_top, 1});
-  const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), size(100, 100));
-  int hidden = 0, seen = 0;
-  for (int x = 12; x < 48; ++x) hidden += near(image.at(x, 49), kRed);
-  for (int x = 52; x < 88; ++x) seen += near(image.at(x, 49), kRed);
-  CHECK(seen == 36);
-  CHECK(hidden > 6);
-  CHECK(hidden < 30);
-  CHECK(image.at(70, 20) == kBlue);
-  const render::Rgba ghost = image.at(30, 20);
-  CHECK(ghost.r > 100);
-  CHECK(ghost.r < 200);
-  CHECK(ghost.b == 255);
-  CHECK(near(image.at(70, 79), kGreen));
-  CHECK(near(image.at(30, 79), render::kWhite));  // a ring
-  CHECK(near(image.at(30, 79 - 6), kGreen, 90));
-}
-
 TEST_CASE("fills follow the even-odd rule, with holes and in any order of segments") {
   render::DrawList list;
   render::DrawFill fill;
@@ -263,27 +184,6 @@ TEST_CASE("fills follow the even-odd rule, with holes and in any order of segmen
   const render::IdImage ids = rasterizer().ids(list, pixel_camera(100, 100), 100, 100);
   CHECK(ids.at(45, 99 - 30) == 7);
   CHECK(ids.at(32, 99 - 30) == render::kNoId);
-}
-
-TEST_CASE("cells that share segments leave no gap between them") {
-  render::DrawList list;
-  const std::vector<Vector3d> zigzag = {{50.3, 5, 0}, {42.7, 31.4, 0}, {61.2, 55.5, 0}, {48.8, 95, 0}};
-  for (const bool left : {true, false}) {
-    render::DrawFill fill;
-    fill.colour = left ? kBlue : kGreen;
-    std::vector<Vector3d> p = zigzag;
-    const double x = left ? 5 : 95;
-    p.emplace_back(x, 95, 0);
-    p.emplace_back(x, 5, 0);
-    for (std::size_t i = 0; i < p.size(); ++i) fill.segments.push_back({p[i], p[(i + 1) % p.size()]});
-    list.fills.push_back(fill);
-  }
-  render::RasterOptions o = size(100, 100);
-  o.background = kRed;
-  const render::Image image = rasterizer().draw(list, pixel_camera(100, 100), o);
-  for (int y = 10; y < 90; ++y) {
-    for (int x = 10; x < 90; ++x) REQUIRE(image.at(x, y).r == 0);
-  }
 }
 
 TEST_CASE("ids name the visible face at each pixel") {

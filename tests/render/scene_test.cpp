@@ -97,47 +97,6 @@ TEST_CASE("borders of regions and creases are marked on request") {
   CHECK(creases == 0);
 }
 
-TEST_CASE("the elements of the event are highlighted") {
-  const LrbRep rep = test::dented(shapes::icosphere(0), 2);
-  Wrapper wrapper(rep);
-  const RegionId r = 3;
-  wrapper.refine(r);
-  const std::vector<render::SceneBody> bodies = {{&rep, &wrapper, {}, {}, ""},
-                                                 {&rep, &wrapper, Pose::translation({2, 0, 0}), {}, ""}};
-  render::SceneHighlight highlight;
-  highlight.refining[0] = {r};
-  const SimplexId sa = rep.first_simplex(rep.outermost_faces()[0]), sb = 5;
-  highlight.under_test = {sa, sb};
-  ContactRegion curve, point;
-  curve.loops.push_back({{{1, 0, 0}, {1, 1, 0}, {1, 1, 1}}, true});
-  point.loops.push_back({{{1, 0, 2}}, false});
-  const std::vector<ContactRegion> contacts = {curve, point};
-  highlight.contacts = contacts;
-  const render::Scene scene = render::build_scene(bodies, highlight);
-  int green = 0, yellow = 0, red = 0, rim = 0;
-  for (const render::DrawTriangle& t : scene.list.triangles) {
-    green += t.layer == render::Layer::translucent && t.colour.a > 0 &&
-             render::with_alpha(t.colour, 255) == render::palette::kRefining;
-    yellow +=
-        t.layer == render::Layer::on_top && render::with_alpha(t.colour, 255) == render::palette::kUnderTest;
-  }
-  for (const render::DrawLine& l : scene.list.lines) {
-    red += l.colour == render::palette::kContact && l.layer == render::Layer::on_top;
-    rim += l.points.size() == 2 && l.layer == render::Layer::on_top;
-  }
-  REQUIRE(rep.lids(r).size() == 1);
-  CHECK(rim == 3);  // of the region's lid, a triangle
-  CHECK(green == static_cast<int>(rep.lids(r).size()));
-  CHECK(yellow == 2);
-  CHECK(red == 1);
-  REQUIRE(scene.list.points.size() == 1);
-  CHECK(scene.list.points[0].x == Vector3d(1, 0, 2));
-  for (const char* text : {"region being refined", "pair under test", "contact", "contact, hidden"}) {
-    CHECK(has_key(scene, text));
-  }
-  CHECK(render::contact_points(contacts).size() == 4);
-}
-
 TEST_CASE("layers, regions and values give faces their colours and the frame its scale") {
   const LrbRep rep = test::dented(shapes::icosphere(0), 3);
   Wrapper wrapper(rep);
@@ -240,48 +199,6 @@ TEST_CASE("many bodies: each in its colour, faces in contact in the contact colo
     render::SceneHighlight highlight;
     highlight.refining[0] = {0};
     CHECK_THROWS_AS(render::build_scene(bodies, highlight), InputError);
-  }
-}
-
-TEST_CASE(
-    "pseudo faces in contact are marked where a wrapper is shown, even one that was refined beyond them") {
-  const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
-  for (const LrbRep* rep : {&solid, &flat}) {
-    const FaceId lid = rep->lids(0)[0];
-    std::vector<std::uint8_t> marks(rep->face_count());
-    marks[lid] = marks[0] = 1;
-    Wrapper closed(*rep), open(*rep);
-    open.refine(0);
-    for (const Wrapper* wrapper :
-         {static_cast<const Wrapper*>(nullptr), &std::as_const(closed), &std::as_const(open)}) {
-      render::SceneBody body;
-      body.rep = rep;
-      body.wrapper = wrapper;
-      body.in_contact = marks;
-      const render::Scene scene = render::build_scene(std::vector<render::SceneBody>{body});
-      const auto red = [](render::Rgba c) { return render::with_alpha(c, 255) == render::palette::kContact; };
-      std::size_t real = 0, pseudo = 0;
-      if (rep == &solid) {
-        for (const render::DrawTriangle& t : scene.list.triangles)
-          if (red(t.colour)) ++(t.layer == render::Layer::translucent ? pseudo : real);
-      } else {
-        for (const render::DrawLine& l : scene.list.lines)
-          if (red(l.colour)) ++(l.dash > 0 ? pseudo : real);
-      }
-      render::SceneOptions rims;
-      rims.contact_rims = true;
-      const render::Scene with_rims = render::build_scene(std::vector<render::SceneBody>{body}, {}, rims);
-      const std::size_t more = with_rims.list.lines.size() - scene.list.lines.size();
-      CHECK((more > 0) == (rep == &solid));
-      CHECK(real == 1);
-      CHECK((pseudo > 0) == (wrapper != nullptr));
-      const auto has = [&](const std::string& text) {
-        return std::any_of(scene.key.begin(), scene.key.end(),
-                           [&](const render::LegendItem& item) { return item.text == text; });
-      };
-      CHECK(has("intersecting real faces"));
-      CHECK(has("intersecting pseudo faces") == (wrapper != nullptr));
-    }
   }
 }
 

@@ -124,34 +124,3 @@ TEST_CASE("fills of an SVG cover the rasterizer's pixels") {
   CHECK(compared > kWidth * kHeight / 2);
   CHECK(painted > 2000);
 }
-
-TEST_CASE("lines, points and labels of an SVG") {
-  render::DrawList list;
-  list.lines.push_back(
-      {{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}}, true, {1, 2, 3, 51}, 2.5F, 5, render::kWhite, 1.5F});
-  list.points.push_back({{2, 1, 0}, {255, 0, 0}, 3, render::kWhite, 1});
-  list.labels.push_back({{0, 2, 0}, "a < b & \"c\"", render::kBlack, 11.64F, 0, -4});
-  render::Camera camera;
-  camera.eye = {2, 1, 5};
-  camera.target = {2, 1, 0};
-  camera.orthographic = true;
-  render::SvgOptions options;
-  options.width = 400, options.height = 200, options.title = "R&D";
-  const std::string text = render::svg(list, camera, options);
-  CHECK(text.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"400\" height=\"200\""));
-  CHECK(text.ends_with("</svg>\n"));
-  CHECK(count(text, "<title>R&amp;D</title>") == 1);
-  const std::string path = "<path d=\"M0 200L400 200L400 0Z\" fill=\"none\"";
-  CHECK(count(text, path + " stroke=\"#ffffff\" stroke-width=\"5.5\"") == 1);
-  CHECK(count(text, path + " stroke=\"#010203\" stroke-opacity=\"0.2\" stroke-width=\"2.5\" "
-                           "stroke-linejoin=\"round\" stroke-dasharray=\"5\"/>") == 1);
-  CHECK(text.find("stroke=\"#ffffff\"") < text.find("stroke=\"#010203\""));
-  CHECK(count(text, "<circle cx=\"200\" cy=\"100\" r=\"4\" fill=\"#ffffff\"/>") == 1);
-  CHECK(count(text, "<circle cx=\"200\" cy=\"100\" r=\"3\" fill=\"#ff0000\"/>") == 1);
-  // The middle of the text lies 4 above the point; its base line is given, which every reader of SVG knows.
-  CHECK(count(text, "<text x=\"0\" y=\"-0.54\"") == 1);
-  CHECK(count(text, "font-size=\"10\"") == 1);
-  CHECK(count(text, ">a &lt; b &amp; &quot;c&quot;</text>") == 1);
-  options.background.reset();
-  CHECK(count(render::svg(list, camera, options), "<rect") == 0);
-}

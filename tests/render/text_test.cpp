@@ -51,26 +51,6 @@ TEST_CASE("a text stays within its measured box" * doctest::test_suite("font")) 
   }
 }
 
-TEST_CASE("wrapped lines fit and keep all words" * doctest::test_suite("font")) {
-  test::need_font();
-  render::TextStyle style;
-  style.height = 15;
-  const std::string text =
-      "refine the region behind pseudo face 17 of body A, unbreakableunbreakableunbreakable end";
-  for (const int width : {60, 120, 400, 4000}) {
-    std::string joined;
-    for (const std::string& line : render::default_font().wrap(text, width, style)) {
-      CHECK(render::default_font().measure(line, style).width <= width);
-      joined += line;
-    }
-    const auto without_spaces = [](std::string s) {
-      std::erase(s, ' ');
-      return s;
-    };
-    CHECK(without_spaces(joined) == without_spaces(text));
-  }
-}
-
 TEST_CASE("a missing font is reported with a remedy") {
   const char* const old = std::getenv("LRB_FONT");
   const std::string kept = old == nullptr ? "" : old;
