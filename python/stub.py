@@ -43,13 +43,15 @@ _Progress = Callable[[str, int, int], object] | bool
 _Shape = Body | _Mesh  # a mesh of another library, such as a trimesh.Trimesh
 
 def _encode_png(pixels: npt.ArrayLike) -> bytes: ...
+def _numbers(given: object, what: str, shape: tuple[int, ...]) -> _Floats: ...
+def _integers(given: object, what: str, shape: tuple[int, ...]) -> _Keys: ...
 """
 ARRAYS = {"float64": "_Floats", "uint32": "_Ids", "bool": "_Flags", "int64": "_Keys", "str": "npt.NDArray[np.str_]"}
 ARRAYS.update({name: f"npt.NDArray[np.{name}]" for name in ("int8", "uint8", "uint64")}, records="npt.NDArray[np.void]")
 PARAMETERS = {  # the type: its parameters, some of one function only
     "_Shape": "a b body",
     "Sequence[_Shape]": "bodies_a bodies_b",
-    "npt.ArrayLike": "vertices points boxes pose pose_a pose_b poses_a poses_b motion_a along",
+    "npt.ArrayLike": "vertices points pose pose_a pose_b poses_a poses_b motion_a along",
     "npt.ArrayLike | Sequence[Sequence[int]]": "faces",
     "int": "seed threads max_lids step nearest max_tests max_pairs max_steps max_events key region face",
     "_Indices": "pair",
@@ -67,7 +69,7 @@ PARAMETERS = {  # the type: its parameters, some of one function only
     "Manifolds": "previous",
 }
 RETURNS = {  # the type, for one pose and for many where that makes a difference: functions
-    "Body": "Body.load Scene.body Body.__copy__ Body.__deepcopy__",
+    "Body": "Body.load Scene.body",
     "Wrapper": "Wrapper.at",
     "Trace": "Scenario.record trace",
     "Outcome": "Scenario.run",
@@ -81,7 +83,6 @@ RETURNS = {  # the type, for one pose and for many where that makes a difference
     "dict[str, Any]": "Body.figures PairExplanation.dict WalkExplanation.dict Trace.summary",
     "list[dict[str, Any]]": "Body.levels",
     "_Floats": "Body.box Scene.pose",
-    "_Ids": "SweepAndPrune.update",
     "int | None": "Wrapper.region_behind",
     "tuple[_Keys, _Floats]": "Scene.near",
     "tuple[int, int, float] | None": "Scene.nearest_boxes",
@@ -188,7 +189,8 @@ def class_lines(cls):
             lines.append(f"def {member}(self{i}) -> {found}: ...")
         elif member in ("__bool__", "__float__", "__len__", "__contains__", "__copy__", "__deepcopy__"):
             more = {"__contains__": ", key: object", "__deepcopy__": ", memo: dict[int, Any], /"}.get(member, "")
-            lines.append(f"def {member}(self{more}) -> {looked_up(RETURNS, f'{name}.{member}', member)}: ...")
+            result = name if "copy" in member else looked_up(RETURNS, f"{name}.{member}", member)
+            lines.append(f"def {member}(self{more}) -> {result}: ...")
         elif type(value).__name__ in ("instancemethod", "staticmethod") and (member == "__init__" or member[0] != "_"):
             lines += ["@staticmethod"] * isinstance(value, staticmethod)
             lines += function_lines(name, member, getattr(cls, member))

@@ -28,8 +28,8 @@ import numpy as np
 from . import _core
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterator, Sequence
-    from typing import Optional, Protocol
+    from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+    from typing import Optional, Protocol, Union
 
     import numpy.typing as npt
 
@@ -45,40 +45,35 @@ if TYPE_CHECKING:
     _Pose = Optional[npt.ArrayLike]
     _Placed = tuple[Body, _Floats]
     _Names = tuple[Any, Any]
-    _Contacts = list["ContactData"]
-    _Nearest = Optional["DistanceData"]
+    _Other = Union["Crowd", _Placed, None]
 
 
 class Shown:
-    """Displays an object in one line, with its public attributes and properties."""
+    """Displays an object in one line, with its public attributes."""
 
     def __repr__(self) -> str:
-        names = [name for name in vars(self) if not name.startswith("_")]
-        names += [name for name, value in vars(type(self)).items() if isinstance(value, property)]
-        shown = ", ".join(f"{name}={_short(getattr(self, name))}" for name in names)
-        return f"<{type(self).__module__}.{type(self).__name__}{' ' if shown else ''}{shown}>"
+        shown = ", ".join(f"{name}={_short(value)}" for name, value in vars(self).items() if name[0] != "_")
+        return f"<{type(self).__module__}.{type(self).__name__}{' ' * bool(shown)}{shown}>"
 
 
 def _short(value: Any) -> str:
-    """Return a value in a few characters: numbers rounded, lists and large arrays counted."""
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    if isinstance(value, np.ndarray) and value.size > 4:
-        return f"({', '.join(map(str, value.shape))}) array"
-    if isinstance(value, list) and len(value) > 2:
-        return f"[{len(value)} items]"
-    if isinstance(value, (list, np.ndarray)):
-        return "[" + ", ".join(map(_short, value)) + "]"
-    text = repr(value)
-    return text if len(text) <= 80 else f"<{type(value).__name__}>"
+    """Return a value in a few characters: lists and large arrays are counted."""
+    if isinstance(value, np.ndarray):
+        return str(value.tolist()) if value.size <= 4 else f"{value.shape} array"
+    return f"[{len(value)} items]" if isinstance(value, list) and len(value) > 2 else repr(value)
 
 
 class Crowd:
-    """Labelled objects in a Scene: the core of both collision managers."""
+    """Labelled objects in a Scene: the core of both collision managers. Queries ask for all pairs of its objects;
+    or for pairs with those of another Crowd; or with a body at a pose, which is the first of a pair and called
+    `outside`.
+    """
 
-    def __init__(self) -> None:
+    def __init__(self, objects: Iterable[tuple[Any, Body, _Floats]] = ()) -> None:
         self.scene = _core.Scene()
         self.labels: dict[int, Any] = {}  # by key
+        for each in objects:
+            self.add(*each)
 
     def add(self, label: Any, body: Body, pose: _Floats) -> int:
         """Add an object. Returns its key."""
@@ -91,29 +86,45 @@ class Crowd:
         self.scene.remove(key)
         del self.labels[key]
 
-    def copy(self) -> Crowd:
-        """Return a scene of the same objects."""
-        copy = Crowd()
-        for key, label in self.labels.items():
-            copy.add(label, *self.placed(key))
-        return copy
-
     def placed(self, key: int) -> _Placed:
         """Return the body of an object and its pose."""
         return self.scene.body(key), self.scene.pose(key)
 
-    def against(
-        self, other: Crowd | _Placed | None, outside: Any = None
-    ) -> tuple[tuple[Any, ...], Callable[[int, int], _Names]]:
-        """Return the arguments that select `other` in the scene's functions, and a function from pairs of keys
-        to labels. outside: the label of a body that is not in a scene, the first of a pair.
+    def objects(self) -> list[tuple[Any, Body, _Floats]]:
+        """Return label, body and pose of each object."""
+        return [(label, *self.placed(key)) for key, label in self.labels.items()]
+
+    def against(self, other: _Other, outside: Any) -> tuple[tuple[Any, ...], Callable[[int, int], _Names]]:
+        """Return the arguments that select `other` in the scene's functions, and a function from pairs of keys to
+        labels.
         """
         if isinstance(other, Crowd):
             theirs = other.labels
             return (other.scene,), lambda a, b: (self.labels[a], theirs[b])
-        if other is None:
-            return (), lambda a, b: (self.labels[a], self.labels[b])
-        return other, lambda _, b: (outside, self.labels[b])
+        return other or (), lambda a, b: (self.labels.get(a, outside), self.labels[b])
+
+    def collide(self, other: _Other, outside: Any, data: bool) -> tuple[list[_Names], list[ContactData]]:
+        """Return the labels of colliding objects and, if requested, their contacts."""
+        others, labels_of = self.against(other, outside)
+        theirs = other if isinstance(other, Crowd) else self
+        met = self.scene.collide(*others, mode="all" if data else "any", contacts=data)
+        keys, contacts = met.keys.tolist(), []
+        for (a, b), result in zip(keys, list(met) if data else []):
+            first = other if isinstance(other, tuple) else self.placed(a)
+            faces = result.face_pairs.tolist()
+            for i, point, normal, depth in contacts_of(result, first, theirs.placed(b)):
+                contacts.append(ContactData(labels_of(a, b), faces[i], point=point, normal=normal, depth=depth))
+        return [labels_of(a, b) for a, b in keys], contacts
+
+    def nearest(self, other: _Other, outside: Any) -> tuple[float, _Names, DistanceData | None]:
+        """Return distance, labels and data of the closest pair."""
+        others, labels_of = self.against(other, outside)
+        found = self.scene.nearest(*others, solids=True)
+        if found is None:
+            return math.inf, (None, None), None
+        names, distance = labels_of(*found[:2]), found[2].solids[1]
+        points = dict(zip(names, found[2].points))
+        return distance, names, DistanceData(names, found[2].faces, distance=distance, _points=points)
 
 
 def contacts_of(result: Result, a: _Placed, b: _Placed) -> Iterator[tuple[int, _Floats, _Floats, float]]:
@@ -179,56 +190,49 @@ def body_of(mesh: _Mesh) -> Body:
     """
     if isinstance(mesh, _core.Body):
         return mesh
-    found = [getattr(mesh, name, None) for name in ("vertices", "faces", "triangles")]
-    vertices, faces = found[0], found[2] if found[1] is None else found[1]
+    vertices, faces, triangles = (getattr(mesh, name, None) for name in ("vertices", "faces", "triangles"))
+    faces = triangles if faces is None else faces
     if vertices is None or faces is None:
-        kind = type(mesh).__name__
-        raise TypeError(f"mesh: expected something with vertices and faces, got {kind}")
-    vertices, faces = np.ascontiguousarray(vertices), np.ascontiguousarray(faces)
-    key = tuple(
-        (a.dtype.str, a.shape, hashlib.blake2b(a.view(np.uint8).reshape(-1) if a.size else b"").digest())
-        for a in (vertices, faces)
-    )
+        raise TypeError(f"mesh: expected something with vertices and faces, got {type(mesh).__name__}")
+    key = None  # of lists and masked arrays, which Body reads
+    arrays = [a if isinstance(a, (list, tuple)) else np.asanyarray(a) for a in (vertices, faces)]
+    if all(isinstance(a, np.ndarray) and a.dtype.kind in "fiu" and not np.ma.isMA(a) for a in arrays):
+        key = tuple((a.dtype.str, a.shape, hashlib.blake2b(a.tobytes()).digest()) for a in arrays)
     with _lock:
         body = _bodies.pop(key, None)
     if body is None:
         body = _core.Body(vertices, faces, regions=False, name="mesh")
     with _lock:
-        _bodies[key] = body
+        if key is not None:
+            _bodies[key] = body
         if len(_bodies) > _MOST:
             _bodies.popitem(last=False)
     return body
 
 
 def _pose_of(transform: _Pose) -> _Floats:
-    pose = np.eye(4) if transform is None else np.array(transform, dtype=float)
-    if pose.shape != (4, 4):
-        raise _core.InputError(f"transform: expected shape (4, 4), got {pose.shape}")
-    return pose
+    return np.eye(4) if transform is None else _core._numbers(transform, "transform", (4, 4))
 
 
 def _answer(first: Any, *rest: tuple[bool, Any]) -> Any:
-    """Return the requested values: `first` alone, or followed by the values of `rest`, a list of
-    (wanted, value), that are wanted.
-    """
+    """Return `first`, followed by the values of `rest`, a list of (wanted, value), that are wanted, if any."""
     more = tuple(value for wanted, value in rest if wanted)
     return (first, *more) if more else first
 
 
-def _sorted_names(names: _Names) -> _Names:
-    try:
-        a, b = sorted(names)
-    except TypeError:  # names of different types
-        a, b = sorted(names, key=str)
-    return a, b
+def _sorted_names(*names: Any) -> Any:
+    return tuple(sorted(names, key=lambda name: (type(name).__name__, name)))
 
 
 class CollisionManager:
-    """Collisions and distances of named objects. Accepts any object with `vertices` and
-    `faces`, or a Body. The objects are bodies of a Scene.
-    """
+    """Collisions and distances of named objects. Accepts any object with `vertices` and `faces`, or a Body. The
+    objects are bodies of a Scene.
 
-    # What queries return depends on two flags: a bool or float alone, or a tuple.
+    in_collision_...: return a bool; with return_names also the set of colliding objects, or of pairs of them; with
+    return_data also a list of ContactData. min_distance_...: return a float, inf without objects; with return_names
+    also the closest object or pair; with return_data also a DistanceData. transform: (4, 4) float. Methods raise
+    ValueError for a name that is unknown. Without flags, queries return a bool or float alone, else a tuple.
+    """
 
     def __init__(self) -> None:
         self._crowd = Crowd()
@@ -238,7 +242,7 @@ class CollisionManager:
         return f"<lrbscope.CollisionManager of {len(self._keys)} objects>"
 
     def add_object(self, name: Hashable, mesh: _Mesh, transform: _Pose = None) -> Body:
-        """Add an object, or replace the one of this name. transform: (4, 4) float. Returns its Body."""
+        """Add an object, or replace the one of this name. Returns its Body."""
         body = body_of(mesh)
         key = self._crowd.add(name, body, _pose_of(transform))
         if name in self._keys:
@@ -247,74 +251,54 @@ class CollisionManager:
         return body
 
     def remove_object(self, name: Hashable) -> None:
-        """Remove an object. Raises ValueError if the name is unknown."""
+        """Remove an object."""
         self._crowd.remove(self._known(name))
         del self._keys[name]
 
     def set_transform(self, name: Hashable, transform: npt.ArrayLike) -> None:
-        """Move an object. transform: (4, 4) float. Raises ValueError if the name is unknown."""
+        """Move an object."""
         self._crowd.scene.move(self._known(name), _pose_of(transform))
 
     def in_collision_single(
         self, mesh: _Mesh, transform: _Pose = None, return_names: bool = False, return_data: bool = False
     ) -> Any:
-        """Return True if a mesh collides with any object.
-
-        With return_names also a set of names; with return_data also a list of ContactData, in which the mesh is
-        called '__external' and is the first object.
-        """
+        """Return whether a mesh collides with any object. In ContactData it is called '__external' and comes first."""
         outside = body_of(mesh), _pose_of(transform)
-        hit, names, data = self._collide(return_names, return_data, outside)
-        return _answer(hit, (return_names, {b for _, b in names}), (return_data, data))
+        return self._collide(outside, return_names, return_data, lambda _, b: b)
 
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
-        """Return True if any two objects collide.
-
-        With return_names also a set of pairs of names, each in alphabetical order; with return_data also a
-        list of ContactData.
-        """
-        hit, names, data = self._collide(return_names, return_data)
-        return _answer(hit, (return_names, {_sorted_names(n) for n in names}), (return_data, data))
+        """Return whether any two objects collide. Pairs of names are in alphabetical order."""
+        return self._collide(None, return_names, return_data, _sorted_names)
 
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
-        """Return True if any object collides with one of another manager.
-
-        With return_names also a set of pairs of names, this manager's first; with return_data also a list of
-        ContactData.
-        """
-        hit, names, data = self._collide(return_names, return_data, self._other(other_manager))
-        return _answer(hit, (return_names, set(names)), (return_data, data))
+        """Return whether any object collides with one of another manager. This manager's names come first."""
+        return self._collide(self._other(other_manager), return_names, return_data, lambda a, b: (a, b))
 
     def min_distance_single(
         self, mesh: _Mesh, transform: _Pose = None, return_name: bool = False, return_data: bool = False
     ) -> Any:
-        """Return the distance from a mesh to the closest object, or inf if there is no object.
-
-        With return_name also its name; with return_data also a DistanceData, in which the mesh is called
-        '__external'.
-        """
-        distance, names, data = self._nearest((body_of(mesh), _pose_of(transform)))
+        """Return the distance from a mesh to the closest object. In DistanceData the mesh is called '__external'."""
+        distance, names, data = self._crowd.nearest((body_of(mesh), _pose_of(transform)), "__external")
         return _answer(distance, (return_name, names[1]), (return_data, data))
 
-    def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
-        """Return the minimum distance between two objects, or inf if there are fewer than two.
-
-        With return_names also their names in alphabetical order; with return_data also a DistanceData.
+    def min_distance_internal(self, name: Hashable = None, return_names: bool = False, return_data: bool = False) -> Any:
+        """Return the minimum distance between two objects; `name`: between this one and the others. Names are in
+        alphabetical order.
         """
-        distance, names, data = self._nearest()
-        names = names if data is None else _sorted_names(names)
-        return _answer(distance, (return_names, names), (return_data, data))
+        crowd, one = self._crowd, None
+        if name is not None:
+            one = crowd.placed(self._known(name))
+            crowd = Crowd(each for each in crowd.objects() if each[0] != name)
+        distance, names, data = crowd.nearest(one, name)
+        return _answer(distance, (return_names, _sorted_names(*names)), (return_data, data))
 
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
-        """Return the minimum distance to the objects of another manager, or inf if either has no objects.
-
-        With return_names also the names, this manager's first; with return_data also a DistanceData.
-        """
-        distance, names, data = self._nearest(self._other(other_manager))
+        """Return the minimum distance to the objects of another manager. This manager's name comes first."""
+        distance, names, data = self._crowd.nearest(self._other(other_manager), None)
         return _answer(distance, (return_names, names), (return_data, data))
 
     def _known(self, name: Hashable) -> int:
@@ -323,39 +307,14 @@ class CollisionManager:
         return self._keys[name]
 
     def _other(self, manager: CollisionManager) -> Crowd:
-        crowd = manager._crowd
-        return crowd.copy() if crowd is self._crowd else crowd  # with itself: each object intersects itself
+        crowd = manager._crowd  # with itself: each object intersects itself
+        return Crowd(crowd.objects()) if crowd is self._crowd else crowd
 
-    def _collide(
-        self, want_names: bool, want_data: bool, other: Crowd | _Placed | None = None
-    ) -> tuple[bool, list[_Names], _Contacts]:
-        """Return whether any pair collides, the names of colliding objects, and their contacts."""
-        others, names_of = self._crowd.against(other, "__external")
-        scene = self._crowd.scene
-        if not (want_names or want_data):
-            return scene.any_meet(*others), [], []
-        met = scene.collide(*others, mode="all" if want_data else "any", contacts=want_data)
-        keys = met.keys.tolist()
-        names, data = [names_of(a, b) for a, b in keys], []
-        theirs = other if isinstance(other, Crowd) else self._crowd
-        if not want_data:
-            return bool(names), names, data
-        for pair, (a, b), result in zip(names, keys, met):
-            first = other if isinstance(other, tuple) else self._crowd.placed(a)
-            faces = result.face_pairs.tolist()
-            for i, point, normal, depth in contacts_of(result, first, theirs.placed(b)):
-                data.append(ContactData(pair, faces[i], point=point, normal=normal, depth=depth))
-        return bool(names), names, data
-
-    def _nearest(self, other: Crowd | _Placed | None = None) -> tuple[float, _Names, _Nearest]:
-        """Return distance, names and data of the closest pair."""
-        others, names_of = self._crowd.against(other, "__external")
-        found = self._crowd.scene.nearest(*others, solids=True)
-        if found is None:
-            return math.inf, (None, None), None
-        a, b, nearest = found
-        names, distance = names_of(a, b), nearest.solids[1]
-        return distance, names, DistanceData(names, nearest.faces, distance=distance, _points=dict(zip(names, nearest.points)))
+    def _collide(self, other: _Other, names: bool, data: bool, named: Callable[[Any, Any], Any]) -> Any:
+        if not (names or data):
+            return self._crowd.scene.any_meet(*self._crowd.against(other, None)[0])
+        met, contacts = self._crowd.collide(other, "__external", data)
+        return _answer(bool(met), (names, {named(*pair) for pair in met}), (data, contacts))
 
 
 def scene_to_collision(scene: Any) -> tuple[CollisionManager, dict[Any, Body]]:

@@ -17,7 +17,9 @@ Unsupported: Halfspace, Plane, OcTree, costs, motions other than CCDM_TRANS and 
 
 from __future__ import annotations
 
+import itertools
 import math
+import operator
 import sys
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -26,16 +28,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from .collision import Crowd, Shown, _short, contacts_of
+from .collision import Crowd, Shown, contacts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     import numpy.typing as npt
 
-    from ._core import Body, Result
+    from ._core import Body, Clash, Result, _Floats
 
-    _Floats = npt.NDArray[np.float64]
     _Surface = tuple[_Floats, Any]  # vertices and faces
 
 facets: int = 64
@@ -46,74 +47,72 @@ class Unsupported(NotImplementedError):
     """Raised for features of FCL that this module does not support."""
 
 
-class GJKSolverType(IntEnum):
-    """The solver of FCL; has no effect here."""
-
-    GST_LIBCCD, GST_INDEP = range(2)
-
-
-class CCDMotionType(IntEnum):
-    """The motion of objects between two poses."""
-
-    CCDM_TRANS, CCDM_LINEAR, CCDM_SCREW, CCDM_SPLINE = range(4)
-
-
-class CCDSolverType(IntEnum):
-    """The solver of FCL; has no effect here."""
-
-    CCDC_NAIVE, CCDC_CONSERVATIVE_ADVANCEMENT, CCDC_RAY_SHOOTING, CCDC_POLYNOMIAL_SOLVER = range(4)
+# Numbers of FCL. OT_BVH is a mesh, a surface; OT_GEOM a shape, a solid. Solvers have no effect here.
+OBJECT_TYPE = IntEnum("OBJECT_TYPE", "OT_UNKNOWN OT_BVH OT_GEOM OT_OCTREE OT_COUNT", start=0)
+NODE_TYPE = IntEnum(
+    "NODE_TYPE",
+    "BV_UNKNOWN BV_AABB BV_OBB BV_RSS BV_kIOS BV_OBBRSS BV_KDOP16 BV_KDOP18 BV_KDOP24 GEOM_BOX GEOM_SPHERE"
+    " GEOM_ELLIPSOID GEOM_CAPSULE GEOM_CONE GEOM_CYLINDER GEOM_CONVEX GEOM_PLANE GEOM_HALFSPACE GEOM_TRIANGLE"
+    " GEOM_OCTREE NODE_COUNT",
+    start=0,
+)
+GJKSolverType = IntEnum("GJKSolverType", "GST_LIBCCD GST_INDEP", start=0)
+CCDMotionType = IntEnum("CCDMotionType", "CCDM_TRANS CCDM_LINEAR CCDM_SCREW CCDM_SPLINE", start=0)
+CCDSolverType = IntEnum(
+    "CCDSolverType", "CCDC_NAIVE CCDC_CONSERVATIVE_ADVANCEMENT CCDC_RAY_SHOOTING CCDC_POLYNOMIAL_SOLVER", start=0
+)
 
 
-def _array(given: npt.ArrayLike, shape: tuple[int, ...], what: str) -> _Floats:
-    out = np.array(given, dtype=float)
-    out = out.squeeze() if len(shape) == 1 else out
-    if out.shape != shape:
-        raise ValueError(f"{what}: expected shape {shape}, got {np.shape(given)}")
-    return out
+class Transform:
+    """A rotation and a translation: Transform(), (q), (R), (T), (q, T), (R, T) or (Transform); q is w, x, y, z."""
 
-
-class _Posed:
-    """A rotation and a translation."""
-
-    def __init__(self) -> None:
+    def __init__(self, *args: npt.ArrayLike | Transform) -> None:
         self._pose = np.eye(4)
+        given: list[Any] = list(args)
+        if len(given) > 2:
+            raise ValueError("Too many arguments to Transform().")
+        if len(given) == 1 and isinstance(given[0], Transform):
+            self.setTransform(given.pop())
+        elif len(given) == 2 or (given and np.size(given[0]) == 3):
+            self.setTranslation(given.pop())
+        if given:
+            self.setQuatRotation(given[0]) if np.size(given[0]) == 4 else self.setRotation(given[0])
+
+    def __repr__(self) -> str:
+        return f"<lrbscope.fcl.Transform {self.getRotation().tolist()}, {self.getTranslation().tolist()}>"
 
     def getTranslation(self) -> _Floats:
-        """Return the translation, (3,)."""
         return self._pose[:3, 3].copy()
 
     def setTranslation(self, T: npt.ArrayLike) -> None:
-        """Set the translation, (3,)."""
-        self._pose[:3, 3] = _array(T, (3,), "a translation")
+        self._pose[:3, 3] = _core._numbers(np.squeeze(T), "translation", (3,))
 
     def getRotation(self) -> _Floats:
-        """Return the rotation, (3, 3)."""
         return self._pose[:3, :3].copy()
 
     def setRotation(self, R: npt.ArrayLike) -> None:
-        """Set the rotation, (3, 3)."""
-        self._pose[:3, :3] = _array(R, (3, 3), "a rotation")
+        self._pose[:3, :3] = _core._numbers(R, "rotation", (3, 3))
 
     def getQuatRotation(self) -> _Floats:
         """Return the rotation as w, x, y, z with w >= 0."""
         r = self._pose[:3, :3]
-        squares = np.array([np.trace(r), *(2 * np.diag(r) - np.trace(r))]) + 1
-        differences = {(0, 1): r[2, 1] - r[1, 2], (0, 2): r[0, 2] - r[2, 0], (0, 3): r[1, 0] - r[0, 1]}
-        sums = {(1, 2): r[0, 1] + r[1, 0], (1, 3): r[0, 2] + r[2, 0], (2, 3): r[1, 2] + r[2, 1]}
-        products = {**differences, **sums}  # four times q[i] q[j]
-        i = int(np.argmax(squares))  # the largest component, to avoid cancellation
-        q = np.array([squares[i] if j == i else products[min(i, j), max(i, j)] for j in range(4)])
-        q /= np.linalg.norm(q)
-        return -q if q[0] < 0 else q
+        products = np.empty((4, 4))  # 4 q_i q_j
+        products[0, 0] = 1 + np.trace(r)
+        products[0, 1:] = products[1:, 0] = r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]
+        products[1:, 1:] = r + r.T + (1 - np.trace(r)) * np.eye(3)
+        q: _Floats = products[np.argmax(np.diag(products))]  # of the largest component, to avoid cancellation
+        return q / float(np.copysign(np.linalg.norm(q), q[0]))
 
     def setQuatRotation(self, q: npt.ArrayLike) -> None:
         """Set the rotation from w, x, y, z, of any length but 0."""
-        q = _array(q, (4,), "a quaternion")
-        length = np.linalg.norm(q)
-        if not length > 0:
-            raise ValueError("a quaternion: expected one other than zero")
-        w, v = q[0] / length, q[1:] / length
-        self.setRotation((w * w - v @ v) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * np.cross(v, np.eye(3)).T)
+        q = _core._numbers(q, "quaternion", (4,))
+        if not np.linalg.norm(q) > 0:
+            raise ValueError("quaternion: expected one other than zero")
+        w, *v = q / np.linalg.norm(q)
+        self.setRotation((w * w - np.dot(v, v)) * np.eye(3) + 2 * np.outer(v, v) + 2 * w * np.cross(v, np.eye(3)).T)
+
+    def setTransform(self, tf: Transform) -> None:
+        self._pose = tf.pose
 
     @property
     def pose(self) -> _Floats:
@@ -121,54 +120,21 @@ class _Posed:
         return self._pose.copy()
 
 
-class Transform(_Posed):
-    """A rotation and a translation: Transform(), (q), (R), (T), (q, T), (R, T) or (Transform); q is w, x,
-    y, z.
-    """
-
-    def __init__(self, *args: npt.ArrayLike | _Posed) -> None:
-        super().__init__()
-        given: list[Any] = list(args)
-        if len(given) > 2:
-            raise ValueError("Too many arguments to Transform().")
-        if len(given) == 1 and isinstance(given[0], _Posed):
-            self._pose = given.pop().pose
-        if len(given) == 2 or (given and np.shape(given[0]) == (3,)):
-            self.setTranslation(given.pop())
-        if given and np.shape(given[0]) == (3, 3):
-            self.setRotation(given[0])
-        elif given and np.shape(given[0]) == (4,):
-            self.setQuatRotation(given[0])
-        elif given:
-            raise ValueError("Invalid input to Transform().")
-
-    def __repr__(self) -> str:
-        parts = (self.getRotation(), self.getTranslation())
-        rotation, translation = (np.array2string(x, separator=", ") for x in parts)
-        return f"<lrbscope.fcl.Transform {' '.join(rotation.split())}, {' '.join(translation.split())}>"
-
-
-class CollisionGeometry:
+class CollisionGeometry(Shown):
     """A shape. Its body is made on first use."""
 
-    _node_type = 0
-    _object_type = 2  # a shape: a solid; 1: a mesh, a surface
+    _node_type = NODE_TYPE.BV_UNKNOWN
     _made: Body | None = None
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_"):  # a dimension, which the body depends on
             self._made = None
-            if isinstance(value, (list, tuple, np.ndarray)):
-                value = np.array(value, dtype=float)
-                value.flags.writeable = False
+            value = _core._numbers(value, name, np.shape(value))
+            value.flags.writeable = False
+            value = value if value.ndim else float(value)
         object.__setattr__(self, name, value)
 
-    def __repr__(self) -> str:
-        dimensions = [f"{name}={_short(value)}" for name, value in vars(self).items() if not name.startswith("_")]
-        return f"<lrbscope.fcl.{' '.join([type(self).__name__, ', '.join(dimensions)]).strip()}>"
-
-    def getNodeType(self) -> int:
-        """Return FCL's number of the kind of shape."""
+    def getNodeType(self) -> NODE_TYPE:
         return self._node_type
 
     def computeLocalAABB(self) -> None:
@@ -189,60 +155,43 @@ class CollisionGeometry:
             self._made = _core.Body(*self._surface(), regions=False, name=type(self).__name__)
         return self._made
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {key: value for key, value in self.__dict__.items() if key != "_made"}
-
 
 class BVHModel(CollisionGeometry):
     """A triangle mesh: beginModel(), then addSubModel(), addTriangle() or addVertex(), then endModel()."""
 
-    _node_type = 5  # OBBRSS, as in python-fcl
-    _object_type = 1
+    _node_type = NODE_TYPE.BV_OBBRSS
 
     def __init__(self) -> None:
         self._state = 0  # 1: after beginModel(), 2: after endModel()
         self._vertices: list[_Floats] = []
-        self._triangles: list[tuple[int, int, int]] = []
+        self._triangles: list[list[int]] = []
 
     def num_tries_(self) -> int:
-        """Return the number of triangles."""
         return len(self._triangles)
 
     def buildState(self) -> int:
-        """Return 0 before beginModel(), 1 between beginModel() and endModel(), then 2."""
         return self._state
 
     def beginModel(self, num_tris_: int = 0, num_vertices_: int = 0) -> int:
-        """Start a new model. The arguments have no effect. Returns 0."""
         self._state, self._vertices, self._triangles, self._made = 1, [], [], None
         return 0
 
     def addVertex(self, x: float, y: float, z: float) -> bool:
-        """Add a vertex."""
-        self._check(1)
-        self._vertices.append(_array([x, y, z], (3,), "a vertex"))
-        return True
+        return self.addSubModel([[x, y, z]], np.empty((0, 3)))
 
     def addTriangle(self, v1: npt.ArrayLike, v2: npt.ArrayLike, v3: npt.ArrayLike) -> bool:
         """Add a triangle of three points, (3,) each."""
-        return self.addSubModel([_array(v, (3,), "a vertex") for v in (v1, v2, v3)], [[0, 1, 2]])
+        return self.addSubModel([_core._numbers(v, "vertex", (3,)) for v in (v1, v2, v3)], [[0, 1, 2]])
 
     def addSubModel(self, verts: npt.ArrayLike, triangles: npt.ArrayLike) -> bool:
         """Add a mesh: verts (n, 3) float, triangles (m, 3) int."""
         self._check(1)
-        verts, triangles = np.asarray(verts, dtype=float), np.asarray(triangles)
-        for a, what in ((verts, "verts"), (triangles, "triangles")):
-            if a.ndim != 2 or a.shape[1] != 3:
-                raise ValueError(f"{what}: expected shape (n, 3), got {a.shape}")
-        if triangles.dtype.kind not in "iu":
-            raise ValueError(f"triangles: expected integers, got {triangles.dtype}")
-        n = len(self._vertices)
-        self._vertices += list(verts)
-        self._triangles += [(int(a) + n, int(b) + n, int(c) + n) for a, b, c in triangles]
+        corners = _core._numbers(verts, "verts", (-1, 3))
+        self._triangles += (_core._integers(triangles, "triangles", (-1, 3)) + len(self._vertices)).tolist()
+        self._vertices += list(corners)
         return True
 
     def endModel(self) -> int:
-        """Finish the model. Returns 0."""
         self._check(1)
         self._state = 2
         self._body()  # raises here if the mesh cannot be queried
@@ -254,8 +203,7 @@ class BVHModel(CollisionGeometry):
 
     def _surface(self) -> _Surface:
         self._check(2)
-        vertices, triangles = np.array(self._vertices), np.array(self._triangles, dtype=np.int64)
-        return vertices.reshape(-1, 3), triangles.reshape(-1, 3)
+        return np.array(self._vertices).reshape(-1, 3), self._triangles
 
 
 class Convex(CollisionGeometry):
@@ -263,15 +211,19 @@ class Convex(CollisionGeometry):
     followed by the corners, in one flat list.
     """
 
-    _node_type = 15
+    _node_type = NODE_TYPE.GEOM_CONVEX
 
     def __init__(self, vertices: npt.ArrayLike, num_faces: int, faces: Iterable[int]) -> None:
-        self.num_faces = num_faces
-        rest = iter(map(int, faces))
-        self._faces = [[next(rest) for _ in range(n)] for n in rest]
-        if len(self._faces) != num_faces:
-            raise ValueError(f"faces: expected {num_faces}, got {len(self._faces)}")
-        self._vertices = np.array(vertices, dtype=float)
+        rest = iter(flat := [operator.index(i) for i in faces])
+        self._faces = [list(itertools.islice(rest, n)) for n in rest]
+        if len(self._faces) != num_faces or sum(map(len, self._faces)) + num_faces != len(flat):
+            raise ValueError(f"faces: expected {num_faces} faces, got {len(self._faces)} in {len(flat)} numbers")
+        self._vertices = _core._numbers(vertices, "vertices", (-1, 3))
+
+    @property
+    def num_faces(self) -> int:
+        """int: the number of faces."""
+        return len(self._faces)
 
     def _surface(self) -> _Surface:
         return self._vertices, self._faces
@@ -280,10 +232,10 @@ class Convex(CollisionGeometry):
 class TriangleP(CollisionGeometry):
     """A triangle of three points, (3,) each."""
 
-    _node_type = 18
+    _node_type = NODE_TYPE.GEOM_TRIANGLE
 
     def __init__(self, a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> None:
-        self.a, self.b, self.c = (_array(v, (3,), "a corner") for v in (a, b, c))
+        self.a, self.b, self.c = (_core._numbers(v, "corner", (3,)) for v in (a, b, c))
 
     def _surface(self) -> _Surface:
         return np.array([self.a, self.b, self.c]), np.array([[0, 1, 2]])
@@ -292,7 +244,7 @@ class TriangleP(CollisionGeometry):
 class Box(CollisionGeometry):
     """A box with these side lengths, centred at the origin."""
 
-    _node_type = 9
+    _node_type = NODE_TYPE.GEOM_BOX
 
     def __init__(self, x: float, y: float, z: float) -> None:
         self.side = np.array([x, y, z], dtype=float)
@@ -303,33 +255,16 @@ class Box(CollisionGeometry):
         return corners * self.side, [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]
 
 
-class _Round(CollisionGeometry):
-    """A surface of revolution about z."""
-
-    radius: float
-    lz: float
-
-    def __init__(self, radius: float, lz: float) -> None:
-        self.radius, self.lz = float(radius), float(lz)
-
-    def _profile(self) -> list[tuple[float, float]]:
-        """Return points (radius, z) from the lower pole to the upper."""
-        raise NotImplementedError
-
-    def _surface(self) -> _Surface:
-        profile = self._profile()
-        angles = 2 * np.pi * np.arange(facets) / facets
-        around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        rings = [np.column_stack([around * r, np.full(facets, z)]) for r, z in profile[1:-1]]
-        poles = [np.array([[0, 0, z]]) for _, z in (profile[0], profile[-1])]
-        faces, last = [], 1 + (len(rings) - 1) * facets
-        for k in range(facets):
-            n = (k + 1) % facets
-            faces.append((0, 1 + n, 1 + k))
-            for low in range(1, last, facets):
-                faces += [(low + k, low + n, low + facets + n), (low + k, low + facets + n, low + facets + k)]
-            faces.append((last + facets, last + k, last + n))
-        return np.concatenate([poles[0], *rings, poles[1]]), faces
+def _revolved(profile: list[tuple[float, float]]) -> _Surface:
+    """Return the surface of revolution about z through points (radius, z), from the lower pole to the upper."""
+    angles = 2 * np.pi * np.arange(facets) / facets
+    rings = [np.column_stack([np.cos(angles) * r, np.sin(angles) * r, np.full(facets, z)]) for r, z in profile[1:-1]]
+    last = 1 + len(rings) * facets
+    rows = np.vstack([np.zeros(facets), np.arange(1, last).reshape(-1, facets), np.full(facets, last)]).astype(int)
+    low, high = rows[:-1].T, rows[1:].T
+    faces = np.stack([low, np.roll(low, -1, 0), np.roll(high, -1, 0), low, np.roll(high, -1, 0), high], 2).reshape(-1, 3)
+    faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2])]  # one triangle for a corner at a pole
+    return np.vstack([[0, 0, profile[0][1]], *rings, [0, 0, profile[-1][1]]]), faces
 
 
 def _arc(radius: float, begin: float, end: float, z: float = 0) -> list[tuple[float, float]]:
@@ -338,22 +273,21 @@ def _arc(radius: float, begin: float, end: float, z: float = 0) -> list[tuple[fl
     return [(radius * math.cos(a), z + radius * math.sin(a)) for a in angles]
 
 
-class Sphere(_Round):
+@dataclass(eq=False, repr=False)
+class Sphere(CollisionGeometry):
     """A sphere."""
 
-    _node_type = 10
+    _node_type = NODE_TYPE.GEOM_SPHERE
+    radius: float
 
-    def __init__(self, radius: float) -> None:
-        self.radius = float(radius)
-
-    def _profile(self) -> list[tuple[float, float]]:
-        return _arc(self.radius, -math.pi / 2, math.pi / 2)
+    def _surface(self) -> _Surface:
+        return _revolved(_arc(self.radius, -math.pi / 2, math.pi / 2))
 
 
 class Ellipsoid(CollisionGeometry):
     """An ellipsoid with these radii along x, y and z."""
 
-    _node_type = 11
+    _node_type = NODE_TYPE.GEOM_ELLIPSOID
 
     def __init__(self, a: float, b: float, c: float) -> None:
         self.radii = np.array([a, b, c], dtype=float)
@@ -363,57 +297,51 @@ class Ellipsoid(CollisionGeometry):
         return vertices * self.radii, faces
 
 
-class Capsule(_Round):
-    """A cylinder of height lz along z with a hemisphere on either end."""
-
-    _node_type = 12
-
-    def _profile(self) -> list[tuple[float, float]]:
-        r, half = self.radius, self.lz / 2
-        return _arc(r, -math.pi / 2, 0, -half) + _arc(r, 0, math.pi / 2, half)
-
-
-class Cone(_Round):
-    """A cone of height lz along z, base down, with the midpoint of its axis at the origin."""
-
-    _node_type = 13
-
-    def _profile(self) -> list[tuple[float, float]]:
-        return [(0, -self.lz / 2), (self.radius, -self.lz / 2), (0, self.lz / 2)]
-
-
-class Cylinder(_Round):
+@dataclass(eq=False, repr=False)
+class Cylinder(CollisionGeometry):
     """A cylinder of height lz along z, centred at the origin."""
 
-    _node_type = 14
+    _node_type = NODE_TYPE.GEOM_CYLINDER
+    radius: float
+    lz: float
 
-    def _profile(self) -> list[tuple[float, float]]:
-        r, half = self.radius, self.lz / 2
+    def _surface(self) -> _Surface:
+        return _revolved(self._profile(self.radius, self.lz / 2))
+
+    def _profile(self, r: float, half: float) -> list[tuple[float, float]]:
         return [(0, -half), (r, -half), (r, half), (0, half)]
 
 
-class _Missing(CollisionGeometry):
-    _instead = "it has no end; take a Box that is large enough"
+class Capsule(Cylinder):
+    """A cylinder of height lz along z with a hemisphere on either end."""
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        raise Unsupported(f"lrbscope.fcl has no {type(self).__name__}: {self._instead}")
+    _node_type = NODE_TYPE.GEOM_CAPSULE
 
-
-class Halfspace(_Missing):
-    """Raises Unsupported: it is unbounded."""
+    def _profile(self, r: float, half: float) -> list[tuple[float, float]]:
+        return _arc(r, -math.pi / 2, 0, -half) + _arc(r, 0, math.pi / 2, half)
 
 
-class Plane(_Missing):
-    """Raises Unsupported: it is unbounded."""
+class Cone(Cylinder):
+    """A cone of height lz along z, base down, with the midpoint of its axis at the origin."""
+
+    _node_type = NODE_TYPE.GEOM_CONE
+
+    def _profile(self, r: float, half: float) -> list[tuple[float, float]]:
+        return [(0, -half), (r, -half), (0, half)]
 
 
-class OcTree(_Missing):
+class OcTree(CollisionGeometry):
     """Raises Unsupported."""
 
-    _instead = "make a mesh of its occupied cells"
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        raise Unsupported("lrbscope.fcl has no Halfspace, Plane or OcTree; take a large Box, or a mesh of occupied cells")
 
 
-class CollisionObject(_Posed):
+Halfspace = OcTree
+Plane = OcTree
+
+
+class CollisionObject(Transform):
     """A geometry at a pose."""
 
     def __init__(
@@ -421,34 +349,25 @@ class CollisionObject(_Posed):
     ) -> None:
         if geom is None:
             raise ValueError("a CollisionObject needs a geometry")
+        super().__init__(tf or Transform())
         self._geom = geom
-        self.setTransform(Transform() if tf is None else tf)
 
     def __repr__(self) -> str:
         return f"<lrbscope.fcl.CollisionObject of {self._geom!r} at {self.getTransform()!r}>"
 
-    def getObjectType(self) -> int:
-        """Return FCL's type number: 1 for a mesh, 2 for a shape."""
-        return self._geom._object_type
+    def getObjectType(self) -> OBJECT_TYPE:
+        return OBJECT_TYPE.OT_GEOM if self._is_shape else OBJECT_TYPE.OT_BVH
 
-    def getNodeType(self) -> int:
-        """Return FCL's number of the kind of shape."""
+    def getNodeType(self) -> NODE_TYPE:
         return self._geom.getNodeType()
 
     def getTransform(self) -> Transform:
-        """Return the pose."""
         return Transform(self)
 
-    def setTransform(self, tf: Transform) -> None:
-        """Set the pose."""
-        self._pose = tf.pose
-
     def isOccupied(self) -> bool:
-        """Return True: there are no octree cells."""
         return True
 
     def isFree(self) -> bool:
-        """Return False."""
         return False
 
     isUncertain = isFree
@@ -460,13 +379,12 @@ class CollisionObject(_Posed):
 
     @property
     def _is_shape(self) -> bool:
-        return self._geom._object_type == 2
+        return not isinstance(self._geom, BVHModel)
 
 
-@dataclass(repr=False, eq=False)
+@dataclass(eq=False, repr=False)
 class Contact(Shown):
     """A contact of two objects. b1, b2: triangles, -1 for shapes; normal: from o1 to o2; pos: world frame."""
-
     o1: CollisionGeometry | None = None
     o2: CollisionGeometry | None = None
     b1: int = -1
@@ -480,10 +398,9 @@ class CostSource:
     """Never created: costs are not supported."""
 
 
-@dataclass(repr=False, eq=False)
+@dataclass(eq=False, repr=False)
 class CollisionRequest(Shown):
     """num_max_contacts: maximum number of contacts; enable_contact: with point, normal and depth."""
-
     num_max_contacts: int = 1
     enable_contact: bool = False
     num_max_cost_sources: int = 1
@@ -496,19 +413,17 @@ class CollisionRequest(Shown):
             raise Unsupported("lrbscope.fcl does not support costs; leave enable_cost out")
 
 
-@dataclass(repr=False, eq=False)
+@dataclass(eq=False, repr=False)
 class CollisionResult(Shown):
     """is_collision: bool; contacts: list of Contact."""
-
     is_collision: bool = False
     contacts: list[Contact] = field(default_factory=list)
     cost_sources: list[CostSource] = field(default_factory=list)
 
 
-@dataclass(repr=False, eq=False)
+@dataclass(eq=False, repr=False)
 class DistanceRequest(Shown):
     """Closest points are always computed."""
-
     enable_nearest_points: bool = False
     enable_signed_distance: bool = False
     gjk_solver_type: int = GJKSolverType.GST_LIBCCD
@@ -518,17 +433,15 @@ class DistanceResult(Shown):
     """min_distance; nearest_points: two (3,) arrays, world frame; b1, b2: triangles, -1 for shapes."""
 
     def __init__(self, min_distance_: float = sys.float_info.max) -> None:
-        self.min_distance = min_distance_
+        self.min_distance, self.b1, self.b2 = min_distance_, -1, -1
         self.nearest_points: list[Any] = [None, None]
         self.o1: CollisionGeometry | None = None
         self.o2: CollisionGeometry | None = None
-        self.b1 = self.b2 = -1
 
 
-@dataclass(repr=False, eq=False)
+@dataclass(eq=False, repr=False)
 class ContinuousCollisionRequest(Shown):
     """toc_err: maximum error of the time of contact. The rest has no effect here."""
-
     num_max_iterations: int = 10
     toc_err: float = 0.0001
     ccd_motion_type: int = CCDMotionType.CCDM_TRANS
@@ -536,30 +449,27 @@ class ContinuousCollisionRequest(Shown):
     ccd_solver_type: int = CCDSolverType.CCDC_NAIVE
 
 
-@dataclass(repr=False, eq=False)
+@dataclass(eq=False, repr=False)
 class ContinuousCollisionResult(Shown):
     """is_collide: bool; time_of_contact: from 0 to 1, 1 if there is no contact."""
-
     is_collide: bool = False
     time_of_contact: float = 1.0
 
 
+@dataclass(eq=False, repr=False)
 class CollisionData(Shown):
     """Data that managers pass to collision callbacks."""
-
-    def __init__(
-        self, request: CollisionRequest | None = None, result: CollisionResult | None = None
-    ) -> None:
-        self.request, self.result = request or CollisionRequest(), result or CollisionResult()
-        self.done = False
+    request: CollisionRequest = field(default_factory=CollisionRequest)
+    result: CollisionResult = field(default_factory=CollisionResult)
+    done: bool = False
 
 
+@dataclass(eq=False, repr=False)
 class DistanceData(Shown):
     """Data that managers pass to distance callbacks."""
-
-    def __init__(self, request: DistanceRequest | None = None, result: DistanceResult | None = None) -> None:
-        self.request, self.result = request or DistanceRequest(), result or DistanceResult()
-        self.done = False
+    request: DistanceRequest = field(default_factory=DistanceRequest)
+    result: DistanceResult = field(default_factory=DistanceResult)
+    done: bool = False
 
 
 def _holds(o1: CollisionObject, o2: CollisionObject, relation: str) -> bool:
@@ -568,31 +478,61 @@ def _holds(o1: CollisionObject, o2: CollisionObject, relation: str) -> bool:
     return holder is not None and holder._is_shape
 
 
-def _ids(o1: CollisionObject, o2: CollisionObject, b1: int = -1, b2: int = -1) -> tuple[Any, ...]:
+def _ids(o1: CollisionObject, o2: CollisionObject, b1: int = -1, b2: int = -1) -> tuple[Any, Any, int, int]:
     """Return o1, o2, b1, b2 of a result."""
-    return (o1._geom, o2._geom, *(-1 if o._is_shape else int(b) for o, b in ((o1, b1), (o2, b2))))
+    return o1._geom, o2._geom, -1 if o1._is_shape else int(b1), -1 if o2._is_shape else int(b2)
+
+
+def _separated(o1: CollisionObject, o2: CollisionObject) -> tuple[Clash, list[_Floats]]:
+    """Return the clash of two shapes, and the points at which they touch once they are separated by its translation,
+    with the second one moved back.
+    """
+    overlap, separate = _core.clash(o1.body, o2.body, o2.pose, o1.pose, volume=False), o2.pose
+    separate[:3, 3] += overlap.translation
+    one, other = _core.distance(o1.body, o2.body, separate, o1.pose).points
+    return overlap, [one, other - overlap.translation]
+
+
+def _contact_of_shapes(o1: CollisionObject, o2: CollisionObject) -> Contact:
+    """Return the contact of two shapes: normal and length of the shortest translation that separates them."""
+    overlap, points = _separated(o1, o2)
+    depth, normal = overlap.depth[1] if overlap.depth else 0.0, overlap.translation
+    if depth > 0:
+        normal = normal / depth
+    elif normals := _core.contact_manifolds(o1.body, o2.body, o2.pose, o1.pose).normals.tolist():  # they touch
+        normal = np.array(normals[0])
+    return Contact(*_ids(o1, o2), normal, np.mean(points, axis=0), depth)
 
 
 def _contacts(o1: CollisionObject, o2: CollisionObject, result: Result, full: bool) -> Iterator[Contact]:
-    """Yield a Contact for each pair of triangles.
-
-    If one object is a shape: for each triangle of the other. For two shapes: for each contact region.
-    """
-    regions = result.regions if o1._is_shape and o2._is_shape else []
-    of_region = {int(i): n for n, region in enumerate(regions) for i in region.pairs}
-    found: Iterable[Any] = ((i,) for i in range(len(result.pairs)))
-    if full:
+    """Yield a Contact for each pair of triangles of two meshes, or for each triangle of a mesh in a shape."""
+    zero = np.zeros(3)
+    found: Iterable[Any] = ((i, zero, zero, 0.0) for i in range(len(result.pairs)))
+    if full and len(result.pairs):
         found = contacts_of(result, (o1.body, o1.pose), (o2.body, o2.pose))
     seen = set()
-    for i, *geometry in found:
-        c = Contact(*_ids(o1, o2, *result.pairs[i]))
-        key = (c.b1, c.b2, of_region.get(i))
-        if key in seen:
-            continue
-        seen.add(key)
-        if full:
-            c.pos, c.normal, c.penetration_depth = geometry
-            c.pos = regions[of_region[i]].centroid if regions else c.pos
+    for i, pos, normal, depth in found:
+        c = Contact(*_ids(o1, o2, *result.pairs[i]), normal, pos, depth)
+        if (c.b1, c.b2) not in seen:
+            seen.add((c.b1, c.b2))
+            yield c
+    shape, mesh = (o1, o2) if o1._is_shape else (o2, o1)
+    if not shape._is_shape or result.relation == "separate":
+        return
+    # Triangles inside the shape: none intersects its surface, so that one corner decides.
+    corners = (mesh.body.vertices @ mesh.getRotation().T + mesh.getTranslation())[mesh.body.triangles]
+    low, high = shape.body.box(shape.pose)
+    candidates = np.flatnonzero(((corners >= low) & (corners <= high)).all(axis=(1, 2)))
+    candidates = np.setdiff1d(candidates, result.pairs[:, 1 if shape is o1 else 0])
+    sides = _core.signed_distance(shape.body, corners[candidates, 0], shape.pose).side
+    for t in candidates[sides < 0].tolist():
+        c = Contact(*_ids(o1, o2, t, t))
+        if full:  # of the deepest corner to the surface
+            ways = _core.signed_distance(shape.body, corners[t], shape.pose)
+            k = int(np.argmin(ways.upper))
+            c.pos, c.penetration_depth = corners[t, k], -float(ways.lower[k])
+            way = ways.points[k] - c.pos if shape is o1 else c.pos - ways.points[k]
+            c.normal = way / np.linalg.norm(way)
         yield c
 
 
@@ -601,19 +541,13 @@ def collide(
 ) -> int:
     """Find the contacts of two objects. Returns their number; adds them to `result`."""
     request, result = request or CollisionRequest(), result or CollisionResult()
-    full = bool(request.enable_contact)
-    mode: Any = "all" if request.num_max_contacts > 1 or full else "any"
-    found = _core.collide(o1.body, o2.body, o2.pose, o1.pose, mode=mode, contacts=full)
-    contacts: list[Contact] = []
-    if len(found.pairs):
-        for c in _contacts(o1, o2, found, full):
-            if len(contacts) >= request.num_max_contacts:
-                break
-            contacts.append(c)
-    elif _holds(o1, o2, found.relation):
-        inner = o1 if found.relation == "a_inside_b" else o2
-        contacts.append(Contact(*_ids(o1, o2)))
-        contacts[0].pos = inner.pose[:3, : inner.body.dim] @ inner.body.vertices[0] + inner.pose[:3, 3]
+    full, shapes = bool(request.enable_contact), o1._is_shape and o2._is_shape
+    mode: Any = "any" if shapes or not (full or request.num_max_contacts > 1) else "all"
+    found = _core.collide(o1.body, o2.body, o2.pose, o1.pose, mode=mode, contacts=full and not shapes)
+    if shapes:
+        contacts = [_contact_of_shapes(o1, o2) if full else Contact(*_ids(o1, o2))] if found else []
+    else:
+        contacts = list(itertools.islice(_contacts(o1, o2, found, full), request.num_max_contacts))
     result.is_collision = result.is_collision or bool(len(found.pairs)) or bool(contacts)
     result.contacts += contacts
     return len(contacts)
@@ -628,18 +562,12 @@ def distance(
     """
     request, result = request or DistanceRequest(), result or DistanceResult()
     found = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
-    shapes = [o for o in (o1, o2) if o._is_shape]
-    value, points = found.upper, [found.points[0], found.points[1]]
-    if (found.meet and shapes) or _holds(o1, o2, found.relation):
+    value, points = found.upper, list(found.points)
+    if (found.meet and (o1._is_shape or o2._is_shape)) or _holds(o1, o2, found.relation):
         value = -1.0
-        if request.enable_signed_distance and len(shapes) == 2:
-            overlap = _core.clash(o1.body, o2.body, o2.pose, o1.pose, volume=False)
+        if request.enable_signed_distance and o1._is_shape and o2._is_shape:
+            overlap, points = _separated(o1, o2)
             value = -overlap.depth[1] if overlap.depth else value
-            # The points at which the shapes touch once they are separated, with the second one moved back.
-            separate = o2.pose
-            separate[:3, 3] += overlap.translation
-            points = list(_core.distance(o1.body, o2.body, separate, o1.pose).points)
-            points[1] = points[1] - overlap.translation
     if value < result.min_distance:
         result.min_distance, result.nearest_points = value, points
         result.o1, result.o2, result.b1, result.b2 = _ids(o1, o2, *found.triangles)
@@ -655,9 +583,7 @@ def defaultCollisionCallback(o1: CollisionObject, o2: CollisionObject, cdata: Co
     return cdata.done
 
 
-def defaultDistanceCallback(
-    o1: CollisionObject, o2: CollisionObject, cdata: DistanceData
-) -> tuple[bool, float]:
+def defaultDistanceCallback(o1: CollisionObject, o2: CollisionObject, cdata: DistanceData) -> tuple[bool, float]:
     """Measure two objects; returns whether to stop, and the minimum distance so far."""
     if not cdata.done:
         distance(o1, o2, cdata.request, cdata.result)
@@ -682,18 +608,15 @@ class DynamicAABBTreeCollisionManager:
         return f"<lrbscope.fcl.DynamicAABBTreeCollisionManager of {self.size()} objects>"
 
     def registerObjects(self, other_objs: Iterable[CollisionObject]) -> None:
-        """Add objects."""
         for o in other_objs:
             self.registerObject(o)
 
     def registerObject(self, obj: CollisionObject) -> None:
-        """Add an object."""
         if not isinstance(obj, CollisionObject):
             raise TypeError(f"expected a CollisionObject, got {type(obj).__name__}")
         self._crowd.add(obj, obj.body, obj.pose)
 
     def unregisterObject(self, obj: CollisionObject) -> None:
-        """Remove an object if it is present."""
         for key in [key for key, o in self._crowd.labels.items() if o is obj]:
             self._crowd.remove(key)
 
@@ -704,19 +627,15 @@ class DynamicAABBTreeCollisionManager:
         """Do nothing."""
 
     def getObjects(self) -> list[CollisionObject]:
-        """Return a list of the objects."""
         return list(self._crowd.labels.values())
 
     def clear(self) -> None:
-        """Remove all objects."""
         self._crowd = Crowd()
 
     def empty(self) -> bool:
-        """Return whether there are no objects."""
         return not self._crowd.labels
 
     def size(self) -> int:
-        """Return the number of objects."""
         return len(self._crowd.labels)
 
     def _moved(self) -> Crowd:
@@ -737,7 +656,7 @@ class DynamicAABBTreeCollisionManager:
             raise ValueError("expected data and callback, optionally after an object or a manager")
         crowd, other = self._moved(), args[0] if len(args) == 3 else self
         if isinstance(other, DynamicAABBTreeCollisionManager):
-            others, objects_of = crowd.against(None if other is self else other._moved())
+            others, objects_of = crowd.against(None if other is self else other._moved(), None)
         else:
             others, of_pair = crowd.against((other.body, other.pose), other)
             objects_of = lambda a, b: of_pair(a, b)[::-1]
@@ -764,17 +683,12 @@ class DynamicAABBTreeCollisionManager:
         if likely is None:
             return
         done, nearest = callback(*objects_of(*likely[:2]), data)
-        if done:
-            return
-        keys, gaps = scene.near(max(nearest, 0.0), *others)
-        for (a, b), gap in zip(keys.tolist(), gaps):
-            if (a, b) == likely[:2]:
-                continue
-            if gap > nearest:
+        keys, gaps = scene.near(0.0 if done else max(nearest, 0.0), *others)
+        for pair, gap in zip(map(tuple, keys.tolist()), gaps):
+            if done or gap > nearest:
                 return
-            done, nearest = callback(*objects_of(a, b), data)
-            if done:
-                return
+            if pair != likely[:2]:
+                done, nearest = callback(*objects_of(*pair), data)
 
 
 def _motion(o: CollisionObject, tf_end: Transform, kind: int) -> _Floats:
@@ -788,13 +702,9 @@ def _motion(o: CollisionObject, tf_end: Transform, kind: int) -> _Floats:
 
 
 def continuousCollide(
-    o1: CollisionObject,
-    tf1_end: Transform,
-    o2: CollisionObject,
-    tf2_end: Transform,
-    request: ContinuousCollisionRequest | None = None,
-    result: ContinuousCollisionResult | None = None,
-) -> float:
+    o1: CollisionObject, tf1_end: Transform, o2: CollisionObject, tf2_end: Transform,
+    request: ContinuousCollisionRequest | None = None, result: ContinuousCollisionResult | None = None,
+) -> float:  # fmt: skip
     """Find the first contact of two objects that move from their poses to the given Transforms.
 
     Depending on ccd_motion_type they keep their rotation (CCDM_TRANS) or rotate by the shortest arc

@@ -2,14 +2,13 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
+#include <future>
 #include <thread>
 
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
+#include "python/src/pickle.hpp"
 #include "python/src/properties.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/parallel.hpp>
@@ -17,14 +16,53 @@
 #include <lrbscope/trace/record_fields.hpp>
 
 namespace lrb::python {
+
+static void find_faces(Answer& answer) {
+  if (answer.faces.empty())
+    for (const SimplexPair& p : answer.result->pairs)
+      answer.faces.push_back({answer.a->face_of_simplex(p.a), answer.b->face_of_simplex(p.b)});
+}
+
+// Members for pickles.
+
+void members(Archive& archive, ContactLoop& x) {
+  archive(x.points, x.closed);
+}
+void members(Archive& archive, ContactRegion& x) {
+  archive(x.pairs, x.loops, x.length, x.area, x.centroid, x.normal, x.depth_estimate);
+}
+void members(Archive& archive, Separation& x) {
+  archive(x.refined, x.face_count);
+}
+void members(Archive& archive, Counters& x) {
+  for_each_field<Counters>([&](const auto& field) { archive(x.*field.member); });
+}
+void members(Archive& archive, CollideResult& x) {
+  archive(x.relation, x.interiors_overlap, x.recursion, x.mode, x.pairs, x.meets, x.contacts, x.regions,
+          x.opened, x.error_bound, x.finished, x.separation, x.counters);
+}
+void members(Archive& archive, Answer& x) {
+  if (!archive.reads()) {
+    find_faces(x);
+    find_depths(x);
+  }
+  CollideResult read;
+  archive(archive.reads() ? read : const_cast<CollideResult&>(*x.result), x.faces, x.depths);
+  if (archive.reads()) x.result = std::make_shared<const CollideResult>(std::move(read));
+}
+
 namespace {
 
-/// A contact region, with the owner of its memory.
+/// A contact region, whose result owns its memory.
 struct Region {
-  std::shared_ptr<const CollideResult> result;
-  const ContactRegion* region;
+  std::shared_ptr<const ContactRegion> region;
   RegionDepth found;
 };
+void members(Archive& archive, Region& x) {
+  ContactRegion read;
+  archive(archive.reads() ? read : const_cast<ContactRegion&>(*x.region), x.found);
+  if (archive.reads()) x.region = std::make_shared<const ContactRegion>(std::move(read));
+}
 
 py::array_t<std::uint32_t> pairs_of(const py::object& self) {
   const auto& pairs = self.cast<const Answer&>().result->pairs;
@@ -33,10 +71,9 @@ py::array_t<std::uint32_t> pairs_of(const py::object& self) {
               reinterpret_cast<const std::uint32_t*>(pairs.data()), self);
 }
 
-py::array_t<std::uint32_t> face_pairs_of(const Answer& answer) {
-  return column(answer.result->pairs, [&](const SimplexPair& p) {
-    return std::array{answer.a->face_of_simplex(p.a), answer.b->face_of_simplex(p.b)};
-  });
+py::array_t<std::uint32_t> face_pairs_of(Answer& answer) {
+  find_faces(answer);
+  return column(answer.faces, std::identity());
 }
 
 /// Returns the corners of all pairs' intersections, and the number of each corner's pair.
@@ -83,9 +120,9 @@ disjoint, the bodies' boxes overlap, and a body is not closed), 'unresolved' (on
   c.def_property_readonly(
       "pairs", &pairs_of,
       "(p, 2) uint32: the intersecting triangles of A and of B, ascending. At most one pair unless mode is 'all'.");
-  property(c, "face_pairs",
-           "(p, 2) uint32: the faces of these triangles; differs from `pairs` for polygons only.",
-           &face_pairs_of);
+  c.def_property_readonly(
+      "face_pairs", &face_pairs_of,
+      "(p, 2) uint32: the faces of these triangles; differs from `pairs` for polygons only.");
   of_result("crosses", "(p,) bool: True if the pair crosses; False if it touches.",
             [](const CollideResult& r) {
               return column(r.meets, [](exact::Meet meet) { return meet == exact::Meet::cross; });
@@ -120,21 +157,22 @@ contacts were requested.)",
       "__bool__", [](const Answer& a) { return in_contact(*a.result); },
       R"(True if the bodies are known to have a point in common: surfaces intersect, or one body is inside the other.)");
   c.def("__repr__", &shown);
+  make_picklable(c);
 }
 
 /// Returns a name of each answer as a numpy array of strings.
 template <class Name>
 py::array names(const Answers& answers, const Name& name) {
   py::list all;
-  for (const CollideResult& result : *answers.all) all.append(py::str(name(result)));
+  for (const Answer& answer : answers.all) all.append(py::str(name(*answer.result)));
   return py::module_::import("numpy").attr("array")(all, py::arg("dtype") = "U16");
 }
 
 /// Returns all pairs of all poses as rows pose, triangle of A, triangle of B.
 py::array_t<std::uint32_t> all_pairs(const Answers& answers) {
   std::vector<std::array<std::uint32_t, 3>> rows;
-  for (std::uint32_t i = 0; i < answers.all->size(); ++i)
-    for (const SimplexPair& p : (*answers.all)[i].pairs) rows.push_back({i, p.a, p.b});
+  for (std::uint32_t i = 0; i < answers.all.size(); ++i)
+    for (const SimplexPair& p : answers.all[i].result->pairs) rows.push_back({i, p.a, p.b});
   return column(rows, std::identity());
 }
 
@@ -142,13 +180,13 @@ py::object item(const Answers& answers, const py::object& which) {
   if (!py::isinstance<py::slice>(which)) {
     const auto i = py::reinterpret_steal<py::object>(PyNumber_Index(which.ptr()));
     if (!i) throw py::error_already_set();
-    return py::cast(answers.at(checked_index(i.cast<py::ssize_t>(), answers.all->size())));
+    return py::cast(answers.all[checked_index(i.cast<py::ssize_t>(), answers.all.size())]);
   }
   std::size_t begin, end, step, n;
-  if (!which.cast<py::slice>().compute(answers.all->size(), &begin, &end, &step, &n))
+  if (!which.cast<py::slice>().compute(answers.all.size(), &begin, &end, &step, &n))
     throw py::error_already_set();
   py::list out;
-  for (; n > 0; --n, begin += step) out.append(answers.at(begin));
+  for (; n > 0; --n, begin += step) out.append(answers.all[begin]);
   return out;
 }
 
@@ -157,8 +195,7 @@ void bind_results(py::module_& m) {
                         "Answers for k poses: a sequence of Result, in the order of the poses.");
   c.def("__getitem__", &item);
   bind_iterator(c);
-  const auto of_each = rows_of(
-      c, "poses", [](const Answers& a) -> const auto& { return *a.all; });
+  const auto of_each = rows_of(c, "poses", &Answers::all);
   property(c, "relations", "(k,) str: Result.relation of each.", [](const Answers& a) {
     return names(a, [](const CollideResult& r) { return to_string(r.relation); });
   });
@@ -166,8 +203,8 @@ void bind_results(py::module_& m) {
     return names(a, [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); });
   });
   of_each("counts", "(k,) int64: the number of pairs of each.",
-          [](const CollideResult& r) { return static_cast<std::int64_t>(r.pairs.size()); });
-  of_each("hits", "(k,) bool: bool() of each.", &in_contact);
+          [](const Answer& a) { return static_cast<std::int64_t>(a.result->pairs.size()); });
+  of_each("hits", "(k,) bool: bool() of each.", [](const Answer& a) { return in_contact(*a.result); });
   property(c, "all_pairs", "(n, 3) uint32: the pairs of all poses: pose, triangle of A, triangle of B.",
            &all_pairs);
 }
@@ -203,17 +240,25 @@ void bind_region(py::module_& m) {
   c.def("__repr__", [](const Region& r) {
     return "<lrbscope.ContactRegion of " + std::to_string(r.region->pairs.size()) + " pairs>";
   });
+  make_picklable(c);
 }
 
 }  // namespace
+
+std::vector<Answer> with_results(std::vector<Answer> answers, std::vector<CollideResult> results) {
+  const auto shared = std::make_shared<const std::vector<CollideResult>>(std::move(results));
+  for (std::size_t i = 0; i < answers.size(); ++i) answers[i].result = {shared, &(*shared)[i]};
+  return answers;
+}
 
 bool in_contact(const CollideResult& r) {
   return !r.pairs.empty() || r.relation == Relation::a_inside_b || r.relation == Relation::b_inside_a;
 }
 
-std::vector<RegionDepth> depths_of(const Answer& answer) {
+void find_depths(Answer& answer) {
   const CollideResult& result = *answer.result;
-  std::vector<RegionDepth> depths;
+  std::vector<RegionDepth>& depths = answer.depths;
+  if (!depths.empty() || result.regions.empty()) return;
   for (const ContactRegion& region : result.regions) depths.push_back({region.normal, region.depth_estimate});
   ManifoldRequest request;
   request.max_pairs = std::max<std::uint64_t>(result.pairs.size(), 1);
@@ -221,7 +266,7 @@ std::vector<RegionDepth> depths_of(const Answer& answer) {
   // The paper's recursions may miss pairs; the numbers of pairs differ then.
   const auto is_same = [](const NearPair& x, const SimplexPair& y) { return x.a == y.a && x.b == y.b; };
   if (!std::equal(found.pairs.begin(), found.pairs.end(), result.pairs.begin(), result.pairs.end(), is_same))
-    return depths;
+    return;
   std::vector<const ContactManifold*> manifold_of(found.pairs.size());
   for (const ContactManifold& manifold : found.manifolds)
     for (const std::uint32_t pair : manifold.pairs) manifold_of[pair] = &manifold;
@@ -236,21 +281,18 @@ std::vector<RegionDepth> depths_of(const Answer& answer) {
     const ContactManifold& least = *manifold_of[*std::min_element(pairs.begin(), pairs.end(), later)];
     depths[i] = {least.normal, std::max(least.points[0].depth, 0.0)};
   }
-  return depths;
 }
 
 py::list regions_of(Answer& answer) {
-  if (answer.depths.empty() && !answer.result->regions.empty()) {
-    std::vector<RegionDepth> found;
-    {
-      const py::gil_scoped_release unlocked;
-      found = depths_of(answer);
-    }
-    answer.depths = std::move(found);
+  Answer copy = answer;  // another thread may ask meanwhile
+  {
+    const py::gil_scoped_release unlocked;
+    find_depths(copy);
   }
+  answer.depths = std::move(copy.depths);
   py::list out;
   for (std::size_t i = 0; i < answer.depths.size(); ++i)
-    out.append(Region{answer.result, &answer.result->regions[i], answer.depths[i]});
+    out.append(Region{{answer.result, &answer.result->regions[i]}, answer.depths[i]});
   return out;
 }
 
@@ -260,56 +302,7 @@ void bind_answers(py::module_& m) {
   bind_results(m);
 }
 
-namespace py = pybind11;
-namespace {
-
-const pid_t loaded_by = getpid();
-
-/// Runs work on a separate thread, so that the thread that receives Python's signals can wait for both.
-class Batch {
- public:
-  Batch(std::size_t n, unsigned threads, const std::function<void(std::size_t, unsigned)>& work)
-      : thread_([this, n, threads, &work] { run(n, threads, work); }) {}
-  ~Batch() {
-    stop_ = true;
-    if (thread_.joinable()) thread_.join();
-  }
-
-  /// Waits for a short time at most. Returns true if all work is done.
-  bool wait() {
-    constexpr std::chrono::milliseconds kMoment{50};
-    std::unique_lock lock(mutex_);
-    return ready_.wait_for(lock, kMoment, [this] { return done_; });
-  }
-  void finish() {
-    thread_.join();
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  void run(std::size_t n, unsigned threads, const std::function<void(std::size_t, unsigned)>& work) {
-    try {
-      Workers workers(threads);
-      workers.for_each(n, [&](std::size_t i, unsigned worker) {
-        if (!stop_.load(std::memory_order_relaxed)) work(i, worker);
-      });
-    } catch (...) {
-      failure_ = std::current_exception();
-    }
-    const std::lock_guard lock(mutex_);
-    done_ = true;
-    ready_.notify_all();
-  }
-
-  std::atomic<bool> stop_ = false;
-  bool done_ = false;
-  std::exception_ptr failure_;
-  std::mutex mutex_;
-  std::condition_variable ready_;
-  std::thread thread_;  ///< last member: it uses all others
-};
-
-}  // namespace
+static const pid_t loaded_by = getpid();
 
 unsigned threads_of(std::size_t requested) {
   if (getpid() != loaded_by) return 1;
@@ -349,10 +342,23 @@ void check_signals() {
 }
 
 void run_batch(std::size_t n, unsigned threads, const std::function<void(std::size_t, unsigned)>& work) {
+  constexpr std::chrono::milliseconds kMoment{50};
   const py::gil_scoped_release unlocked;
-  Batch batch(n, threads, work);
-  while (!batch.wait()) check_signals();
-  batch.finish();
+  std::atomic<bool> stop = false;
+  // On a separate thread, so that this one, which receives Python's signals, can wait for both.
+  std::future<void> all = std::async(std::launch::async, [&] {
+    Workers workers(threads);
+    workers.for_each(n, [&](std::size_t i, unsigned worker) {
+      if (!stop.load(std::memory_order_relaxed)) work(i, worker);
+    });
+  });
+  try {
+    while (all.wait_for(kMoment) != std::future_status::ready) check_signals();
+  } catch (...) {
+    stop = true;  // the end of `all` waits
+    throw;
+  }
+  all.get();
 }
 
 }  // namespace lrb::python

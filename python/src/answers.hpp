@@ -7,6 +7,7 @@
 
 #include "python/src/arguments.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/properties.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/workspace.hpp>
 
@@ -21,31 +22,26 @@ struct RegionDepth {
 /// One answer, with its bodies and their poses.
 struct Answer {
   std::shared_ptr<const CollideResult> result;
-  std::shared_ptr<const LrbRep> a, b;
+  std::shared_ptr<const LrbRep> a, b;  ///< null in a process that the answer was sent to
   Pose pose_a, pose_b;
-  std::vector<RegionDepth> depths = {};  ///< of the regions, after the first request
+  /// What depends on the bodies, after the first request: of the regions, and of the pairs of triangles.
+  std::vector<RegionDepth> depths = {};
+  std::vector<std::array<FaceId, 2>> faces = {};
 };
+
+void members(Archive& archive, Answer& x);
 
 /// Answers in the order of the queries: for many poses of two bodies, or for many pairs.
-struct Answers {
-  /// The bodies and poses of an answer.
-  struct Pair {
-    std::shared_ptr<const LrbRep> a, b;
-    Pose pose_a, pose_b;
-  };
-  std::shared_ptr<const std::vector<CollideResult>> all;
-  std::vector<Pair> pairs;
+struct Answers : Sequence<Answer> {};
 
-  Answer at(std::size_t i) const {
-    return {{all, &(*all)[i]}, pairs[i].a, pairs[i].b, pairs[i].pose_a, pairs[i].pose_b};
-  }
-};
+/// Adds results to answers that have none yet, in their order.
+std::vector<Answer> with_results(std::vector<Answer> answers, std::vector<CollideResult> results);
 
 /// Returns true if bodies are known to have a point in common.
 bool in_contact(const CollideResult& r);
 
-/// Returns normal and depth of each contact region of an answer, by another query. Needs no GIL.
-std::vector<RegionDepth> depths_of(const Answer& answer);
+/// Finds normal and depth of each contact region of an answer, by another query. Needs no GIL.
+void find_depths(Answer& answer);
 
 /// Returns contact regions as Python objects.
 py::list regions_of(Answer& answer);
@@ -96,15 +92,16 @@ class Progress {
   bool is_bar_ = false;
 };
 
-/// Queries pairs of bodies without the GIL, as run_batch() does.
-std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
+/// Queries the bodies of answers that have no results yet without the GIL, as run_batch() does.
+std::vector<CollideResult> results_of(const std::vector<Answer>& answers, const CollideRequest& request,
                                       unsigned threads);
 
 /// The query's keyword arguments, in the order of the functions' parameters. None: the default of
 /// CollideRequest.
 struct RequestArguments {
-  py::handle mode, contacts, interiors_overlap, tolerance, max_tests, max_time, separation, max_pairs,
-      recursion;
+  py::handle mode = Py_None, contacts = Py_None, interiors_overlap = Py_None, tolerance = Py_None,
+             max_tests = Py_None, max_time = Py_None, separation = Py_None, max_pairs = Py_None,
+             recursion = Py_None;
 };
 
 CollideRequest request_of(const RequestArguments& given);

@@ -6,34 +6,67 @@
 namespace lrb::python {
 namespace {
 
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
-
+/// -1 in a shape: any length.
+std::string shape_text(std::span<const py::ssize_t> shape) {
+  std::string out;
+  for (const py::ssize_t n : shape) out += (out.empty() ? "" : ", ") + (n < 0 ? "n" : std::to_string(n));
+  return "(" + out + (shape.size() == 1 ? ",)" : ")");
+}
 std::string shape_text(const py::array& a) {
-  std::string out = "(";
-  for (py::ssize_t i = 0; i < a.ndim(); ++i) out += (i > 0 ? ", " : "") + std::to_string(a.shape(i));
-  return out + (a.ndim() == 1 ? ",)" : ")");
+  return shape_text(std::span(a.shape(), static_cast<std::size_t>(a.ndim())));
 }
 
-/// Returns an argument as an array of any type, or an empty handle if it cannot be converted.
-py::array any_array(py::handle given) {
-  return py::array::ensure(given);
+[[noreturn]] void reject(std::string_view what, std::string_view expected, const std::string& got) {
+  throw InputError(std::string(what) + ": expected " + std::string(expected) + ", got " + got);
+}
+
+/// Rejects an array with masked values, and a list with such arrays.
+void reject_masked(py::handle given, const std::string& what) {
+  if (Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_) return;
+  if (PyList_Check(given.ptr()) != 0 || PyTuple_Check(given.ptr()) != 0) {
+    std::size_t i = 0;
+    for (const py::handle one : py::reinterpret_borrow<py::sequence>(given)) {
+      if (py::isinstance<py::array>(one)) reject_masked(one, what + "[" + std::to_string(i) + "]");
+      ++i;
+    }
+  } else if (py::isinstance<py::array>(given) && py::hasattr(given, "mask")) {
+    const py::module_ numpy = py::module_::import("numpy");
+    const py::list masked =
+        numpy.attr("argwhere")(numpy.attr("ma").attr("getmaskarray")(given)).attr("tolist")();
+    if (!masked.empty()) reject(what + std::string(py::str(masked[0])), "a value", "a masked one");
+  }
+}
+
+/// Returns an argument as an array of any type; all arrays that functions take are read here. Rejects what is
+/// no array, or of other kinds of elements (numpy.dtype.kind). An empty array may be of any type.
+py::array any_array(py::handle given, std::string_view what, std::string_view expected,
+                    std::string_view kinds) {
+  reject_masked(given, std::string(what));
+  const py::array found = py::array::ensure(given);
+  if (!found || (found.size() > 0 && kinds.find(found.dtype().kind()) == std::string_view::npos))
+    reject(what, expected, described(given));
+  return found;
 }
 
 /// Returns an array of doubles; copies only if the argument is not one already.
-Numbers numbers(py::handle given, const char* what, const char* expected) {
-  if (py::isinstance<py::array_t<double, py::array::c_style>>(given))
-    return py::reinterpret_borrow<Numbers>(given);
-  const py::array found = any_array(given);
-  const bool fits = found && std::string_view("fiu").find(found.dtype().kind()) != std::string_view::npos;
-  if (!fits) throw InputError(std::string(what) + ": expected " + expected + ", got " + described(given));
-  return Numbers::ensure(found);
+Doubles any_numbers(py::handle given, std::string_view what, std::string_view expected) {
+  constexpr double kExact = 9007199254740992;  // 2^53: doubles are exact for smaller integers
+  if (Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_ &&
+      py::isinstance<py::array_t<double, py::array::c_style>>(given))
+    return py::reinterpret_borrow<Doubles>(given);
+  const py::array found = any_array(given, what, expected, "fiu");
+  Doubles out = Doubles::ensure(found);
+  if (found.itemsize() == sizeof(std::int64_t) && found.dtype().kind() != 'f')
+    for (const double x : std::span(out.data(), static_cast<std::size_t>(out.size())))
+      if (std::abs(x) >= kExact) reject(what, "integers below 2^53, which doubles represent", "larger ones");
+  return out;
 }
 
-[[noreturn]] void reject_shape(const char* what, const char* expected, const py::array& found) {
-  throw InputError(std::string(what) + ": expected " + expected + ", got shape " + shape_text(found));
+[[noreturn]] void reject_shape(std::string_view what, std::string_view expected, const py::array& found) {
+  reject(what, expected, "shape " + shape_text(found));
 }
 
+constexpr const char* kPose = "numbers of shape (4, 4)";
 constexpr const char* kPoses = "numbers of shape (4, 4) or (k, 4, 4)";
 
 /// Reads a row-major matrix of 3 or 4 rows of 4.
@@ -50,12 +83,31 @@ Pose read_pose(const double* m, py::ssize_t rows, const char* what) {
   return out;
 }
 
+Poses read_poses(py::handle given, const char* what, const char* expected) {
+  Poses out;
+  if (given.is_none()) return out;
+  const Doubles m = any_numbers(given, what, expected);
+  out.one = m.ndim() == 2;
+  if (m.ndim() == 1 && m.size() == 0) return out;  // an empty list: no poses
+  const py::ssize_t rows = m.ndim() >= 2 ? m.shape(m.ndim() - 2) : 0;
+  if ((m.ndim() != 2 && m.ndim() != 3) || m.shape(m.ndim() - 1) != 4 || (rows != 3 && rows != 4))
+    reject_shape(what, expected, m);
+  if (out.one) {
+    out.first = read_pose(m.data(), rows, what);
+    return out;
+  }
+  out.many.reserve(static_cast<std::size_t>(m.shape(0)));
+  for (py::ssize_t i = 0; i < m.shape(0); ++i)
+    out.many.push_back(read_pose(m.data() + 4 * rows * i, rows, what));
+  return out;
+}
+
 /// Reads points of shape (n, 3), or (n, 2) in 2D. Returns their number of coordinates.
 int read_points(py::handle given, const char* what, std::vector<Eigen::Vector3d>& points) {
-  const Numbers v = numbers(given, what, "numbers of shape (n, 3)");
+  constexpr const char* kPoints = "numbers of shape (n, 3), or (n, 2) in 2D";
+  const Doubles v = any_numbers(given, what, kPoints);
   const bool empty = v.ndim() == 1 && v.size() == 0;  // an empty list
-  if (!empty && (v.ndim() != 2 || (v.shape(1) != 3 && v.shape(1) != 2)))
-    reject_shape(what, "shape (n, 3), or (n, 2) in 2D", v);
+  if (!empty && (v.ndim() != 2 || (v.shape(1) != 3 && v.shape(1) != 2))) reject_shape(what, kPoints, v);
   const py::ssize_t n = empty ? 0 : v.shape(0), width = empty ? 3 : v.shape(1);
   points.resize(static_cast<std::size_t>(n));
   const double* x = v.data();
@@ -64,6 +116,17 @@ int read_points(py::handle given, const char* what, std::vector<Eigen::Vector3d>
     x += width;
   }
   return static_cast<int>(width);
+}
+
+/// Checks the shape of an array. -1 in `shape`: any length.
+template <class Array>
+Array of_shape(Array found, const char* what, const std::vector<py::ssize_t>& shape,
+               const std::string& expected) {
+  bool fits = static_cast<std::size_t>(found.ndim()) == shape.size();
+  for (std::size_t i = 0; fits && i < shape.size(); ++i)
+    fits = shape[i] < 0 || shape[i] == found.shape(static_cast<py::ssize_t>(i));
+  if (!fits) reject_shape(what, expected, found);
+  return found;
 }
 
 /// Appends a face. Checks corners here, because ids are narrower than numpy's integers.
@@ -76,23 +139,28 @@ void add_face(std::span<const std::int64_t> corners, Mesh& mesh, std::vector<Ver
   memory.clear();
   for (const std::int64_t c : corners) {
     if (c < 0 || c >= static_cast<std::int64_t>(mesh.vertices.size()))
-      throw InputError(face + ": expected a vertex index below " + std::to_string(mesh.vertices.size()) +
-                       ", got " + std::to_string(c));
+      reject(face, "a vertex index below " + std::to_string(mesh.vertices.size()), std::to_string(c));
     memory.push_back(VertexId(c));
   }
   mesh.add_face(memory);
 }
 
-Integers integers(const py::array& found, const char* what) {
-  if (found.size() > 0 && std::string_view("iu").find(found.dtype().kind()) == std::string_view::npos)
-    throw InputError(std::string(what) + ": expected integers, got " + described(found));
+Integers any_integers(py::handle given, std::string_view what, std::string_view expected) {
+  const py::array found = any_array(given, what, expected, "iu");
+  if (found.dtype().kind() == 'u' && found.itemsize() == sizeof(std::uint64_t)) {
+    const auto all = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>::ensure(found);
+    for (const std::uint64_t n : std::span(all.data(), static_cast<std::size_t>(all.size())))
+      if (n >> 63 != 0) reject(what, "integers below 2^63", std::to_string(n));
+  }
   return Integers::ensure(found);
 }
 
+constexpr const char* kFaces = "integers of shape (m, 3); in 2D (m, 2)";
+
 void add_equal_faces(const py::array& found, Mesh& mesh) {
-  const Integers f = integers(found, "faces");
+  const Integers f = any_integers(found, "faces", kFaces);
   if (f.size() == 0) return;
-  if (f.ndim() != 2) reject_shape("faces", mesh.dim == 2 ? "shape (m, 2)" : "shape (m, 3)", f);
+  if (f.ndim() != 2) reject_shape("faces", kFaces, f);
   const auto width = static_cast<std::size_t>(f.shape(1));
   std::vector<VertexId> memory;
   mesh.face_vertices.reserve(static_cast<std::size_t>(f.size()));
@@ -104,16 +172,28 @@ void add_equal_faces(const py::array& found, Mesh& mesh) {
 void add_any_faces(const py::sequence& faces, Mesh& mesh) {
   std::vector<VertexId> memory;
   for (const py::handle face : faces) {
-    const py::array found = any_array(face);
-    if (!found || found.ndim() != 1)
-      throw InputError("faces: face " + std::to_string(mesh.face_count()) +
-                       ": expected vertex indices, got " + described(face));
-    const Integers f = integers(found, "faces");
+    const std::string what = "faces: face " + std::to_string(mesh.face_count());
+    const Integers f = any_integers(face, what, "integers");
+    if (f.ndim() != 1) reject_shape(what, "vertex indices", f);
     add_face({f.data(), static_cast<std::size_t>(f.size())}, mesh, memory);
   }
 }
 
 }  // namespace
+
+Doubles numbers(py::handle given, const char* what) {
+  return any_numbers(given, what, "numbers");
+}
+
+Doubles numbers(py::handle given, const char* what, const std::vector<py::ssize_t>& shape) {
+  const std::string expected = "numbers of shape " + shape_text(shape);
+  return of_shape(any_numbers(given, what, expected), what, shape, expected);
+}
+
+Integers integers(py::handle given, const char* what, const std::vector<py::ssize_t>& shape) {
+  const std::string expected = "integers of shape " + shape_text(shape);
+  return of_shape(any_integers(given, what, expected), what, shape, expected);
+}
 
 std::string described(py::handle given) {
   if (py::isinstance<py::array>(given)) {
@@ -206,48 +286,32 @@ py::str path_of(std::string_view path) {
 }
 
 Eigen::Vector3d vector(py::handle given, const char* what) {
-  const Numbers v = numbers(given, what, "three numbers");
-  if (v.size() != 3 || v.ndim() != 1) reject_shape(what, "three numbers", v);
+  const Doubles v = numbers(given, what, {3});
   return {v.data()[0], v.data()[1], v.data()[2]};
 }
 
 Poses poses(py::handle given, const char* what) {
-  Poses out;
-  if (given.is_none()) return out;
-  const Numbers m = numbers(given, what, kPoses);
-  out.one = m.ndim() == 2;
-  if (m.ndim() == 1 && m.size() == 0) return out;  // an empty list: no poses
-  const py::ssize_t rows = m.ndim() >= 2 ? m.shape(m.ndim() - 2) : 0;
-  if ((m.ndim() != 2 && m.ndim() != 3) || m.shape(m.ndim() - 1) != 4 || (rows != 3 && rows != 4))
-    reject_shape(what, kPoses, m);
-  if (out.one) {
-    out.first = read_pose(m.data(), rows, what);
-    return out;
-  }
-  out.many.reserve(static_cast<std::size_t>(m.shape(0)));
-  for (py::ssize_t i = 0; i < m.shape(0); ++i)
-    out.many.push_back(read_pose(m.data() + 4 * rows * i, rows, what));
-  return out;
+  return read_poses(given, what, kPoses);
 }
 
 Pose pose(py::handle given, const char* what) {
-  if (given.is_none()) return {};
-  const Numbers m = numbers(given, what, "numbers of shape (4, 4)");
-  if (m.ndim() != 2 || m.shape(1) != 4 || (m.shape(0) != 3 && m.shape(0) != 4))
-    reject_shape(what, "shape (4, 4)", m);
-  return read_pose(m.data(), m.shape(0), what);
+  const Poses found = read_poses(given, what, kPose);
+  if (!found.one) reject(what, kPose, std::to_string(found.many.size()) + " poses");
+  return found.first;
 }
 
 Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& name) {
   Mesh mesh;
   mesh.name = name;
   mesh.dim = read_points(vertices, "vertices", mesh.vertices);
-  if (const py::array found = any_array(faces); found && found.dtype().kind() != 'O')
+  reject_masked(faces, "faces");
+  const py::array found = py::array::ensure(faces);  // none if faces differ in their number of corners
+  if (found && found.dtype().kind() != 'O')
     add_equal_faces(found, mesh);
   else if (py::isinstance<py::sequence>(faces) && !py::isinstance<py::str>(faces))
     add_any_faces(py::reinterpret_borrow<py::sequence>(faces), mesh);
   else
-    throw InputError("faces: expected integers of shape (m, 3), got " + described(faces));
+    reject("faces", kFaces, described(faces));
   return mesh;
 }
 

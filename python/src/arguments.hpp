@@ -28,6 +28,13 @@ std::string described(py::handle given);
 py::str printable(std::string_view text);
 py::list printable(const std::vector<std::string>& texts);
 
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+/// Return an argument as an array, of this shape (-1: any length). Masked values are rejected.
+Doubles numbers(py::handle given, const char* what);
+Doubles numbers(py::handle given, const char* what, const std::vector<py::ssize_t>& shape);
+Integers integers(py::handle given, const char* what, const std::vector<py::ssize_t>& shape);
+
 /// Return an argument as a number or a flag; `fallback` for None. `what` is the argument's name.
 bool flag(py::handle given, const char* what, bool fallback = false);
 double number(py::handle given, const char* what, double fallback = 0);

@@ -5,6 +5,7 @@
 
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/pickle.hpp"
 #include "python/src/properties.hpp"
 #include "scenarios/bodies/body_figures.hpp"
 #include <lrbscope/lrb_rep.hpp>
@@ -13,6 +14,12 @@
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::python {
+
+void members(Archive& archive, LrbData& d) {
+  archive(d.dim, d.vertices, d.face_offsets, d.face_vertices, d.real_face_count, d.inner_cell, d.outer_cell,
+          d.region_layer, d.closed, d.self_intersecting, d.name);
+}
+
 namespace {
 
 /// Returns the number of vertices up to the last one used by a real face.
@@ -163,53 +170,26 @@ py::array_t<double> box(const Body& body, py::handle given) {
   return column(std::array<Eigen::Vector3d, 2>{found.min(), found.max()}, std::identity());
 }
 
-/// Returns the bytes of trivially copyable numbers.
-template <class T>
-py::bytes bytes_of(const std::vector<T>& numbers) {
-  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)};
-}
-template <class T>
-std::vector<T> numbers_of(const py::handle& bytes) {
-  const auto text = bytes.cast<std::string_view>();
-  if (text.size() % sizeof(T) != 0) throw InputError("the pickled body is damaged");
-  std::vector<T> out(text.size() / sizeof(T));
-  std::copy(text.begin(), text.end(), reinterpret_cast<char*>(out.data()));
-  return out;
-}
-
-constexpr int kPickleVersion = 1;
-constexpr std::size_t kPickled = 15;  ///< members of the tuple
-
 py::tuple pickled(const Body& body) {
-  const LrbData& d = body.rep().data();
-  py::list notes;  // bytes, because file names in them may not be UTF-8
-  for (const std::string& note : body.notes()) notes.append(py::bytes(note));
-  return py::make_tuple(kPickleVersion, d.dim, bytes_of(d.vertices), bytes_of(d.face_offsets),
-                        bytes_of(d.face_vertices), d.real_face_count, bytes_of(d.inner_cell),
-                        bytes_of(d.outer_cell), bytes_of(d.region_layer), d.closed, d.self_intersecting,
-                        py::bytes(d.name), notes, body.build_seconds(), body.vertex_count());
+  Archive archive;
+  LrbData d = body.rep().data();
+  std::vector<std::string> notes = body.notes();
+  double seconds = body.build_seconds();
+  std::size_t vertices = body.vertex_count();
+  archive(d, notes, seconds, vertices);
+  return archive.state();
 }
 
-BodyPtr unpickled(const py::tuple& t) {
-  if (t.size() != kPickled || t[0].cast<int>() != kPickleVersion)
-    throw InputError("the pickled body comes from another version of lrbscope; pickle it again");
+BodyPtr unpickled(const py::tuple& state) {
+  Archive archive(state);
   LrbData d;
-  d.dim = t[1].cast<int>();
-  d.vertices = numbers_of<Eigen::Vector3d>(t[2]);
-  d.face_offsets = numbers_of<std::uint32_t>(t[3]);
-  d.face_vertices = numbers_of<VertexId>(t[4]);
-  d.real_face_count = t[5].cast<std::uint32_t>();
-  d.inner_cell = numbers_of<CellId>(t[6]);
-  d.outer_cell = numbers_of<CellId>(t[7]);
-  d.region_layer = numbers_of<std::uint16_t>(t[8]);
-  d.closed = t[9].cast<bool>();
-  d.self_intersecting = t[10].cast<bool>();
-  d.name = t[11].cast<std::string>();
-  bodies::LoadedBody loaded{LrbRep(std::move(d)), t[12].cast<std::vector<std::string>>(),
-                            t[13].cast<double>()};
-  const auto n = t[14].cast<std::size_t>();
-  if (n > loaded.rep.vertices().size()) throw InputError("the pickled body is damaged");
-  return std::make_shared<Body>(std::move(loaded), n);
+  std::vector<std::string> notes;
+  double seconds = 0;
+  std::size_t vertices = 0;
+  archive(d, notes, seconds, vertices);
+  if (vertices > d.vertices.size()) throw InputError("the pickle is damaged");
+  return std::make_shared<Body>(bodies::LoadedBody{LrbRep(std::move(d)), std::move(notes), seconds},
+                                vertices);
 }
 
 py::str shown(const Body& body) {
@@ -217,12 +197,6 @@ py::str shown(const Body& body) {
   return printable("<lrbscope.Body '" + rep.name() + "': " + std::to_string(rep.real_face_count()) +
                    (rep.dim() == 2 ? " segments, " : " faces, ") + std::to_string(rep.region_count()) +
                    " regions, " + (rep.closed() ? "solid>" : "not closed>"));
-}
-
-/// Returns a body as its own copy, because it is immutable.
-py::object itself(const py::object& self) {
-  body(self, "self");
-  return self;
 }
 
 using BodyClass = py::class_<Body, BodyPtr>;
@@ -260,8 +234,7 @@ Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the 
          "Writes the body: with its regions as .lrb, its faces alone as .ply or .obj.",
          &save);
   c.def(py::pickle(&pickled, &unpickled));
-  c.def("__copy__", &itself);
-  c.def("__deepcopy__", [](const py::object& self, const py::handle&) { return itself(self); });
+  make_copyable(c);
   c.def("__repr__", &shown);
 }
 

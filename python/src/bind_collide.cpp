@@ -24,9 +24,8 @@ using QueryHandlePtr = std::shared_ptr<QueryHandle>;
 
 QueryHandlePtr make(py::handle a, py::handle b, py::handle mode, py::handle contacts,
                     py::handle interiors_overlap, py::handle max_pairs, py::handle always) {
-  const py::none no;
-  const CollideRequest request =
-      request_of({mode, contacts, interiors_overlap, no, no, no, no, max_pairs, no});
+  const CollideRequest request = request_of(
+      {.mode = mode, .contacts = contacts, .interiors_overlap = interiors_overlap, .max_pairs = max_pairs});
   const auto use =
       flag(always, "always") ? CoherentQuery::CacheUse::always : CoherentQuery::CacheUse::as_it_pays;
   return std::make_shared<QueryHandle>(shared_body(a, "a"), shared_body(b, "b"), request, use);
@@ -116,13 +115,12 @@ py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const P
 
 py::object collide_many(const Body& a, const Pose& pose_a, const Body& b, const std::vector<Pose>& poses_b,
                         const CollideRequest& request, unsigned threads) {
-  Answers out;
-  for (const Pose& pose_b : poses_b) out.pairs.push_back({a.shared(), b.shared(), pose_a, pose_b});
-  out.all = std::make_shared<const std::vector<CollideResult>>(
-      ask_each<CollideResult>(poses_b.size(), threads, [&](std::size_t i, Workspace& memory) {
-        return lrb::collide(a.rep(), pose_a, b.rep(), poses_b[i], request, memory);
-      }));
-  return py::cast(std::move(out));
+  std::vector<Answer> answers;
+  for (const Pose& pose_b : poses_b) answers.push_back({nullptr, a.shared(), b.shared(), pose_a, pose_b});
+  auto results = ask_each<CollideResult>(poses_b.size(), threads, [&](std::size_t i, Workspace& memory) {
+    return lrb::collide(a.rep(), pose_a, b.rep(), poses_b[i], request, memory);
+  });
+  return py::cast(Answers{with_results(std::move(answers), std::move(results))});
 }
 
 py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle mode,
@@ -155,25 +153,21 @@ Row row_of(const py::sequence& bodies, py::handle given, const char* what, const
   return out;
 }
 
-py::list collide_pairs(const py::sequence& bodies_a, py::handle poses_a, const py::sequence& bodies_b,
-                       py::handle poses_b, py::handle mode, py::handle contacts, py::handle max_pairs,
-                       py::handle threads) {
+py::object collide_pairs(const py::sequence& bodies_a, py::handle poses_a, const py::sequence& bodies_b,
+                         py::handle poses_b, py::handle mode, py::handle contacts, py::handle max_pairs,
+                         py::handle threads) {
   const Row a = row_of(bodies_a, poses_a, "bodies_a", "poses_a");
   const Row b = row_of(bodies_b, poses_b, "bodies_b", "poses_b");
   if (a.reps.size() != b.reps.size())
     throw InputError("bodies_b: expected as many as bodies_a, " + std::to_string(a.reps.size()) + ", got " +
                      std::to_string(b.reps.size()));
-  const py::none no;
-  const CollideRequest request = request_of({mode, contacts, no, no, no, no, no, max_pairs, no});
+  const CollideRequest request = request_of({.mode = mode, .contacts = contacts, .max_pairs = max_pairs});
   const unsigned n = threads_of(count(threads, "threads"));
-  std::vector<PosedPair> pairs;
+  std::vector<Answer> answers;
   for (std::size_t i = 0; i < a.reps.size(); ++i)
-    pairs.push_back({a.reps[i].get(), a.poses[i], b.reps[i].get(), b.poses[i]});
-  const auto results = std::make_shared<std::vector<CollideResult>>(answers_of(pairs, request, n));
-  py::list out;
-  for (std::size_t i = 0; i < results->size(); ++i)
-    out.append(Answer{{results, &(*results)[i]}, a.reps[i], b.reps[i], a.poses[i], b.poses[i]});
-  return out;
+    answers.push_back({nullptr, a.reps[i], b.reps[i], a.poses[i], b.poses[i]});
+  std::vector<CollideResult> results = results_of(answers, request, n);
+  return py::cast(with_results(std::move(answers), std::move(results)));
 }
 
 py::object contacts(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle max_pairs,
@@ -182,28 +176,12 @@ py::object contacts(py::handle a, py::handle b, py::handle poses_b, py::handle p
   const py::object found =
       collide(a, b, poses_b, pose_a, no, py::bool_(true), no, no, no, no, no, max_pairs, no, threads);
   if (py::isinstance<Answer>(found)) return regions_of(found.cast<Answer&>());
-  const auto& many = found.cast<const Answers&>();
-  std::vector<Answer> each;
-  for (std::size_t i = 0; i < many.all->size(); ++i) each.push_back(many.at(i));
+  std::vector<Answer>& each = found.cast<Answers&>().all;
   run_batch(each.size(), threads_of(count(threads, "threads")),
-            [&](std::size_t i, unsigned) { each[i].depths = depths_of(each[i]); });
+            [&](std::size_t i, unsigned) { find_depths(each[i]); });
   py::list out;
   for (Answer& answer : each) out.append(regions_of(answer));
   return out;
-}
-
-/// Queries as a C++ program would and returns nothing: the baseline for calls from Python
-/// (tests/python/bench.py).
-void collide_alone(py::handle a, py::handle b, py::handle given, unsigned threads) {
-  const LrbRep &rep_a = body(a, "a").rep(), &rep_b = body(b, "b").rep();
-  const std::vector<Pose> poses_b = poses(given, "poses_b").to_vector();
-  const py::gil_scoped_release unlocked;
-  std::vector<CollideResult> results(poses_b.size());
-  std::vector<Workspace> workspaces(threads);
-  Workers workers(threads);
-  workers.for_each(poses_b.size(), [&](std::size_t i, unsigned worker) {
-    results[i] = ask(rep_a, {}, rep_b, poses_b[i], {}, workspaces[worker]);
-  });
 }
 
 constexpr const char* kCollideText =
@@ -250,8 +228,10 @@ such lists.
 
 }  // namespace
 
-std::vector<CollideResult> answers_of(std::span<const PosedPair> pairs, const CollideRequest& request,
+std::vector<CollideResult> results_of(const std::vector<Answer>& answers, const CollideRequest& request,
                                       unsigned threads) {
+  std::vector<PosedPair> pairs;
+  for (const Answer& x : answers) pairs.push_back({x.a.get(), x.pose_a, x.b.get(), x.pose_b});
   std::vector<CollideResult> results(pairs.size());
   std::vector<Workspace> workspaces(threads);
   const std::vector<std::size_t> order = order_by_bodies(pairs);
@@ -279,7 +259,6 @@ CollideRequest request_of(const RequestArguments& given) {
 void bind_collide(py::module_& m) {
   define(m, kCollideText, &collide);
   define(m, kCollidePairsText, &collide_pairs);
-  m.def("_collide_alone", &collide_alone);
   define(m, kContactsText, &contacts);
 }
 

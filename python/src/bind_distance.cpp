@@ -1,11 +1,18 @@
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/pickle.hpp"
 #include "python/src/properties.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::python {
+
+void members(Archive& archive, FirstContactResult& x) {
+  archive(x.outcome, x.t0, x.t1, x.at_start, x.grazing, x.passed, x.finished, x.unresolved, x.at_begin,
+          x.ambiguous, x.pair, x.witness, x.normal, x.speed, x.history, x.counters);
+}
+
 namespace {
 
 py::object clash(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle clearance,
@@ -64,6 +71,7 @@ bounds. Made by clash().)");
   property(c, "volume", "(float, float) or None: the shared volume, unit cubed.", &ClashResult::volume);
   c.def("__repr__",
         [](const ClashResult& r) { return "<lrbscope.Clash " + std::string(to_string(r.kind)) + ">"; });
+  make_picklable(c);
 }
 
 }  // namespace
@@ -164,6 +172,7 @@ void bind_single_distance(py::module_& m) {
     const std::string lower = py::str(py::float_(r.lower)), upper = py::str(py::float_(r.upper));
     return "<lrbscope.Distance in [" + lower + ", " + upper + "]>";
   });
+  make_picklable(c);
 }
 
 }  // namespace
@@ -214,16 +223,17 @@ struct Motions {
 /// Reads (4, 4), at rest, or (m, 4, 4), through m poses, as one motion; (k, m, 4, 4) as many.
 Motions motions(py::handle given, const char* what) {
   Motions out;
-  out.one = !py::isinstance<py::array>(given) || py::reinterpret_borrow<py::array>(given).ndim() != 4;
+  const py::object all = given.is_none() ? py::object(py::none()) : numbers(given, what);
+  out.one = given.is_none() || all.cast<Doubles>().ndim() != 4;
   const auto add = [&](py::handle one) {
     const std::vector<Pose> through = poses(one, what).to_vector();
     if (through.empty()) throw InputError(std::string(what) + ": expected at least one pose, got none");
     out.all.push_back(motion_through(through));
   };
   if (out.one)
-    add(given);
+    add(all);
   else
-    for (const py::handle one : py::reinterpret_borrow<py::iterable>(given)) add(one);
+    for (const py::handle one : all) add(one);
   return out;
 }
 
@@ -297,6 +307,7 @@ bodies are as close as rounding errors; 'steps': a step limit was reached.)",
     const std::string t0 = py::str(py::float_(f.t0)), t1 = py::str(py::float_(f.t1));
     return "<lrbscope.FirstContact " + std::string(name_of(f.outcome)) + ", t in [" + t0 + ", " + t1 + "]>";
   });
+  make_picklable(c);
 }
 
 }  // namespace

@@ -26,21 +26,13 @@ struct OfWalk {
   std::string json() const { return run::explanation_json(reported).dump(); }
 };
 
+/// Reads a pair of triangles, as in Result.pairs.
 SimplexPair pair_of(py::handle given) {
-  const auto reject = [&] {
-    throw InputError("pair: expected a triangle of A and one of B, as in Result.pairs, got " +
-                     std::string(py::str(given)));
-  };
-  if (!py::isinstance<py::sequence>(given) || py::isinstance<py::str>(given)) reject();
-  const auto pair = py::reinterpret_borrow<py::sequence>(given);
-  if (pair.size() != 2) reject();
-  SimplexId ids[2];
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::uint64_t n = count(py::object(pair[i]), "pair");
-    if (n > kMaxId) reject();
-    ids[i] = SimplexId(n);
-  }
-  return {ids[0], ids[1]};
+  const Integers pair = integers(given, "pair", {2});
+  for (const std::int64_t n : {pair.at(0), pair.at(1)})
+    if (n < 0 || n > kMaxId)
+      throw InputError("pair: expected numbers of triangles, got " + std::to_string(n));
+  return {SimplexId(pair.at(0)), SimplexId(pair.at(1))};
 }
 
 OfPair explain_pair(py::handle a, py::handle b, py::handle given, py::handle pose_b, py::handle pose_a) {

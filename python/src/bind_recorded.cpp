@@ -45,8 +45,11 @@ RecordedPtr trace_of(py::handle a, py::handle b, py::handle poses_b, py::handle 
   const Poses at = poses(poses_b, "poses_b");
   const Pose at_a = pose(pose_a, "pose_a");
   trace::RecorderSettings settings;
-  const py::none no;
-  settings.request = request_of({mode, no, no, tolerance, max_tests, no, separation, no, recursion});
+  settings.request = request_of({.mode = mode,
+                                 .tolerance = tolerance,
+                                 .max_tests = max_tests,
+                                 .separation = separation,
+                                 .recursion = recursion});
   // Pictures show contacts, which only a request for all pairs returns.
   settings.request.contacts =
       flag(contacts, "contacts", settings.request.mode == Mode::all_pairs && !settings.request.is_coarse());
@@ -121,17 +124,9 @@ std::string html_of(const Recorded& r) {
 }
 
 /// Returns the page in an iframe, so that its style does not affect the notebook.
-std::string notebook_html(const Recorded& r) {
-  std::string page = html_of(r), out;
-  out.reserve(page.size() + page.size() / 8);
-  for (const char c : page)
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  return "<iframe style=\"width:100%;height:720px;border:0\" srcdoc=\"" + out + "\"></iframe>";
+py::str notebook_html(const Recorded& r) {
+  const py::object page = py::module_::import("html").attr("escape")(printable(html_of(r)));
+  return py::str("<iframe style=\"width:100%;height:720px;border:0\" srcdoc=\"{}\"></iframe>").format(page);
 }
 
 py::object picture(const Recorded& r, py::handle step, const PictureArguments& given) {
@@ -185,9 +180,12 @@ that shows the bodies, rotatable, after any event.)");
   c.def_property_readonly(
       "results",
       [](const Recorded& r) {
-        Answers out{r.results, {}};
-        for (const trace::Step& s : r.trace.steps)
-          out.pairs.push_back({r.bodies[0], r.bodies.back(), s.pose_a, s.pose_b});
+        Answers out;
+        for (std::size_t i = 0; i < r.results->size(); ++i) {
+          const trace::Step& s = r.trace.steps[i];
+          out.all.push_back(
+              {{r.results, &(*r.results)[i]}, r.bodies[0], r.bodies.back(), s.pose_a, s.pose_b});
+        }
         return out;
       },
       "Results: the answers of the steps.");
@@ -201,7 +199,7 @@ that shows the bodies, rotatable, after any event.)");
   c.def(
       "html", [](const Recorded& r) { return printable(html_of(r)); },
       "html()\n\nReturns the run's page: one file that opens in any browser.");
-  c.def("_repr_html_", [](const Recorded& r) { return printable(notebook_html(r)); });
+  c.def("_repr_html_", &notebook_html);
   c.def("__len__", [](const Recorded& r) { return r.trace.events.size(); });
   c.def("__repr__", [](const Recorded& r) {
     return printable("<lrbscope.Trace of " + r.title + ": " + std::to_string(r.trace.steps.size()) +

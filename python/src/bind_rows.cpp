@@ -12,11 +12,19 @@
 #include <lrbscope/self_intersections.hpp>
 
 namespace lrb::python {
+
+void members(Archive& archive, ContactManifold& x) {
+  archive(x.normal, x.points, x.pairs, x.region, x.intersects);
+}
+
 namespace {
 
 struct NearPairs : NearPairsResult {
   std::vector<std::array<FaceId, 2>> faces;
 };
+void members(Archive& archive, NearPairs& x) {
+  archive(x.pairs, x.found, x.counters, x.faces);
+}
 
 py::object near_pairs(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle within,
                       py::handle nearest, py::handle max_pairs, py::handle threads) {
@@ -86,7 +94,20 @@ namespace {
 struct Manifolds : ManifoldResult {
   std::vector<const ManifoldPoint*> points;
   std::vector<std::uint32_t> manifold_of;  ///< (|points|)
+
+  /// Lists the points. Vectors keep their memory when the result is moved.
+  void list_points() {
+    for (std::uint32_t m = 0; m < manifolds.size(); ++m)
+      for (const ManifoldPoint& point : manifolds[m].points) {
+        points.push_back(&point);
+        manifold_of.push_back(m);
+      }
+  }
 };
+void members(Archive& archive, Manifolds& x) {
+  archive(x.pairs, x.manifolds, x.pose, x.next_id);
+  if (archive.reads()) x.list_points();
+}
 
 py::object contact_manifolds(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a,
                              py::handle margin, py::handle previous, py::handle max_pairs,
@@ -110,12 +131,7 @@ py::object contact_manifolds(py::handle a, py::handle b, py::handle pose_b, py::
     static_cast<ManifoldResult&>(found) =
         lrb::contact_manifolds(body_a.rep(), at_a, body_b.rep(), at_b, request, before, n);
   }
-  // The vectors keep their memory when the result is moved.
-  for (std::uint32_t m = 0; m < found.manifolds.size(); ++m)
-    for (const ManifoldPoint& point : found.manifolds[m].points) {
-      found.points.push_back(&point);
-      found.manifold_of.push_back(m);
-    }
+  found.list_points();
   return py::cast(std::move(found));
 }
 
@@ -199,6 +215,10 @@ py::object self_intersections(py::handle of, py::handle max_pairs, py::handle th
 
 }  // namespace
 
+void members(Archive& archive, SelfIntersections& x) {
+  archive(x.pairs, x.segments, x.curves);
+}
+
 void bind_self_intersections(py::module_& m) {
   py::class_<SelfIntersections> c(m, "SelfIntersections",
                                   "Pairs of faces in which a body intersects itself: arrays with a row for "
@@ -231,9 +251,7 @@ Returns SelfIntersections.
 
 namespace {
 
-struct PointDistances {
-  std::vector<PointDistance> all;
-};
+using PointDistances = Sequence<PointDistance>;
 
 py::object signed_distance(py::handle of, py::handle points, py::handle at, py::handle tolerance,
                            py::handle relative_tolerance, py::handle threads) {

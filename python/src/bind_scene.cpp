@@ -3,47 +3,11 @@
 
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
+#include "python/src/pickle.hpp"
 #include "python/src/properties.hpp"
-#include <lrbscope/broad_phase.hpp>
 #include <lrbscope/scene.hpp>
 
 namespace lrb::python {
-namespace {
-
-using Boxes = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-std::vector<Eigen::AlignedBox3d> boxes_of(const Boxes& given) {
-  if (given.ndim() != 3 || given.shape(1) != 2 || given.shape(2) != 3)
-    throw InputError("boxes: expected numbers of shape (n, 2, 3), got " + described(given));
-  std::vector<Eigen::AlignedBox3d> out;
-  for (py::ssize_t i = 0; i < given.shape(0); ++i) {
-    const double* x = given.data(i, 0, 0);
-    out.emplace_back(Eigen::Vector3d(x[0], x[1], x[2]), Eigen::Vector3d(x[3], x[4], x[5]));
-  }
-  return out;
-}
-
-py::array_t<std::uint32_t> pairs_of(SweepAndPrune& sweep, const Boxes& given) {
-  return column(sweep.update(boxes_of(given)), [](const BodyPair& p) { return std::array{p.i, p.j}; });
-}
-
-}  // namespace
-
-void bind_boxes(py::module_& m) {
-  py::class_<SweepAndPrune>(
-      m, "SweepAndPrune",
-      R"(The broad phase: finds intersecting pairs of many boxes by sort and sweep; fast if they moved little.
-
->>> boxes = [cube.box(), cube.box(shifted(0.5, 0, 0)), cube.box(shifted(9, 0, 0))]
->>> SweepAndPrune().update(boxes).tolist()
-[[0, 1]])")
-      .def(py::init<>(), "SweepAndPrune()\n\nStarts without boxes.")
-      .def("update", &pairs_of, Signature(R"(update(boxes)
-
-Returns the pairs of boxes with a point in common, (p, 2) uint32 ascending. boxes: (n, 2, 3) float, minimum
-and maximum coordinates.)"));
-}
-
 namespace {
 
 /// The Python class Scene. Its broad phase runs on the calling thread, so that it survives a fork; queries
@@ -140,16 +104,10 @@ void move(SceneHandle& self, const py::object& keys, py::handle given) {
     self.scene.move(key_of(self, keys), at.first);
     return;
   }
-  const auto all = py::reinterpret_steal<py::object>(PySequence_Fast(keys.ptr(), "keys: expected integers"));
-  if (!all) throw py::error_already_set();
-  const auto n = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(all.ptr()));
-  if (n != at.many.size())
-    throw InputError("pose: expected as many as keys, " + std::to_string(n) + ", got " +
-                     std::to_string(at.many.size()));
+  const Integers all = integers(keys, "keys", {static_cast<py::ssize_t>(at.many.size())});
   std::vector<BodyKey> found;  // all of them, before any body moves
-  for (std::size_t i = 0; i < n; ++i)
-    found.push_back(key_of(self, PySequence_Fast_GET_ITEM(all.ptr(), static_cast<py::ssize_t>(i))));
-  for (std::size_t i = 0; i < n; ++i) self.scene.move(found[i], at.many[i]);
+  for (py::ssize_t i = 0; i < all.size(); ++i) found.push_back(key_of(self, py::int_(all.at(i))));
+  for (std::size_t i = 0; i < found.size(); ++i) self.scene.move(found[i], at.many[i]);
 }
 
 py::array_t<std::int64_t> keys(SceneHandle& self) {
@@ -182,28 +140,24 @@ py::array_t<double> pose_at(SceneHandle& self, py::handle given) {
   return column(m, std::identity());
 }
 
-/// The pairs of bodies with nearby boxes; a body outside the scene has key -1.
-struct NearPairs {
-  std::vector<std::int64_t> keys;  ///< two per pair
-  std::vector<double> gaps;
+/// Keys of pairs of bodies; a body outside the scene has key -1.
+using Keys = std::vector<std::array<std::int64_t, 2>>;
 
-  void add(const ScenePair& p, const Others& others) {
-    keys.push_back(others.body ? -1 : number_of(p.a));
-    keys.push_back(number_of(p.b));
-    gaps.push_back(p.gap);
-  }
+/// The pairs of bodies with nearby boxes.
+struct NearPairs {
+  Keys keys;
+  std::vector<double> gaps;
 };
 
 NearPairs near_of(SceneHandle& self, const Others& others, double within) {
   return with_others(others, [&](auto&&... whose) {
     NearPairs out;
-    for (const ScenePair& p : self.scene.near(whose..., within)) out.add(p, others);
+    for (const ScenePair& p : self.scene.near(whose..., within)) {
+      out.keys.push_back({others.body ? -1 : number_of(p.a), number_of(p.b)});
+      out.gaps.push_back(p.gap);
+    }
     return out;
   });
-}
-
-py::array_t<std::int64_t> array_of_keys(const std::vector<std::int64_t>& keys) {
-  return py::array_t<std::int64_t>({static_cast<py::ssize_t>(keys.size() / 2), py::ssize_t{2}}, keys.data());
 }
 
 py::tuple near(SceneHandle& self, py::handle within, py::handle other, py::handle at) {
@@ -213,8 +167,7 @@ py::tuple near(SceneHandle& self, py::handle within, py::handle other, py::handl
     throw InputError("within: expected a number of at least 0, got " + std::string(py::str(within)));
   const Locked lock(self, others);
   const NearPairs found = near_of(self, others, limit);
-  const auto n = static_cast<py::ssize_t>(found.gaps.size());
-  return py::make_tuple(array_of_keys(found.keys), py::array_t<double>(n, found.gaps.data()));
+  return py::make_tuple(to_python(found.keys), to_python(found.gaps));
 }
 
 py::object nearest_boxes(SceneHandle& self, py::handle other, py::handle at) {
@@ -227,56 +180,41 @@ py::object nearest_boxes(SceneHandle& self, py::handle other, py::handle at) {
 
 /// Answers of a scene, with the keys of each answer's bodies.
 struct Meetings : Answers {
-  std::vector<std::int64_t> keys;
+  Keys keys;
 };
 
-/// Pairs of a scene to be queried, with shared ownership of their bodies.
-struct Questions {
-  std::vector<PosedPair> pairs;
-  std::vector<Answers::Pair> kept;
-};
-
-Questions questions_of(const SceneHandle& self, const Others& others, std::span<const std::int64_t> keys) {
-  Questions out;
-  const auto add = [&](const SceneHandle* scene, std::int64_t number, const LrbRep*& rep, Pose& at) {
-    const BodyPtr body = number < 0 ? others.body : scene->bodies.at(BodyKey(number));
-    rep = &body->rep();
-    at = number < 0 ? others.pose : scene->scene.pose(BodyKey(number));
-    return body->shared();
-  };
-  const SceneHandle* const second = others.scene ? others.scene.get() : &self;
-  for (std::size_t i = 0; i < keys.size(); i += 2) {
-    PosedPair p;
-    const auto a = add(&self, keys[i], p.a, p.pose_a), b = add(second, keys[i + 1], p.b, p.pose_b);
-    out.pairs.push_back(p);
-    out.kept.push_back({a, b, p.pose_a, p.pose_b});
-  }
-  return out;
+void members(Archive& archive, Meetings& x) {
+  archive(x.all, x.keys);
 }
 
-CollideRequest request_of_scene(py::handle mode, py::handle contacts, py::handle interiors_overlap,
-                                py::handle max_pairs) {
-  const py::none no;
-  return request_of({mode, contacts, interiors_overlap, no, no, no, no, max_pairs, no});
+/// Returns pairs of a scene as answers without results.
+std::vector<Answer> questions_of(const SceneHandle& self, const Others& others,
+                                 std::span<const Keys::value_type> keys) {
+  const SceneHandle& second = others.scene ? *others.scene : self;
+  std::vector<Answer> out;
+  for (const auto& [a, b] : keys)
+    out.push_back({nullptr, (a < 0 ? others.body : self.bodies.at(BodyKey(a)))->shared(),
+                   second.bodies.at(BodyKey(b))->shared(), a < 0 ? others.pose : self.scene.pose(BodyKey(a)),
+                   second.scene.pose(BodyKey(b))});
+  return out;
 }
 
 Meetings collide(SceneHandle& self, py::handle other, py::handle at, py::handle mode, py::handle contacts,
                  py::handle interiors_overlap, py::handle max_pairs) {
   const Others others = others_of(self, other, at);
-  const CollideRequest request = request_of_scene(mode, contacts, interiors_overlap, max_pairs);
+  const CollideRequest request = request_of(
+      {.mode = mode, .contacts = contacts, .interiors_overlap = interiors_overlap, .max_pairs = max_pairs});
   const Locked lock(self, others);
   const NearPairs near = near_of(self, others, 0);
-  const Questions questions = questions_of(self, others, near.keys);
-  std::vector<CollideResult> answers = answers_of(questions.pairs, request, threads_of(self.threads));
+  const std::vector<Answer> questions = questions_of(self, others, near.keys);
+  std::vector<CollideResult> results = results_of(questions, request, threads_of(self.threads));
   Meetings out;
-  auto reported = std::make_shared<std::vector<CollideResult>>();
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (!in_contact(answers[i])) continue;
-    reported->push_back(std::move(answers[i]));
-    out.pairs.push_back(questions.kept[i]);
-    out.keys.insert(out.keys.end(), {near.keys[2 * i], near.keys[2 * i + 1]});
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!in_contact(results[i])) continue;
+    out.all.push_back(questions[i]);
+    out.all.back().result = std::make_shared<const CollideResult>(std::move(results[i]));
+    out.keys.push_back(near.keys[i]);
   }
-  out.all = std::move(reported);
   return out;
 }
 
@@ -287,11 +225,11 @@ bool any_meet(SceneHandle& self, py::handle other, py::handle at) {
   request.mode = Mode::any_pair;
   const Locked lock(self, others);
   const NearPairs near = near_of(self, others, 0);
-  const std::span<const std::int64_t> keys = near.keys;
-  for (std::size_t begin = 0; begin < keys.size(); begin += 2 * kAtATime) {
-    const auto some = keys.subspan(begin, std::min(2 * kAtATime, keys.size() - begin));
-    const Questions questions = questions_of(self, others, some);
-    for (const CollideResult& r : answers_of(questions.pairs, request, threads_of(self.threads)))
+  const std::span<const Keys::value_type> keys = near.keys;
+  for (std::size_t begin = 0; begin < keys.size(); begin += kAtATime) {
+    const auto some = keys.subspan(begin, std::min(kAtATime, keys.size() - begin));
+    for (const CollideResult& r :
+         results_of(questions_of(self, others, some), request, threads_of(self.threads)))
       if (in_contact(r)) return true;
   }
   return false;
@@ -393,15 +331,16 @@ options see collide(). Returns Meetings.)",
 }  // namespace
 
 void bind_scene(py::module_& m) {
-  py::class_<Meetings, Answers>(
+  py::class_<Meetings, Answers> meetings(
       m, "Meetings",
-      R"(The intersecting pairs of a scene's bodies: a sequence of Result, in the order of `keys`.)")
-      .def_property_readonly(
-          "keys", [](const Meetings& s) { return array_of_keys(s.keys); },
-          "(k, 2) int64: the keys of A and B of each; -1 for a body outside the scene. Ascending.")
-      .def("__repr__", [](const Meetings& s) {
-        return "<lrbscope.Meetings of " + std::to_string(s.all->size()) + " pairs of bodies>";
-      });
+      R"(The intersecting pairs of a scene's bodies: a sequence of Result, in the order of `keys`.)");
+  property(meetings, "keys",
+           "(k, 2) int64: the keys of A and B of each; -1 for a body outside the scene. Ascending.",
+           &Meetings::keys);
+  meetings.def("__repr__", [](const Meetings& s) {
+    return "<lrbscope.Meetings of " + std::to_string(s.all.size()) + " pairs of bodies>";
+  });
+  make_picklable(meetings);
   SceneClass c(m, "Scene", kSceneText);
   bind_bodies(c);
   bind_questions(c);

@@ -95,6 +95,25 @@ void state_signatures(const py::module_& m) {
   }
 }
 
+/// Makes pickling and copying raise a TypeError that names what to keep instead, for classes that are not
+/// data.
+void reject_pickles(const py::module_& m) {
+  constexpr const char* kInstead[][2] = {
+      {"Scene", "keep its bodies and poses, body(key) and pose(key), and add them to another"},
+      {"CoherentQuery", "make another of its bodies a and b; only its cache is lost"},
+      {"Wrapper", "keep its body, and refine `excluded` in another"},
+      {"Trace", "keep json(), or save() it"},
+      {"Scenario", "open it again by its name or path"},
+      {"Outcome", "keep its folder and summary"},
+      {"PairExplanation", "keep dict() or str() of it"},
+      {"WalkExplanation", "keep dict() or str() of it"}};
+  for (const auto& [name, instead] : kInstead) {
+    const std::string text = std::string("a ") + name + " cannot be copied or pickled: " + instead;
+    m.attr(name).attr("__reduce__") = py::cpp_function(
+        [text](const py::object&) -> py::object { throw py::type_error(text); }, py::is_method(m.attr(name)));
+  }
+}
+
 PyObject* input_error = nullptr;  // live as long as the module
 PyObject* environment_error = nullptr;
 
@@ -147,9 +166,15 @@ PYBIND11_MODULE(_core, m) {
   bind_coherent(m);
   bind_explain(m);
   bind_wrapper(m);
-  bind_boxes(m);
   bind_recorded(m);
   bind_scenario(m);
+  m.def("_numbers", [](py::handle given, const std::string& what, const std::vector<py::ssize_t>& shape) {
+    return numbers(given, what.c_str(), shape).attr("copy")();
+  });
+  m.def("_integers", [](py::handle given, const std::string& what, const std::vector<py::ssize_t>& shape) {
+    return integers(given, what.c_str(), shape).attr("copy")();
+  });
   reject_objects_without_value(m);
+  reject_pickles(m);
   state_signatures(m);
 }

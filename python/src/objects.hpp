@@ -78,8 +78,6 @@ py::bytes png_of(const py::array_t<std::uint8_t, py::array::c_style | py::array:
 // Each binds one subject. module.cpp calls them in an order that defines each class before its first use.
 void bind_answers(py::module_& m);
 void bind_body(py::module_& m);
-/// Binds the parts of managers of many objects: boxes of bodies, and their overlapping pairs.
-void bind_boxes(py::module_& m);
 void bind_clash(py::module_& m);
 void bind_coherent(py::module_& m);
 void bind_collide(py::module_& m);

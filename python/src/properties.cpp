@@ -1,6 +1,10 @@
 #include "python/src/properties.hpp"
 
+#include <cstring>
 #include <stdexcept>
+
+#include "python/src/pickle.hpp"
+#include <lrbscope/trace/trace.hpp>
 
 namespace lrb::python {
 
@@ -40,6 +44,30 @@ void Signature::apply(py::detail::function_record& function) const {
 
 py::object parsed_json(const std::string& json) {
   return py::module_::import("json").attr("loads")(json);
+}
+
+Archive::Archive(const py::tuple& state) : reads_(true) {
+  if (state.size() != 2 || std::string(py::str(state[0])) != trace::lrbscope_version())
+    throw InputError("the pickle comes from another version of lrbscope; pickle the object again");
+  all_ = state[1].cast<std::string>();
+}
+
+py::tuple Archive::state() const {
+  return py::make_tuple(trace::lrbscope_version(), py::bytes(all_));
+}
+
+void Archive::bytes(char* at, std::size_t n) {
+  if (reads_) {
+    check(n);
+    std::memcpy(at, all_.data() + next_, n);
+    next_ += n;
+  } else {
+    all_.append(at, n);
+  }
+}
+
+void Archive::check(std::size_t n) const {
+  if (n > all_.size() - next_) throw InputError("the pickle is damaged: it ends early");
 }
 
 std::size_t checked_index(py::ssize_t i, std::size_t n) {

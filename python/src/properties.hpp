@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "python/src/arguments.hpp"
+#include "python/src/pickle.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/ids.hpp>
@@ -155,7 +156,8 @@ auto columns_of(Class& c, const Items& items) {
   };
 }
 
-/// As columns_of(), for the items that are the object's length and are called `what` in its display.
+/// As columns_of(), for the items that are the object's length and are called `what` in its display. Such
+/// objects are data: they can be pickled.
 template <class Class, class Items>
 auto rows_of(Class& c, const std::string& what, const Items& items) {
   const auto size = [items](const typename Class::type& self) { return std::size(std::invoke(items, self)); };
@@ -164,6 +166,7 @@ auto rows_of(Class& c, const std::string& what, const Items& items) {
   c.def("__repr__", [=](const typename Class::type& self) {
     return begin + std::to_string(size(self)) + " " + what + ">";
   });
+  make_picklable(c);
   return columns_of(c, items);
 }
 
@@ -198,6 +201,10 @@ template <class Result>
 struct Sequence {
   std::vector<Result> all;
 };
+template <class Result>
+void members(Archive& archive, Sequence<Result>& x) {
+  archive(x.all);
+}
 
 /// Defines a sequence of answers; rows_of() defines its length.
 template <class Result>

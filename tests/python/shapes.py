@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from lrbscope import fcl
+
 
 class Mesh:
     """What the tests give as a mesh of somebody else's: anything with vertices and faces."""
@@ -61,6 +63,15 @@ def shifted(x, y, z):
     return pose
 
 
+def bvh_model(vertices, faces):
+    """Return a mesh of lrbscope.fcl."""
+    model = fcl.BVHModel()
+    model.beginModel(len(vertices), len(faces))
+    model.addSubModel(vertices, faces)
+    model.endModel()
+    return model
+
+
 def random_poses(rng, n, reach):
     """Return rotations by random angles with translations up to `reach`, (n, 4, 4)."""
     poses = np.tile(np.eye(4), (n, 1, 1))
@@ -89,12 +100,7 @@ def _edges_through(starts, ends, tri):
     a, b, c = (tri[None, :, i] for i in range(3))
     sides = [volume(p, q, x, y) for x, y in ((a, b), (b, c), (c, a))]
     straddles = volume(a, b, c, p) * volume(a, b, c, q) < 0
-    return straddles & (all_of(s > 0 for s in sides) | all_of(s < 0 for s in sides))
-
-
-def all_of(conditions):
-    """Return where all conditions hold."""
-    return np.logical_and.reduce(list(conditions))
+    return straddles & np.isin(sum(np.sign(sides)), (-3, 3))
 
 
 def brute_pairs(va, fa, vb, fb):

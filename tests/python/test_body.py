@@ -1,9 +1,8 @@
 """Bodies: from arrays and files, their properties, what is refused."""
 
-import copy
 import pickle
 import sys
-import types
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -31,12 +30,6 @@ def test_arrays_come_back_without_a_copy():
         body.vertices[0, 0] = 1
     kept = Body(vertices, faces).vertices  # keeps its body
     assert np.array_equal(kept, vertices)
-
-
-@pytest.mark.parametrize("dtype", [np.int8, np.uint8, np.int16, np.int32, np.uint32, np.int64, np.uint64])
-def test_faces_of_any_integers(dtype):
-    vertices, faces = cube_arrays()
-    assert Body(vertices, faces.astype(dtype)).hash == Body(vertices, faces).hash
 
 
 def test_polygons_and_triangles_of_their_fans():
@@ -104,23 +97,13 @@ def one_line(error):
 @pytest.mark.parametrize(
     ("vertices", "faces", "said"),
     [
-        (np.zeros((4, 4)), cube_arrays()[1], r"vertices: expected shape \(n, 3\).*got shape \(4, 4\)"),
-        (np.zeros(12), cube_arrays()[1], r"vertices: .*got shape \(12,\)"),
-        ("text", cube_arrays()[1], "vertices: expected numbers"),
-        (np.zeros((4, 3), dtype=complex), cube_arrays()[1], "vertices: expected numbers.*complex128"),
+        (np.zeros((4, 4)), cube_arrays()[1], r"vertices: expected numbers of shape \(n, 3\).*got shape \(4, 4\)"),
         (None, cube_arrays()[1], "vertices: expected numbers"),
-        (cube_arrays()[0], np.zeros((2, 3)), "faces: expected integers.*float64"),
         (cube_arrays()[0], np.zeros(3, dtype=int), r"faces: .*got shape \(3,\)"),
         (cube_arrays()[0], [[0, 1]], "faces: face 0 has 2 corners"),
-        (cube_arrays()[0], [[0, 1, 8]], "faces: face 0: expected a vertex index below 8, got 8"),
         (cube_arrays()[0], [[0, 1, 2], [0, -1, 2]], "faces: face 1: expected a vertex index below 8, got -1"),
-        (cube_arrays()[0], [[0, 1, 2**32]], "faces: face 0: expected a vertex index below 8, got 4294967296"),
-        (cube_arrays()[0], [[0, 1, 2], [0, 1, 2.5, 3]], "faces: expected integers"),
-        (cube_arrays()[0], "text", "faces: "),
-        (cube_arrays()[0], [], "no faces"),
+        (cube_arrays()[0], [[0, 1, 2], [0, 1, 2.5, 3]], "faces: face 1: expected integers"),
         ([], [], "no faces"),
-        ([[0, 0, 0], [1, 0, 0], [np.nan, 0, 1]], [[0, 1, 2]], "not finite.*2"),
-        ([[0, 0, 0], [1, 0, 0], [np.inf, 0, 1]], [[0, 1, 2]], "not finite.*2"),
     ],
 )
 def test_what_is_refused(vertices, faces, said):
@@ -130,23 +113,15 @@ def test_what_is_refused(vertices, faces, said):
     one_line(error)
 
 
-def test_pickles(ball):
-    for body in (ball, Body(*cube_arrays(), regions=False)):
-        again = pickle.loads(pickle.dumps(body))
-        assert again.hash == body.hash and again.name == body.name and again.notes == body.notes
-        assert np.array_equal(again.vertices, body.vertices) and np.array_equal(again.faces, body.faces)
-    pose = shifted(1.1, 0.3, 0.2)
-    assert lrbscope.collide(again, again, pose).fingerprint == lrbscope.collide(body, body, pose).fingerprint
-    assert copy.copy(ball) is ball and copy.deepcopy(ball) is ball
-
-
 def test_a_damaged_pickle_is_refused(cube):
-    state = list(cube.__getstate__())
-    with pytest.raises(InputError, match="another version"):
-        Body.__new__(Body).__setstate__((99, *state[1:]))
-    faces = state[4]
-    with pytest.raises(InputError):
-        Body.__new__(Body).__setstate__((*state[:4], faces[:-4] + b"\xff\xff\xff\x7f", *state[5:]))
+    version, data = cube.__getstate__()
+    for state, said in (
+        (("1.0", data), "another version"),
+        ((version, data[:-9]), "damaged"),
+        ((version, data.replace(cube.faces.tobytes(), b"\xff" * cube.faces.nbytes)), ""),
+    ):
+        with pytest.raises(InputError, match=said):
+            Body.__new__(Body).__setstate__(state)
 
 
 def test_figures_and_levels(ball):
@@ -215,35 +190,14 @@ def test_progress_that_is_refused():
         Body(*ball_arrays(3), progress=lambda *_: 1 // 0)
 
 
-class Tqdm:
-    """Stands in for tqdm, which need not be installed."""
-
-    made: list["Tqdm"] = []
-
-    def __init__(self, leave):
-        self.n = self.total = None
-        self.refreshed = self.closed = 0
-        self.made.append(self)
-
-    def set_description_str(self, text, refresh):
-        self.text = text
-
-    def refresh(self):
-        self.refreshed += 1
-
-    def close(self):
-        self.closed += 1
-
-
 def test_progress_bar(monkeypatch):
-    module = types.ModuleType("tqdm.auto")
-    module.tqdm = Tqdm
-    monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
-    monkeypatch.setitem(sys.modules, "tqdm.auto", module)
-    Tqdm.made.clear()
+    module = mock.Mock()  # stands in for tqdm, which need not be installed
+    bar = module.tqdm.return_value
+    for name in ("tqdm", "tqdm.auto"):
+        monkeypatch.setitem(sys.modules, name, module)
     Body(*ball_arrays(3), progress=True)
-    (bar,) = Tqdm.made
-    assert bar.refreshed > 0 and bar.closed == 1 and bar.total is None and "faces" in bar.text
+    assert module.tqdm.call_count == bar.close.call_count == 1 and bar.refresh.called and bar.total is None
+    assert "faces" in bar.set_description_str.call_args[0][0]
     # Without tqdm: what to do instead.
     monkeypatch.setitem(sys.modules, "tqdm", None)
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)

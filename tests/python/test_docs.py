@@ -44,7 +44,8 @@ DOCUMENTED = documented()
 
 def test_everything_public_has_a_docstring():
     assert len(DOCUMENTED) > 150
-    assert [name for name, text in DOCUMENTED if not (text and text.strip())] == []
+    of_fcl = re.compile(r"lrbscope\.fcl\.(\w+\.\w+|[A-Z]+_TYPE|\w+Type)$")  # methods and constants with names of FCL
+    assert [name for name, text in DOCUMENTED if not (text and text.strip()) and not of_fcl.match(name)] == []
 
 
 @pytest.mark.parametrize("name", [name for name, text in DOCUMENTED if text and ">>>" in text])

@@ -7,15 +7,7 @@ import numpy as np
 import pytest
 
 from lrbscope import InputError, fcl
-from shapes import ball_arrays, cube_arrays, square_arrays
-
-
-def model(vertices, faces):
-    m = fcl.BVHModel()
-    m.beginModel(len(vertices), len(faces))
-    m.addSubModel(vertices, faces)
-    m.endModel()
-    return m
+from shapes import ball_arrays, bvh_model, cube_arrays, placed, random_poses
 
 
 def at(x=0.0, y=0.0, z=0.0):
@@ -78,16 +70,12 @@ def test_models_are_built_in_order():
     assert m.addSubModel(*cube_arrays()) is True and m.num_tries_() == 13 and m.buildState() == 1
     m.endModel()
     assert m.buildState() == 2 and fcl.CollisionObject(m).body.real_face_count == 13
-    with pytest.raises(ValueError, match="triangles: expected integers"):
-        bad = fcl.BVHModel()
-        bad.beginModel()
-        bad.addSubModel(cube_arrays()[0], np.zeros((2, 3)))
     with pytest.raises(InputError, match="expected a vertex index below .*, got 9"):
-        model(cube_arrays()[0], [[0, 1, 9]])
+        bvh_model(cube_arrays()[0], [[0, 1, 9]])
 
 
 def test_meshes_collide():
-    m = model(*cube_arrays())
+    m = bvh_model(*cube_arrays())
     a, b = fcl.CollisionObject(m), fcl.CollisionObject(m, at(0.5, 0.25, 0.125))
     result = fcl.CollisionResult()
     assert fcl.collide(a, b, fcl.CollisionRequest(), result) == 1 and result.is_collision
@@ -99,7 +87,7 @@ def test_meshes_collide():
         assert 0 <= c.b1 < 12 and 0 <= c.b2 < 12 and (c.pos >= (0.5, 0.25, 0.125)).all() and (c.pos <= 1).all()
     assert fcl.collide(a, b, fcl.CollisionRequest(num_max_contacts=5)) == 5
     assert fcl.collide(a, fcl.CollisionObject(m, at(5))) == 0
-    assert fcl.collide(a, fcl.CollisionObject(model(*cube_arrays(0.25, 0.3)))) == 0, "meshes are surfaces"
+    assert fcl.collide(a, fcl.CollisionObject(bvh_model(*cube_arrays(0.25, 0.3)))) == 0, "meshes are surfaces"
 
 
 @pytest.mark.parametrize(
@@ -129,18 +117,67 @@ def test_shapes_are_solids():
         result = fcl.CollisionResult()
         assert fcl.collide(*pair, fcl.CollisionRequest(enable_contact=True), result) == 1
         assert result.is_collision and fcl.distance(*pair) == -1
-    mesh = fcl.CollisionObject(model(*ball_arrays(2)))
+    mesh = fcl.CollisionObject(bvh_model(*ball_arrays(2)))
     assert fcl.collide(ball, mesh) == 1 and fcl.collide(mesh, fcl.CollisionObject(fcl.Box(0.1, 0.1, 0.1))) == 0
     triangle = fcl.CollisionObject(fcl.TriangleP(*np.eye(3)))
     assert fcl.collide(triangle, inside) > 0
 
-    def square(side, corner):
-        vertices, faces = square_arrays(side, corner)
-        return fcl.CollisionObject(fcl.Convex(vertices, 4, np.insert(faces, 0, 2, axis=1).ravel()), at(2))
 
+def contacts(one, other):
     result = fcl.CollisionResult()
-    assert fcl.collide(square(1, 0), square(0.5, 0.25), fcl.CollisionRequest(), result) == 1
-    assert result.contacts[0].pos.tolist() == [2.25, 0.25, 0]
+    fcl.collide(one, other, fcl.CollisionRequest(num_max_contacts=1000, enable_contact=True), result)
+    return result.contacts
+
+
+def test_contacts_of_shapes_have_the_separation_vector(rng, monkeypatch):
+    """Along the normal B leaves A after the depth, and in no direction before."""
+    monkeypatch.setattr(fcl, "facets", 16)
+    shapes = [fcl.Box(1, 2, 0.5), fcl.Sphere(0.7), fcl.Cone(0.8, 1.5), fcl.Box(0.2, 0.2, 0.2)]
+    seen = 0
+    for i, pose in enumerate(random_poses(rng, 24, 0.5)):
+        place = pose[:3, 3]
+        one = fcl.CollisionObject(shapes[i % 4])
+        other = fcl.CollisionObject(shapes[i // 4 % 4], fcl.Transform(pose[:3, :3], place))
+        found = contacts(one, other)
+        seen += len(found)
+        for c in found:
+            assert (c.b1, c.b2, len(found)) == (-1, -1, 1) and c.penetration_depth > 0
+            ways = rng.normal(size=(20, 3))
+            ways = np.vstack([c.normal, ways / np.linalg.norm(ways, axis=1)[:, None]])
+            for part, directions in ((0.999, ways), (1.001, ways[:1])):
+                for direction in directions:
+                    other.setTranslation(place + part * c.penetration_depth * direction)
+                    assert bool(fcl.collide(one, other)) == (part < 1)
+    assert seen > 15
+    (touch,) = contacts(box(1), box(1, 1))
+    assert touch.penetration_depth == 0 and touch.normal.tolist() == [1, 0, 0]
+
+
+def meets_box(points, half):
+    """Return whether a polygon has a point in a box about the origin: something is left of it between the sides."""
+    for axis, sign in ((k, s) for k in range(3) for s in (1, -1)):
+        kept = []
+        for p, q in zip(points, [*points[1:], *points[:1]]):
+            room, next_room = half[axis] - sign * p[axis], half[axis] - sign * q[axis]
+            kept += [p] if room >= 0 else []
+            kept += [p + (q - p) * room / (room - next_room)] if room * next_room < 0 else []
+        points = kept
+    return len(points) > 0
+
+
+def test_triangles_of_a_mesh_in_a_shape(rng):
+    """Those that cross the shape's surface, and those inside."""
+    vertices, faces = ball_arrays(2, 0.8)
+    mesh, half = bvh_model(vertices, faces), np.array([0.3, 0.5, 0.9])
+    for pose in random_poses(rng, 10, 0.9):
+        one = fcl.CollisionObject(fcl.Box(*2 * half))
+        other = fcl.CollisionObject(mesh, fcl.Transform(pose[:3, :3], pose[:3, 3]))
+        wanted = [i for i, t in enumerate(placed(vertices, pose)[faces]) if meets_box(list(t), half)]
+        found = contacts(one, other)
+        assert sorted(c.b2 for c in found) == sorted(c.b1 for c in contacts(other, one)) == wanted
+        assert fcl.collide(one, other) == fcl.collide(other, one) == bool(wanted)
+        for c in found:
+            assert c.b1 == -1 and c.penetration_depth >= 0 and np.isclose(np.linalg.norm(c.normal), 1)
 
 
 def test_distances():
@@ -151,7 +188,7 @@ def test_distances():
     assert np.isclose(np.linalg.norm(result.nearest_points[0] - result.nearest_points[1]), found)
     assert result.o1 is a._geom and result.b1 == -1
     assert fcl.distance(a, fcl.CollisionObject(fcl.Sphere(1), at(50)), request, result) > found == result.min_distance
-    cube = model(*cube_arrays())
+    cube = bvh_model(*cube_arrays())
     o, result = fcl.CollisionObject(cube), fcl.DistanceResult()
     assert fcl.distance(o, fcl.CollisionObject(cube, at(0.5, 0.25, 0.125))) == 0
     fcl.distance(o, fcl.CollisionObject(cube, at(3)), request, result)
@@ -224,7 +261,7 @@ def nearest(m, *others, callback=fcl.defaultDistanceCallback):
 def test_managers():
     """What python-fcl's example asks of managers."""
     sphere, cone = fcl.Sphere(4), fcl.Cone(5, 6)
-    mesh = model(np.eye(4)[:, 1:] + 1, np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]))
+    mesh = bvh_model(np.eye(4)[:, 1:] + 1, np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]))
     one = manager(box(1, 20), fcl.CollisionObject(sphere))
     two = manager(fcl.CollisionObject(cone), fcl.CollisionObject(mesh))
     assert not collided(one).is_collision and collided(two).is_collision
@@ -238,7 +275,7 @@ def test_managers():
 
 def test_managers_keep_objects():
     triangles, corners = np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]), np.vstack([np.zeros(3), np.eye(3)])
-    mesh = model(corners, triangles)
+    mesh = bvh_model(corners, triangles)
     a, b = fcl.CollisionObject(mesh), box(1, 0.5)
     m = manager(a, b)
     assert m.size() == 2 and not m.empty() and m.getObjects() == [a, b]

@@ -7,7 +7,7 @@ import pytest
 
 import lrbscope
 from lrbscope import Body, InputError, clash, collide, distance, fcl, first_contact
-from shapes import Mesh, ball_arrays, brute_pairs, cube_arrays, open_cube_arrays, placed, random_poses, shifted
+from shapes import Mesh, ball_arrays, brute_pairs, bvh_model, cube_arrays, open_cube_arrays, placed, random_poses, shifted
 
 CROSSING = shifted(0.5, 0.25, 0.125)
 
@@ -98,18 +98,6 @@ def test_views_outlive_their_result(ball):
     assert not pairs.flags.writeable and not pairs.flags.owndata
 
 
-@pytest.mark.parametrize("rows", [4, 3])
-def test_shapes_and_types_of_poses(cube, rows):
-    pose = CROSSING[:rows]
-    wanted = collide(cube, cube, CROSSING).fingerprint
-    wide = np.zeros((rows, 8))
-    wide[:, ::2] = pose
-    for given in (pose, pose.astype(np.float32), pose.tolist(), np.asfortranarray(pose), wide[:, ::2]):
-        assert collide(cube, cube, given).fingerprint == wanted
-        assert collide(cube, cube, [given])[0].fingerprint == wanted
-    assert collide(cube, cube, shifted(0, 0, 0), pose).relation == "crossing"
-
-
 def test_meshes_of_other_libraries_are_bodies(cube):
     """Objects with vertices and faces, as trimesh has them, or triangles, as Open3D."""
     mesh = Mesh(*cube_arrays())
@@ -127,13 +115,8 @@ def test_meshes_of_other_libraries_are_bodies(cube):
 
 POSES_REFUSED = [
     (np.eye(3), r"poses_b: expected numbers of shape \(4, 4\) or \(k, 4, 4\), got shape \(3, 3\)"),
-    (np.zeros((2, 2, 4, 4)), "poses_b: "),
-    (np.zeros(16), r"poses_b: .*got shape \(16,\)"),
-    ("text", "poses_b: expected numbers"),
-    (np.full((4, 4), "x"), "poses_b: expected numbers"),
     (np.eye(4) * 2, "poses_b: the last row of a pose must be 0 0 0 1"),
     (np.eye(4) * np.nan, "poses_b: the last row"),
-    (shifted(np.nan, 0, 0), "finite numbers"),
     (np.diag([1e308, 1, 1, 1]) * 1.0 + shifted(1.7e308, 0, 0) - np.eye(4), "exceeds 1.8e308"),
 ]
 BOTH = "cube, cube, "
@@ -143,7 +126,7 @@ REFUSED = [
     ("collide(cube)", TypeError, r"^collide\(\): missing a required argument: 'b'$"),
     ("Body()", TypeError, r"^Body\(\): missing a required argument: 'vertices'$"),
     (f"collide({BOTH}mode='some')", InputError, 'mode: "some" is not one of all, first or any'),
-    (f"collide({BOTH}pose_a=np.zeros((2, 4, 4)))", InputError, r"pose_a: expected shape \(4, 4\)"),
+    (f"collide({BOTH}pose_a=[np.eye(4)] * 2)", InputError, r"pose_a: expected numbers of shape \(4, 4\), got 2 poses"),
     (f"collide({BOTH}max_tests=-1)", InputError, "max_tests: expected an integer of at least 0"),
     (f"collide({BOTH}threads=-1)", InputError, "threads"),
     (f"collide({BOTH}contacts=1)", TypeError, "contacts: expected True or False"),
@@ -155,7 +138,7 @@ REFUSED = [
     (f"distance({BOTH}tolerance=np.nan)", InputError, "tolerance"),
     (f"clash({BOTH}clearance=-1)", InputError, "clearance: expected a finite number of at least 0"),
     (f"clash({BOTH}along=(0, 0, 0))", InputError, ""),
-    (f"clash({BOTH}along=(0, 0))", InputError, "along: expected three numbers"),
+    (f"clash({BOTH}along=(0, 0))", InputError, r"along: expected numbers of shape \(3,\)"),
     (f"first_contact({BOTH}[np.eye(4)] * 2, tolerance=0)", InputError, "tolerance"),
     (f"first_contact({BOTH}'there')", InputError, "motion_b: expected numbers"),
     (f"first_contact({BOTH}[])", InputError, "motion_b: expected at least one pose, got none"),
@@ -168,7 +151,6 @@ REFUSED = [
     (f"lrbscope.contact_manifolds({BOTH}max_pairs=1)", InputError, "pairs"),
     (f"lrbscope.contact_manifolds({BOTH}previous=3)", InputError, "previous"),
     ("lrbscope.signed_distance(cube, [[0, 0]])", InputError, "3 coordinates"),
-    ("lrbscope.signed_distance(cube, [[0, 0, np.nan]])", InputError, "point 0"),
     ("lrbscope.signed_distance(cube, [0, 0, 0])", InputError, "shape"),
     ("lrbscope.explain_pair(cube, cube, (0, 12))", InputError, "simplex of B: expected a number below 12"),
     ("lrbscope.explain_pair(cube, cube, (0, -1))", InputError, "pair"),
@@ -301,14 +283,8 @@ def test_contacts_have_depth_and_normal_of_the_overlap(a, b, moved, depth, norma
     manager = lrbscope.CollisionManager()
     manager.add_object("b", other, pose)
     found = [(c.depth, c.normal) for c in manager.in_collision_single(one, return_data=True)[1]]
-    models = []
-    for vertices, faces in (a, b):
-        models.append(fcl.BVHModel())
-        models[-1].beginModel()
-        models[-1].addSubModel(vertices, faces)
-        models[-1].endModel()
-    result = fcl.CollisionResult()
-    objects = fcl.CollisionObject(models[0]), fcl.CollisionObject(models[1], fcl.Transform(np.array(moved)))
+    result, place = fcl.CollisionResult(), fcl.Transform(np.array(moved))
+    objects = fcl.CollisionObject(bvh_model(*a)), fcl.CollisionObject(bvh_model(*b), place)
     fcl.collide(*objects, fcl.CollisionRequest(num_max_contacts=1000, enable_contact=True), result)
     of_fcl = [(c.penetration_depth, c.normal) for c in result.contacts]
     assert len(found) == len(of_fcl) > 0 and str(found) == str(of_fcl)

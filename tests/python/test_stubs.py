@@ -1,7 +1,9 @@
 """The annotations say the types that the modules have: of values, by mypy and by stubtest."""
 
 import ast
+import copy
 import os
+import pickle
 import shutil
 import subprocess
 import textwrap
@@ -183,12 +185,46 @@ def test_values_are_of_the_types_that_annotations_say(samples):
             value = value() if callable(value) else value
             assert fits(value, type_), f"{name}.{member}: {ast.unparse(type_)} is not {value!r}"
             seen.add((module, name))
-    without = {("lrbscope", name) for name in ("InputError", "EnvironmentError", "SweepAndPrune")}
+    without = {("lrbscope", name) for name in ("InputError", "EnvironmentError")}
     assert {s for s in seen if s[0] == "lrbscope"} == {c for c in CLASSES if c[0] == "lrbscope"} - without
     of_python = {name for module, name in seen if module in ("lrbscope.collision", "lrbscope.fcl")}
     wanted = "ContactData DistanceData Box TriangleP Transform CollisionObject CollisionResult Contact"
     wanted += " DistanceResult DynamicAABBTreeCollisionManager"
     assert of_python == set(wanted.split())
+
+
+def same(x, y):
+    if isinstance(x, np.ndarray):
+        return x.dtype == y.dtype and np.array_equal(x, y)
+    if isinstance(x, dict):
+        return same(list(x.items()), list(y.items()))
+    if isinstance(x, (list, tuple)):
+        return len(x) == len(y) and all(map(same, x, y))
+    return repr(x) == repr(y) if type(x).__module__.startswith("lrbscope") else x == y
+
+
+def test_data_can_be_pickled(samples):
+    """Answers and bodies keep all that they know; of others the error says what to keep."""
+    refused = set()
+    for thing in samples:
+        module, name = type(thing).__module__, type(thing).__name__
+        try:
+            again = pickle.loads(pickle.dumps(thing))
+        except TypeError as error:
+            said = str(error)
+            refused.add(said.split()[1])
+            for use in (copy.deepcopy, copy.copy)[: 1 + (module == "lrbscope")]:
+                with pytest.raises(TypeError, match=f"^a {said.split()[1]} cannot be copied or pickled: .*(keep|make|open)"):
+                    use(thing)
+            continue
+        assert module != "lrbscope" or (copy.copy(thing) is copy.deepcopy(thing) is thing)
+        for member, _ in members(module, name):
+            values = [getattr(x, member) for x in (thing, again)]
+            values = [v() if callable(v) else v for v in values]
+            assert member in ("memory_bytes", "figures") or same(*values), f"{name}.{member}: {values}"
+        if hasattr(thing, "__getitem__"):
+            assert same(list(thing), list(again))
+    assert refused == set("Scene CoherentQuery Wrapper Trace Scenario Outcome PairExplanation WalkExplanation".split())
 
 
 USE = """

@@ -58,29 +58,24 @@ def test_a_batch_lets_other_threads_run(ball, rng):
         signal.signal(signal.SIGUSR1, kept)
 
 
-def _query_in_a_child(pose):
+def _query_in_a_child(given):
+    copy, pose = given
     body = Body(*ball_arrays(3))
-    one = collide(body, body, pose)
-    return collide(body, body, [pose] * 10, threads=0).fingerprints.tolist() + [one.fingerprint]
+    return copy.hash, collide(body, body, [pose] * 10, threads=0), collide(copy, body, pose, contacts=True)
 
 
 @pytest.mark.parametrize("way", ["fork", "spawn"])
 def test_processes(ball, way):
+    """Bodies go to other processes, and answers come back."""
     poses = [shifted(1.1 + 0.1 * i, 0.2, 0.3) for i in range(4)]
     collide(ball, ball, poses)  # threads have been started before the fork
     with multiprocessing.get_context(way).Pool(2) as pool:
-        found = pool.map(_query_in_a_child, poses)
-    for pose, prints in zip(poses, found):
-        assert set(prints) == {collide(ball, ball, pose).fingerprint}
-
-
-def _query_of_a_copy(body):
-    return collide(body, body, [shifted(1.1, 0.2, 0.3)] * 3).fingerprints.tolist()
-
-
-def test_bodies_go_to_other_processes(ball):
-    with multiprocessing.get_context("fork").Pool(2) as pool:
-        assert pool.map(_query_of_a_copy, [ball]) == [_query_of_a_copy(ball)]
+        found = pool.map(_query_in_a_child, [(ball, pose) for pose in poses])
+    for pose, (hash_, many, one) in zip(poses, found):
+        wanted = collide(ball, ball, pose, contacts=True)
+        assert hash_ == ball.hash and {*many.fingerprints, one.fingerprint} == {wanted.fingerprint}
+        assert np.array_equal(one.face_pairs, wanted.face_pairs) and one.counters == wanted.counters
+        assert [r.depth_estimate for r in one.regions] == [r.depth_estimate for r in wanted.regions]
 
 
 INTERRUPTED = """

@@ -93,7 +93,7 @@ def test_options_of_pictures(ball):
         ({"size": 3}, "size: expected"),
         ({"size": (3, 3)}, "size: expected two numbers from 16 to 8192, got 3"),
         ({"view_from": (0, 0, 0)}, "view_from: expected a direction"),
-        ({"up": (0, 1)}, "up: expected three numbers"),
+        ({"up": (0, 1)}, r"up: expected numbers of shape \(3,\)"),
         ({"zoom": 0}, "zoom: expected"),
         ({"colour_by": "taste"}, "colour_by: "),
         ({"colour_by": "box_tests"}, "two bodies"),

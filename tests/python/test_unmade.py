@@ -53,7 +53,7 @@ for bound in classes:
                 continue
             for name, member in vars(base).items():
                 is_method = callable(member) and not isinstance(member, (staticmethod, type))
-                if name in ("__init__", "__new__", "__setstate__") or not (is_method or isinstance(member, property)):
+                if name in ("__init__", "__new__", "__setstate__", "__reduce__") or not (is_method or isinstance(member, property)):
                     continue
                 if name.startswith("_pybind11"):  # its own, since 2.13
                     continue
@@ -71,11 +71,6 @@ for bound in classes:
         refused("a body that is none", lrbscope.CoherentQuery, cube, made)
 
 body = lrbscope.Body.__new__(lrbscope.Body)
-for f in (lrbscope.collide, lrbscope.distance, lrbscope.clash, lrbscope.trace, lrbscope.explain_walk):
-    for arguments in ((body, cube), (cube, body)):
-        assert "__new__" in refused(f.__name__, f, *arguments)
-assert "__new__" in refused("other", lrbscope.Scene().collide, lrbscope.Scene.__new__(lrbscope.Scene))
-
 body.__init__(*cube_arrays())  # nothing is lost: it can be made later
 assert lrbscope.collide(body, cube).relation == "touching"
 print(uses, "uses refused")
