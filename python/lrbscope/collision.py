@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from ._core import Body, Result
+    from ._core import Body, Result, _Floats
 
     class _Mesh(Protocol):
         @property
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
         @property
         def faces(self) -> Any: ...
 
-    _Floats = npt.NDArray[np.float64]
     _Pose = Optional[npt.ArrayLike]
     _Placed = tuple[Body, _Floats]
     _Names = tuple[Any, Any]

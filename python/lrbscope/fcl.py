@@ -74,7 +74,8 @@ class Transform:
         if len(given) == 1 and isinstance(given[0], Transform):
             self.setTransform(given.pop())
         elif len(given) == 2 or (given and np.size(given[0]) == 3):
-            self.setTranslation(given.pop())
+            T = given.pop()
+            self.setTranslation(T.ravel() if isinstance(T, np.ndarray) and T.ndim == 2 else T)
         if given:
             self.setQuatRotation(given[0]) if np.size(given[0]) == 4 else self.setRotation(given[0])
 
@@ -85,7 +86,7 @@ class Transform:
         return self._pose[:3, 3].copy()
 
     def setTranslation(self, T: npt.ArrayLike) -> None:
-        self._pose[:3, 3] = _core._numbers(np.squeeze(T), "translation", (3,))
+        self._pose[:3, 3] = _core._numbers(T, "translation", (3,))
 
     def getRotation(self) -> _Floats:
         return self._pose[:3, :3].copy()

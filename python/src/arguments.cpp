@@ -306,7 +306,7 @@ Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& na
   mesh.dim = read_points(vertices, "vertices", mesh.vertices);
   reject_masked(faces, "faces");
   const py::array found = py::array::ensure(faces);  // none if faces differ in their number of corners
-  if (found && found.dtype().kind() != 'O')
+  if (found && (found.dtype().kind() != 'O' || found.ndim() == 0))
     add_equal_faces(found, mesh);
   else if (py::isinstance<py::sequence>(faces) && !py::isinstance<py::str>(faces))
     add_any_faces(py::reinterpret_borrow<py::sequence>(faces), mesh);

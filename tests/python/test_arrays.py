@@ -105,7 +105,11 @@ def test_faulty_arrays(name):
 
 
 def test_numbers_that_no_body_has():
-    for wrong, said in ((FACES - 1, "face 0: .* below 8, got -1"), (FACES + 2**32, "face 0: .*, got 4294967296")):
+    for wrong, said in (
+        (FACES - 1, "face 0: .* below 8, got -1"),
+        (FACES + 2**32, "face 0: .*, got 4294967296"),
+        (np.array(None), "faces: expected integers"),
+    ):
         with pytest.raises(InputError, match=said):
             Body(VERTICES, wrong)
     for value in (np.nan, np.inf):

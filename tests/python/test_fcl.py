@@ -30,6 +30,7 @@ def test_transforms(rng):
         ((t,), np.eye(3), t),
         ((q, t), TURN, t),
         ((TURN, t), TURN, t),
+        ((TURN, t[:, None]), TURN, t),
         ((fcl.Transform(TURN, t),), TURN, t),
     ]:
         tf = fcl.Transform(*args)

@@ -58,9 +58,8 @@ for bound in classes:
                 if name.startswith("_pybind11"):  # its own, since 2.13
                     continue
                 check_member(cls, name, member, made)
-        refused(f"pickle of {cls.__name__}", pickle.dumps, made)
-        refused(f"copy of {cls.__name__}", copy.copy, made)
-        refused(f"deepcopy of {cls.__name__}", copy.deepcopy, made)
+        for use in (pickle.dumps, copy.copy, copy.deepcopy):
+            refused(f"{use.__name__} of {cls.__name__}", use, made)
         if "__repr__" not in vars(bound):
             repr(made)  # that of object, which asks for nothing
         for f in functions:
