@@ -141,13 +141,6 @@ TEST_CASE("a file is read in chunks as it is from memory") {
   }
 }
 
-TEST_CASE("a newer version is rejected before any other check") {
-  std::string newer = bytes_of(shapes::stairs_2d());
-  newer[kVersionAt] = static_cast<char>(kLrbFileVersion + 1);
-  CHECK(complaint(newer) ==
-        "body.lrb: byte 8: found file version 5, expected at most 4; use a newer lrbscope");
-}
-
 TEST_CASE("lengths beyond the file are rejected before memory is allocated") {
   const LrbRep rep = shapes::stairs_2d();
   const std::string whole = bytes_of(rep);

@@ -197,29 +197,4 @@ TEST_CASE(
   check(positions({{0, 2}, {-1, -2}, {2, 1}, {-2, 1}, {1, -2}}, 0), PolygonCut::folded);  // a pentagram
 }
 
-TEST_CASE("polygons of 200,000 corners take no quadratic time") {
-  constexpr int kCorners = 200'000;
-  Triangles triangles;
-  std::vector<Eigen::Vector3d> comb, spiral, flower;
-  for (int i = 0; i < kCorners; ++i) {
-    const int k = i < kCorners / 2 ? i : kCorners - 1 - i;
-    const double angle = k * 0.01, radius = 10 + angle + (i == k ? 0 : 2), turn = i * 0x1p-15;
-    comb.push_back({double(i), i % 2 == 0 ? 0.0 : 100.0, 0});
-    spiral.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
-    // Many triangles that share a corner: the worst case.
-    flower.push_back(i % 3 == 0 ? Eigen::Vector3d(0, 0, 0)
-                                : Eigen::Vector3d(std::cos(turn), std::sin(turn), 0));
-  }
-  for (const double x : {kCorners - 1.0, 0.0}) comb.push_back({x, -1, 0});
-  for (const auto& x : {comb, spiral}) {
-    CHECK(cut_polygon(x, triangles) == PolygonCut::ears);
-    double cut = 0, fan = 0;
-    for (const auto& [i, j, k] : triangles) cut += std::abs((x[j] - x[i]).cross(x[k] - x[i]).z());
-    for (std::size_t i = 1; i + 1 < x.size(); ++i) fan += (x[i] - x[0]).cross(x[i + 1] - x[0]).z();
-    CHECK(cut == doctest::Approx(std::abs(fan)).epsilon(1e-6));
-  }
-  cut_polygon(flower, triangles);
-  CHECK(triangles.size() == flower.size() - 2);
-}
-
 }  // namespace lrb::polygons

@@ -123,22 +123,6 @@ TEST_CASE("every case has its record, in order, despite crashes and parallel run
   }
 }
 
-TEST_CASE("a repeated case gives the same record, with its pairs") {
-  const WorkerPrograms workers;
-  const std::vector<Record> all = ask({"fake-miss"}, 3);
-  const Replay again = replay(worker_method("fake-miss"), all[2], 20);
-  CHECK(again.record.missed == all[2].missed);
-  CHECK(again.record.expected == all[2].expected);
-  CHECK(again.expected.size() == all[2].expected);
-  REQUIRE(again.answered);
-  CHECK(again.answered->size() + all[2].missed == again.expected.size());
-  const Replay died = replay(worker_method("fake-crash"), all[2], 20);
-  CHECK(died.record.outcome == Outcome::crashed);
-  CHECK(died.record.message.find("signal 6") != std::string::npos);
-  CHECK(died.expected == again.expected);
-  CHECK(!died.answered);
-}
-
 TEST_CASE("a missing or invalid worker") {
   const Folder folder;
   const Environment where("LRBSCOPE_METHODS", folder.path.string());
@@ -310,18 +294,6 @@ TEST_CASE(
   }
   CHECK(failed <= 3);
   CHECK(failing > 15);
-}
-
-TEST_CASE("a textbook's test of distant triangles") {
-  const auto meet = [](std::initializer_list<Eigen::Vector3d> a, std::initializer_list<Eigen::Vector3d> b) {
-    return methods::plain_triangles_meet(a.begin(), b.begin());
-  };
-  CHECK(meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {2, 2, 1}}));
-  CHECK(!meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{3, 3, -1}, {3, 3, 1}, {4, 4, 1}}));
-  CHECK(!meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 1}, {1, 2, 1}, {2, 2, 3}}));
-  CHECK(meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {9, 9, 0}, {9, 8, 0}}));
-  CHECK(meet({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}, {{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}));
-  CHECK(!meet({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 5, 0}, {9, 9, 0}, {9, 8, 0}}));
 }
 
 namespace {
