@@ -236,22 +236,3 @@ TEST_CASE("coherent queries of bodies that leave the range of doubles") {
     CHECK(tally.contact > 0);
   }
 }
-
-TEST_CASE("a coherent query without a cache runs from scratch") {
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 5, 0.2));
-  CollideRequest request;
-  request.contacts = true;
-  CoherentQuery with_contacts(a, a, request);
-  request.recursion = Recursion::paper;
-  CoherentQuery paper(a, a, request);
-  for (int i = 0; i < 6; ++i) {
-    const Pose p = Pose::translation({1.2 + 1e-4 * i, 0.3, 0});
-    CHECK(with_contacts.collide(Pose{}, p).contacts.size() == with_contacts.collide(Pose{}, p).pairs.size());
-    request.recursion = Recursion::paper;
-    CHECK(paper.collide(Pose{}, p).pairs == collide(a, Pose{}, a, p, request).pairs);
-    request.recursion = Recursion::complete;
-    const CollideResult& r = with_contacts.collide(Pose{}, p);
-    CHECK(r.regions.size() == collide(a, Pose{}, a, p, request).regions.size());
-  }
-  CHECK(paper.statistics().from_cache == 0);
-}

@@ -151,17 +151,6 @@ TEST_CASE("separate bodies: the closest disjoint boxes, and a separating plane i
   CHECK(boxes > 10);
 }
 
-TEST_CASE("linked rings are separate, but no plane separates them") {
-  const LrbRep ring = build_lrb(torus(24, 12));
-  Pose through;
-  through.r << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  through.t = {1, 0, 0};
-  const WalkExplanation e = explain_walk(ring, {}, ring, through);
-  REQUIRE(e.result.relation == Relation::separate);
-  CHECK_FALSE(e.plane);
-  CHECK(e.nearest_boxes);
-}
-
 LrbRep segment(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Mesh mesh;
   mesh.dim = 2;

@@ -35,16 +35,6 @@ TEST_CASE("without regions the paper's query is brute force and finds all pairs"
   }
 }
 
-TEST_CASE("a rod that enters through the lid is found") {
-  const LrbRep a = shapes::dented_box();
-  const LrbRep rod = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.5}, {2.1, 2.2, 3}), true, false);
-  const CollideResult paper = ask(a, rod, Pose{}, Recursion::paper),
-                      complete = ask(a, rod, Pose{}, Recursion::complete);
-  CHECK(!complete.pairs.empty());
-  CHECK(paper.pairs == complete.pairs);
-  CHECK(paper.opened[0] == std::vector<RegionId>{0});
-}
-
 TEST_CASE(
     "a contact under a lid that nothing touches is missed by the paper's recursion, never by the complete "
     "one") {
@@ -61,45 +51,6 @@ TEST_CASE(
     CHECK(paper.pairs.empty());
     CHECK(paper.counters.refinements == 0);
   }
-}
-
-TEST_CASE(
-    "the readings of the paper find more, the more faces they test new ones against, and no false pair") {
-  shapes::RandomEngine random(4);
-  const LrbRep a = shapes::dented_box();
-  std::size_t strict_total = 0, paper_total = 0, wrapper_total = 0, boxes_total = 0, complete_total = 0;
-  for (int i = 0; i < 200; ++i) {
-    const Pose p = shapes::random_pose(random, a, a, shapes::uniform(random, 0.3, 0.9));
-    const auto complete = ask(a, a, p, Recursion::complete).pairs;
-    const auto paper = ask(a, a, p, Recursion::paper).pairs;
-    const auto strict = ask(a, a, p, Recursion::paper_strict).pairs;
-    const auto wrapper = ask(a, a, p, Recursion::paper_wrapper).pairs;
-    const auto boxes = ask(a, a, p, Recursion::paper_boxes).pairs;
-    const auto wrapper_boxes = ask(a, a, p, Recursion::paper_wrapper_boxes).pairs;
-    CHECK(std::includes(complete.begin(), complete.end(), wrapper_boxes.begin(), wrapper_boxes.end()));
-    CHECK(std::includes(complete.begin(), complete.end(), boxes.begin(), boxes.end()));
-    boxes_total += boxes.size();
-    CHECK(std::includes(complete.begin(), complete.end(), paper.begin(), paper.end()));
-    CHECK(std::includes(complete.begin(), complete.end(), wrapper.begin(), wrapper.end()));
-    CHECK(std::includes(paper.begin(), paper.end(), strict.begin(), strict.end()));
-    strict_total += strict.size();
-    paper_total += paper.size();
-    wrapper_total += wrapper.size();
-    complete_total += complete.size();
-  }
-  CHECK(strict_total < paper_total);
-  CHECK(paper_total <= wrapper_total);
-  CHECK(wrapper_total <= complete_total);
-}
-
-TEST_CASE("2D bodies use the same query") {
-  const LrbRep a = shapes::stairs_2d();
-  const LrbRep b = LrbRep::without_regions(shapes::polygon({{2.2, 1.8}, {5, 1.9}, {5, 2.4}}), true, false);
-  const CollideResult paper = ask(a, b, Pose{}, Recursion::paper),
-                      complete = ask(a, b, Pose{}, Recursion::complete);
-  CHECK(complete.pairs == paper.pairs);
-  CHECK(paper.opened[0] == std::vector<RegionId>{1});
-  CHECK(paper.relation == Relation::crossing);
 }
 
 TEST_CASE(
@@ -143,21 +94,5 @@ TEST_CASE(
     CHECK(pairs[k] >= paper_pairs);
     CHECK(pairs[k] < all);  // contacts under lids of the void, the bowl and the 2D bodies
     CHECK(tests[k] < paper_tests / 4);
-  }
-}
-
-TEST_CASE("without regions, the recursions with boxes find all pairs") {
-  const LrbRep a = LrbRep::without_regions(shapes::icosphere(2), true, false);
-  const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
-  shapes::RandomEngine random(3);
-  for (int i = 0; i < 20; ++i) {
-    // Far from the origin, coordinates have fewer digits, and boxes must not lose faces by that.
-    Pose p = shapes::random_pose(random, a, b, 0.4), q;
-    if (i % 2 == 1) p.t.x() += 0x1p30, q.t.x() = 0x1p30;
-    for (const Recursion recursion : {Recursion::paper_boxes, Recursion::paper_wrapper_boxes}) {
-      const CollideResult boxed = collide(a, q, b, p, {.recursion = recursion});
-      CHECK(boxed.pairs == collide(a, q, b, p).pairs);
-      CHECK(boxed.counters.face_tests < std::uint64_t{a.face_count()} * b.face_count());
-    }
   }
 }

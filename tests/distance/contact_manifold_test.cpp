@@ -221,32 +221,6 @@ TEST_CASE("manifold of two crossing edges: their normal, and one point on each")
     }
 }
 
-TEST_CASE("manifolds of a ring on a peg: radial normals; of a box in an inner corner: one for each wall") {
-  const LrbRep peg = closed(shapes::revolve({{0, -2}, {0.5, -2}, {0.5, 2}, {0, 2}}, 24)),
-               ring = closed(shapes::torus(24, 12, 0.9, 0.38));
-  const ManifoldResult around =
-      contact_manifolds(peg, {}, ring, Pose::translation({0, 0, 0.1}), with_margin(0.03));
-  REQUIRE(around.manifolds.size() >= 6);
-  Vector3d sum = Vector3d::Zero();
-  for (const ContactManifold& m : around.manifolds) {
-    CHECK(std::abs(m.normal.z()) < 1e-12);
-    const Vector3d& p = m.points[0].point[0];
-    CHECK(m.normal.dot(Vector3d(p.x(), p.y(), 0).normalized()) > 0.9);
-    sum += m.normal;
-  }
-  CHECK(sum.norm() < 0.35 * static_cast<double>(around.manifolds.size()));
-  const ManifoldResult inner =
-      contact_manifolds(closed(shapes::l_shape()), {},
-                        closed(shapes::box({1.001, 1.001, 0.2}, {1.5, 1.5, 0.8})), {}, with_margin(0.01));
-  REQUIRE(inner.manifolds.size() == 2);
-  for (const ContactManifold& m : inner.manifolds) {
-    CHECK(m.points.size() == 4);
-    CHECK(m.normal.maxCoeff() == 1);
-    CHECK(m.region == 0);
-    for (const ManifoldPoint& p : m.points) CHECK(p.depth == doctest::Approx(-0.001));
-  }
-}
-
 TEST_CASE("manifolds: two regions that a third one connects are one region, in any order of faces") {
   // A rod through a plate, with a blind hole from above. The rod's wall connects its lower and upper curve of
   // intersection, and the plate connects the upper one with that of the hole.

@@ -300,14 +300,6 @@ TEST_CASE("trees of every volume are read, and a tree may replace another") {
   CHECK(c.trees[4].directions.at(3) == Eigen::Vector3d(1, 1, 1));
 }
 
-TEST_CASE("a capture that does not exist is refused with the two ways to record none") {
-  CHECK_THROWS_WITH_AS(
-      read_capture("/nowhere/run.lrbcap"),
-      "/nowhere/run.lrbcap: no such file; check the path, and that the engine was compiled with "
-      "-DLRBCAP_ENABLE and run with LRBCAP_OUT",
-      InputError);
-}
-
 TEST_CASE("a stream has the same queries as the file, whatever its pieces, and needs their ends") {
   const Bytes bytes = record([] {
     for (int i = 0; i < 3; ++i) a_query();

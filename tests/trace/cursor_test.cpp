@@ -59,54 +59,6 @@ TEST_CASE("a replay equals the recorded wrappers after every event, in any order
   }
 }
 
-TEST_CASE("the cursor knows its step, pose, pair and regions") {
-  const LrbRep box(toy::dented_box());
-  const runs::Run run = runs::record(box, box, runs::kBoxPoses);
-  Cursor cursor(run.trace, box, box);
-  CHECK(cursor.step() == nullptr);
-  CHECK_FALSE(cursor.pair_under_test());
-  CHECK(cursor.refined().empty());
-  std::size_t refinements = 0;
-  while (cursor.next()) {
-    const std::size_t step = run.trace.step_of(cursor.position());
-    REQUIRE(cursor.step() == &run.trace.steps[step]);
-    CHECK(cursor.step_number() == step);
-    CHECK(equal(cursor.pose(Side::b), run.trace.steps[step].pose_b));
-    const Event& e = cursor.event();
-    const auto pair = cursor.pair_under_test();
-    if (e.kind == EventKind::face_test) {
-      REQUIRE(pair);
-      CHECK(pair->event == cursor.position());
-      CHECK(pair->simplex_a == e.a);
-      CHECK(pair->face_b == box.face_of_simplex(e.simplex(Side::b)));
-      CHECK(pair->meet == e.meet);
-    }
-    if (e.kind != EventKind::refine) {
-      CHECK(cursor.refined().empty());
-      continue;
-    }
-    ++refinements;
-    REQUIRE(pair);
-    CHECK(pair->event == e.cause);
-    const FaceId hit = e.side == Side::a ? pair->face_a : pair->face_b;
-    CHECK(box.inner_cell(hit) == e.a);
-    const std::vector<RefinedRegion> regions = cursor.refined();
-    REQUIRE_FALSE(regions.empty());
-    CHECK(regions.back().region == e.a);
-    CHECK(regions.back().side == e.side);
-    for (const RefinedRegion& r : regions) CHECK(run.trace.events[r.event].cause == e.cause);
-    CHECK(regions.size() == cursor.position() - e.cause);
-  }
-  CHECK(refinements > 0);
-  cursor.seek(kNull);
-  std::size_t found = 0;
-  while (cursor.next(EventKind::refine)) {
-    CHECK(cursor.event().kind == EventKind::refine);
-    ++found;
-  }
-  CHECK(found == refinements);
-}
-
 TEST_CASE("a replay rejects another body and another number of bodies") {
   const LrbRep plate(toy::notched_plate());
   LrbData moved = toy::notched_plate();

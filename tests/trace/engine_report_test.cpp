@@ -81,22 +81,6 @@ TEST_CASE("an engine's answers, counters, phases and axes survive a file, which 
   CHECK(find("node pair").at(1)["args"]["axis"] == 0);
 }
 
-TEST_CASE("two recordings of one query differ in what was found, not in when") {
-  const Trace x = engine_run();
-  Trace y = x;
-  y.steps[1].result.engine->begin_ns += 5;
-  y.steps[1].result.engine->duration_ns += 5;
-  y.steps[1].result.engine->thread = 0;
-  CHECK_FALSE(first_divergence(x, y));
-  y.steps[1].result.engine->verdict = EngineVerdict::separate;
-  const auto d = first_divergence(x, y);
-  REQUIRE(d);
-  CHECK(
-      d->message() ==
-      "step 1: engine: expected any, intersecting, 1 pair, 1 counts, 2 phases, found any, separate, 1 pair, "
-      "1 counts, 2 phases");
-}
-
 TEST_CASE("counters without a name, or at a place that does not exist, are refused") {
   for (const int fault : {0, 1, 2}) {
     CAPTURE(fault);

@@ -259,26 +259,6 @@ TEST_CASE("pairs of nodes form a tree: each pair's children are the overlapping 
   }
 }
 
-TEST_CASE("plane tests and face tests of a pair of leaves cover all pairs of their simplices") {
-  for (const WatchedBodies& bodies : watched_bodies()) {
-    const WatchedRun run = record(bodies, {}, EventLevel::all);
-    const Trace& t = run.trace;
-    for (const Event& e : t.events) {
-      if (e.kind != EventKind::plane_test) continue;
-      REQUIRE(e.cause != kNull);
-      const Event& leaves = t.events[e.cause];
-      CHECK(leaves.node_end().step == NodeStep::leaves);
-      const auto holds = [](const LrbRep& rep, std::uint32_t node, std::uint32_t simplex) {
-        const TreeNode& n = rep.tree().nodes()[node];
-        const SimplexId* block = rep.tree().blocks()[n.first].simplex;
-        return std::find(block, block + n.count, SimplexId(simplex)) != block + n.count;
-      };
-      CHECK(holds(*bodies.a, leaves.a, e.a));
-      CHECK(holds(*bodies.b, leaves.b, e.b));
-    }
-  }
-}
-
 TEST_CASE("traversals of levels of detail name the level, and are not counted for the body") {
   static const LrbRep rock = build_lrb(shapes::bumpy_sphere(4, 7, 0.3));
   RecorderSettings settings;
@@ -393,33 +373,4 @@ TEST_CASE("box tests of nodes are distributed to the faces below them") {
   for (Event& e : damaged.events)
     if (e.kind == EventKind::node_pair) e.a = 1'000'000;
   CHECK_THROWS_AS(count_nodes(TreeShape(watched_bodies()[3].a->tree()), Side::a, damaged.events), InputError);
-}
-
-TEST_CASE("the chart of the work contains each event once") {
-  for (const CollideRequest& request : requests()) {
-    const WatchedRun r = record(watched_bodies()[0], request, EventLevel::all);
-    const WorkChart chart = work_chart(r.trace);
-    std::uint64_t shares = 0, of_events = 0, box_tests = 0, operations = 0, levels = 0;
-    for (const WorkShare& s : work_shares(r.trace)) shares += s.events, box_tests += s.box_tests;
-    REQUIRE(chart.of_event.size() == r.trace.events.size());
-    std::vector<std::uint64_t> events(chart.outcomes.size());
-    for (const std::uint8_t of : chart.of_event)
-      if (of != WorkChart::kNone) ++events.at(of), ++of_events;
-    for (std::size_t i = 0; i < events.size(); ++i) {
-      const WorkOutcome& o = chart.outcomes[i];
-      CHECK(o.events == events[i]);
-      CHECK(o.events > 0);
-      if (o.outcome.starts_with("boxes")) operations += o.operations;
-      if (o.phase == "walk of levels") levels += o.events;
-    }
-    CHECK(of_events == shares);
-    CHECK(operations >= box_tests);  // with planes
-    std::vector<std::uint64_t> of_steps(chart.outcomes.size());
-    for (std::size_t step = 0; step < r.trace.steps.size(); ++step) {
-      const std::vector<WorkOutcome> parts = outcomes_of_step(r.trace, chart, step);
-      for (std::size_t i = 0; i < parts.size(); ++i) of_steps.at(i) += parts[i].operations;
-    }
-    for (std::size_t i = 0; i < of_steps.size(); ++i) CHECK(of_steps[i] == chart.outcomes[i].operations);
-    CHECK((levels > 0) == (request.tolerance > 0));
-  }
 }

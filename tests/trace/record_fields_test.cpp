@@ -114,18 +114,6 @@ Trace read_back(const Trace& trace) {
   return trace_from_json(trace_to_json(trace), "t.json");
 }
 
-template <class Enum>
-void check_words() {
-  std::set<std::string_view> seen;
-  for (const EnumName<Enum>& entry : kEnumNames<Enum>) {
-    CHECK(name_of(entry.value) == entry.name);
-    CHECK(from_name<Enum>(entry.name) == entry.value);
-    CHECK(seen.insert(entry.name).second);
-  }
-  CHECK_FALSE(from_name<Enum>("nonsense"));
-  CHECK(name_of(static_cast<Enum>(kEnumNames<Enum>.size())) == "?");
-}
-
 Trace plain_box_run() {
   const LrbRep box(toy::dented_box());
   return runs::record(box, box, runs::kBoxPoses).trace;
@@ -151,22 +139,6 @@ TEST_CASE("the tables have the fields and words of the published schema") {
   CHECK(test::trace_schema().at("/definitions/box_axis/enum"_json_pointer) == words<BoxAxis>());
   CHECK(test::trace_schema().at("/definitions/stage/enum"_json_pointer) == words<BuildStage>());
   CHECK(test::trace_schema().at("/definitions/verdict/enum"_json_pointer) == words<CapVerdict>());
-}
-
-TEST_CASE("names of enumerators round trip, and the engine's are those in files") {
-  check_words<Mode>();
-  check_words<Recursion>();
-  check_words<Predicates>();
-  check_words<WrapperMode>();
-  check_words<Relation>();
-  check_words<Answer>();
-  check_words<Side>();
-  check_words<exact::Meet>();
-  check_words<EventKind>();
-  check_words<Clock>();
-  CHECK(std::string(to_string(Recursion::paper_strict)) == "paper_strict");
-  CHECK(all_names<Mode>() == "all, first or any");
-  CHECK(all_names<Mode>("|", "|") == "all|first|any");
 }
 
 TEST_CASE("every changed field of a request is detected and read back") {

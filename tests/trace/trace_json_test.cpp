@@ -259,24 +259,6 @@ TEST_CASE("invalid files are rejected with location and reason in one line") {
         "/metadata/bodies: expected one body or two");
 }
 
-TEST_CASE("unreadable files are reported by name") {
-  const test::Folder folder;
-  CHECK_THROWS_WITH_AS(load_trace(folder / "none.json"),
-                       doctest::Contains("none.json: cannot read the trace"), InputError);
-  CHECK_THROWS_WITH_AS(load_trace(folder.path.string()), doctest::Contains("it is a directory"), InputError);
-  const std::string path = folder / "t.json.gz";
-  save_trace(ordered_box_run(), path);
-  const std::string whole = bytes_of(path);
-  CHECK_THROWS_WITH_AS(load_trace(path, {.max_bytes = 1000}), doctest::Contains("more than 1000 bytes"),
-                       InputError);
-  std::ofstream(path, std::ios::binary) << whole.substr(0, whole.size() / 2);
-  CHECK_THROWS_WITH_AS(load_trace(path), doctest::Contains("is truncated"), InputError);
-  std::string flipped = whole;
-  flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 0x55);
-  std::ofstream(path, std::ios::binary) << flipped;
-  CHECK_THROWS_AS(load_trace(path), InputError);
-}
-
 TEST_CASE("traces of older formats are read: their steps are named \"step\"") {
   const Trace t = ordered_box_run();
   std::string old = replaced(trace_to_json(t), "\"version\": 3", "\"version\": 1");
