@@ -1,6 +1,6 @@
 #pragma once
-/// What both builders do to entire fronts, for FrontMesh and FrontLoops alike: they find out which components
-/// bound voids, and when caps no longer simplify the front, they fill these and close with one wrapper.
+/// The steps of both builders on entire fronts, FrontMesh or FrontLoops: they find out which components bound
+/// voids, and when caps no longer simplify the front, they fill these and close with one wrapper.
 
 #include <algorithm>
 #include <cstdint>

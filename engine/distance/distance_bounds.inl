@@ -1,6 +1,6 @@
 #pragma once
-// Part of distance_kernel.inl: bounds of the distances of boxes, and of triangles along a direction; what is
-// dropped.
+// Part of distance_kernel.inl: bounds of the distances of boxes, and of triangles along a direction; dropping
+// of pairs.
 
 #include "engine/distance/distance_kernel.hpp"
 #include "engine/distance/kernel_distances.inl"

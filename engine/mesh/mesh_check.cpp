@@ -507,7 +507,7 @@ std::string_view noun(ElementKind kind, int dim) {
 /// Returns the advice on open edges, which depends on whether there is a hole at all.
 std::string advice_on_openings(const MeshReport& report) {
   if (report[MeshFault::t_junction].count + report[MeshFault::near_vertex].count > 0)
-    return "mend the T-junctions or merge the vertices named below, which leave slits";
+    return "fix the T-junctions or merge the vertices named below, which leave slits";
   const std::uint32_t sheets = report.sheets, open = report.open_components;
   // Only sheets: closing them would create a body without volume.
   if (sheets > 0 && sheets == open)
