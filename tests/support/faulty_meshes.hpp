@@ -81,14 +81,4 @@ inline Mesh with_face(Mesh m, const std::vector<Eigen::Vector3d>& vertices, std:
   return m;
 }
 
-/// Vertices in one place made one.
-inline Mesh welded(const Mesh& m) {
-  Mesh out = m;
-  for (VertexId& v : out.face_vertices) {
-    const auto same = [&](const Eigen::Vector3d& x) { return x == m.vertices[v]; };
-    v = static_cast<VertexId>(std::find_if(m.vertices.begin(), m.vertices.end(), same) - m.vertices.begin());
-  }
-  return out;
-}
-
 }  // namespace lrb::test
