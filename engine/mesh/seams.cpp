@@ -53,7 +53,8 @@ void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges,
         Box(x, x), [&](const Box&) { return !found; },
         [&](std::uint32_t i) {
           const OpenEdge& e = edges[i];
-          if (found || e.from == v || e.to == v) return;
+          const auto face = mesh.face(e.face);
+          if (found || std::find(face.begin(), face.end(), v) != face.end()) return;
           found = is_on(x, mesh.vertices[e.from], mesh.vertices[e.to], width);
           if (found) note(report, MeshFault::t_junction, v, e.face);
         });
