@@ -1,6 +1,6 @@
+// ---- lines, points and edges of boxes
 export const WHITE = [1, 1, 1];
 
-// ---- lines
 /** Returns the geometry of lines, six numbers each, with their lengths, by which they fade. */
 function lineGeometry(ends) {
   const geometry = new THREE.BufferGeometry(), at = Float32Array.from(ends),
