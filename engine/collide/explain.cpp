@@ -27,6 +27,7 @@
 #include "engine/collide/explain_parts.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb {
