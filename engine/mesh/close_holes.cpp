@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/geometry.hpp"
 #include "engine/mesh/hole_fill.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"

@@ -173,7 +173,7 @@ export class ViewControls {
     change("colour-scope", (e) => this.change({ scope: e.value }));
     change("boxes", (e) => this.change({ boxes: Number(e.value) }));
     change("explode", (e) => this.explode(Number(e.value)));
-    change("slice", (e) => this.slice(Number(e.value)));
+    if (!view.camera.plane) change("slice", (e) => this.slice(Number(e.value)));
     byId("ghost").onclick = () => this.toggle("ghost");
     byId("lids").onclick = () => this.toggle("lids");
     byId("isolate").onclick = byId("picked-isolate").onclick = () => this.isolatePicked();
@@ -211,7 +211,7 @@ export class ViewControls {
       byId(id).setAttribute("aria-pressed", on);
     byId("isolate").disabled = !now.isolate && !(picked && picked.region !== NONE);
     byId("explode").value = now.explode;
-    byId("slice").value = now.slice;
+    if (!camera.plane) byId("slice").value = now.slice;
     byId("boxes").value = now.boxes;
     byId("colour-by").value = now.by;
     byId("colour-per").value = now.per;
