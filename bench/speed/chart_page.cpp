@@ -519,7 +519,7 @@ report::Chart summary_chart(const std::vector<DataSet>& sets, const std::vector<
         mean.*time = geometric_mean(times);
       }
       mean.ties.clear();
-      for (const Point* p : of) mean.always_wrong |= p->always_wrong;
+      mean.always_wrong = std::all_of(of.begin(), of.end(), [](const Point* p) { return p->always_wrong; });
     }
     of.clear();
   }
