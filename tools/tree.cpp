@@ -285,24 +285,31 @@ void write_pages(const std::string& folder, const Trees& all, const std::vector<
   std::size_t first = 0;
   for (std::size_t i = 1; i < count; ++i)
     if (reports[i].faults.total() > reports[first].faults.total()) first = i;
-  const auto part = [&](std::size_t i) { return "tree_" + std::to_string(all.trees[i].id); };
+  const auto below = [&](std::size_t i) {
+    return i == first ? std::string() : "/tree_" + std::to_string(all.trees[i].id);
+  };
+  report::Table trees{"Trees", {"tree", "mesh", "volume", "nodes", "depth", "SAH", "EPO", "faults"}};
+  for (std::size_t i = 0; i < count && count > 1; ++i) {
+    const capture::Tree& tree = all.trees[i];
+    const profile::TreeFigures& f = reports[i].figures;
+    const auto sah = f.sah();
+    trees.rows.push_back(
+        {std::to_string(tree.id), mesh_name(all, tree), std::string(profile::volume_name(tree.volume)),
+         render::group_digits(f.nodes), std::to_string(f.depth), sah ? render::short_number(*sah) : "",
+         f.epo ? render::short_number(f.epo->value) : "", render::group_digits(reports[i].faults.total())});
+  }
   for (std::size_t page = 0; page < count; ++page) {
-    report::Table table{"Trees", {"tree", "mesh", "volume", "nodes", "depth", "SAH", "EPO", "faults"}};
-    for (std::size_t i = 0; i < count && count > 1; ++i) {
-      const capture::Tree& tree = all.trees[i];
-      const profile::TreeFigures& f = reports[i].figures;
-      const auto sah = f.sah();
-      table.rows.push_back({std::to_string(tree.id) + (i == page ? ", above" : ""), mesh_name(all, tree),
-                            std::string(profile::volume_name(tree.volume)), render::group_digits(f.nodes),
-                            std::to_string(f.depth), sah ? render::short_number(*sah) : "",
-                            f.epo ? render::short_number(f.epo->value) : "",
-                            render::group_digits(reports[i].faults.total())});
-      const std::string from = page == first ? "" : "../";
-      table.targets.push_back(i == page ? "" : from + (i == first ? "" : part(i) + "/") + "index.html");
+    // The row of this page is marked; the others lead to theirs.
+    report::Table table = trees;
+    for (std::size_t i = 0; i < table.rows.size(); ++i)
+      table.targets.push_back((page == first ? "." : "..") + below(i) + "/index.html");
+    if (!table.rows.empty()) {
+      table.rows[page][0] += ", above";
+      table.targets[page].clear();
     }
     const capture::Tree& tree = all.trees[page];
-    profile::write_tree_page(page == first ? folder : folder + "/" + part(page), tree, all.meshes[tree.mesh],
-                             reports[page], all.engine, command, table);
+    profile::write_tree_page(folder + below(page), tree, all.meshes[tree.mesh], reports[page], all.engine,
+                             command, table);
   }
 }
 

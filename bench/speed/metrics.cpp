@@ -383,8 +383,6 @@ void mark_frontiers(std::vector<Point>& points, const std::vector<methods::Metho
   }
 }
 
-namespace {}  // namespace
-
 double Point::error() const {
   if (const auto& list = errors[static_cast<std::size_t>(Metric::list)])
     return std::max(*list, errors[static_cast<std::size_t>(Metric::distance)].value_or(0));

@@ -1,13 +1,15 @@
 // Causes of open edges of a surface that looks closed: vertices on the open edge of another face
 // (T-junctions), and vertices that nearly coincide.
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <unordered_set>
 #include <vector>
 
 #include "engine/core/geometry.hpp"
 #include "engine/mesh/box_tree.hpp"
+#include "engine/mesh/nearest_on_simplex.hpp"
+#include "engine/mesh/vertex_groups.hpp"
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/mesh_repair.hpp>
 
@@ -31,10 +33,8 @@ std::uint64_t seam_key(VertexId from, VertexId to) {
 
 /// Returns true if a point lies on an edge, further than `width` from its ends.
 bool is_on(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double width) {
-  const Eigen::Vector3d along = b - a;
-  const double t = dot3(x - a, along) / squared_norm3(along);
-  if (!(t > 0 && t < 1)) return false;
-  return norm3(x - (a + t * along)) <= width && norm3(x - a) > width && norm3(x - b) > width;
+  return std::sqrt(nearest_on_segment(x, a, b).distance_sq) <= width && norm3(x - a) > width &&
+         norm3(x - b) > width;
 }
 
 void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges,
@@ -63,15 +63,8 @@ void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges,
 
 void find_near_vertices(const Mesh& mesh, const OpenKeys& open, std::vector<VertexId> corners, double width,
                         MeshReport& report) {
-  // One vertex for each position.
-  const auto before = [&](VertexId u, VertexId v) {
-    const Eigen::Vector3d &x = mesh.vertices[u], &y = mesh.vertices[v];
-    return std::tie(x[0], x[1], x[2], u) < std::tie(y[0], y[1], y[2], v);
-  };
-  std::sort(corners.begin(), corners.end(), before);
-  corners.erase(std::unique(corners.begin(), corners.end(),
-                            [&](VertexId u, VertexId v) { return mesh.vertices[u] == mesh.vertices[v]; }),
-                corners.end());
+  FirstAtPosition first_at(mesh.vertices);
+  std::erase_if(corners, [&](VertexId v) { return first_at(v) != v; });
   std::vector<Box> boxes;
   for (const VertexId v : corners) boxes.emplace_back(mesh.vertices[v], mesh.vertices[v]);
   const BoxTree tree(boxes);

@@ -180,12 +180,10 @@ std::uint32_t packed(render::Rgba c) {
 
 /// The colour change shared by most of the strongly different pixels.
 std::string commonest_change(const render::Image& expected, const render::Image& actual) {
-  const int large = render::ImageTolerance{}.large;
   std::unordered_map<std::uint64_t, std::uint64_t> counts;
   for (std::size_t i = 0; i < expected.pixels().size(); ++i) {
     const render::Rgba e = expected.pixels()[i], a = actual.pixels()[i];
-    if (std::max({std::abs(e.r - a.r), std::abs(e.g - a.g), std::abs(e.b - a.b)}) > large)
-      ++counts[static_cast<std::uint64_t>(packed(e)) << 32 | packed(a)];
+    if (differ_strongly(e, a)) ++counts[static_cast<std::uint64_t>(packed(e)) << 32 | packed(a)];
   }
   std::uint64_t change = 0, most = 0;
   for (const auto& [key, count] : counts)
@@ -258,6 +256,11 @@ render::Image masked(const render::Image& expected, render::Image actual, const 
 }
 
 }  // namespace
+
+bool differ_strongly(render::Rgba x, render::Rgba y) {
+  return std::max({std::abs(x.r - y.r), std::abs(x.g - y.g), std::abs(x.b - y.b)}) >
+         render::ImageTolerance{}.large;
+}
 
 ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::PaintedFrame& actual,
                          std::size_t frame, const GoldenSpec& spec) {

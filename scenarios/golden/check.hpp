@@ -23,6 +23,9 @@ struct ImageVerdict {
   bool has_expected = false, has_actual = false;
 };
 
+/// Returns true if a channel of two colours differs by more than processors and drivers explain.
+bool differ_strongly(render::Rgba x, render::Rgba y);
+
 /// Compares a picture with the approved variants of its frame.
 ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::PaintedFrame& actual,
                          std::size_t frame, const GoldenSpec& spec);

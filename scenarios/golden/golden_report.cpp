@@ -160,16 +160,15 @@ report::PngBytes png_of(const render::Image& image) {
   return image.empty() ? report::PngBytes() : render::encode_png(image);
 }
 
-/// Returns a picture of a quarter of a page's width with a frame around the pixels that differ strongly.
+/// Returns a small picture with a frame around the pixels that differ strongly.
 render::Image thumbnail(const render::Image& expected, const render::Image& actual) {
-  constexpr int kLarge = render::ImageTolerance{}.large, kThumbnail = 240, kMargin = 6;
+  constexpr int kThumbnail = 240, kMargin = 6;  // pixels
   render::Image marked = actual;
   if (expected.width() == actual.width() && expected.height() == actual.height()) {
     int left = actual.width(), top = actual.height(), right = -1, bottom = -1;
     for (int y = 0; y < actual.height(); ++y)
       for (int x = 0; x < actual.width(); ++x) {
-        const render::Rgba e = expected.at(x, y), a = actual.at(x, y);
-        if (std::max({std::abs(e.r - a.r), std::abs(e.g - a.g), std::abs(e.b - a.b)}) <= kLarge) continue;
+        if (!differ_strongly(expected.at(x, y), actual.at(x, y))) continue;
         left = std::min(left, x), right = std::max(right, x);
         top = std::min(top, y), bottom = std::max(bottom, y);
       }
@@ -177,20 +176,8 @@ render::Image thumbnail(const render::Image& expected, const render::Image& actu
       marked.stroke({left - kMargin, top - kMargin, right - left + 2 * kMargin, bottom - top + 2 * kMargin},
                     kDiffers, 4);
   }
-  // Each pixel is the mean of a square of pixels.
-  const int n = std::max(1, marked.width() / kThumbnail);
-  render::Image out(marked.width() / n, marked.height() / n);
-  for (int y = 0; y < out.height(); ++y)
-    for (int x = 0; x < out.width(); ++x) {
-      int r = 0, g = 0, b = 0;
-      for (int i = 0; i < n * n; ++i) {
-        const render::Rgba p = marked.at(n * x + i % n, n * y + i / n);
-        r += p.r, g += p.g, b += p.b;
-      }
-      const auto mean = [&](int sum) { return static_cast<std::uint8_t>(sum / (n * n)); };
-      out.at(x, y) = {mean(r), mean(g), mean(b), 255};
-    }
-  return out;
+  while (marked.width() >= 2 * kThumbnail) marked = report::halved(marked);
+  return marked;
 }
 
 void add_comparison(GoldenResult& result, report::Comparison comparison, const render::Image& expected,

@@ -261,7 +261,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
 
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,
                      const TreeReport& report, const std::string& engine, const std::string& command,
-                     const report::Table& others) {
+                     const report::Table& trees) {
   constexpr std::size_t kMaxFaces = 500'000;  // of a view
   const TreeFigures& f = report.figures;
   const TreeIndex index(tree, mesh.triangles.size());
@@ -287,7 +287,7 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
     table.note = "The first " + std::to_string(TreeFaults::kShown) + " of each kind.";
     doc.table(table);
   }
-  if (!others.rows.empty()) doc.table(others);
+  if (!trees.rows.empty()) doc.table(trees);
   doc.picture(
       "nodes.svg", icicle_svg(tree, index, f), "All nodes",
       "By depth, the root on top. Width: triangles below the node. Colour: its EPO, from dark blue (none) to yellow (the largest).",

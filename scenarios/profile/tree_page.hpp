@@ -18,10 +18,10 @@ std::string_view volume_name(capture::VolumeKind kind);
 /// its share of EPO. SVG, at most 40 depths; nodes narrower than a pixel are left out.
 std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const TreeFigures& figures);
 
-/// Writes the page. `engine`: name of the engine; `command`: that made the page; `others`: links to the pages
-/// of all trees of the capture, without rows if there is one.
+/// Writes the page. `engine`: name of the engine; `command`: that made the page; `trees`: all trees of
+/// the capture with links to their pages; no rows for a single tree.
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,
                      const TreeReport& report, const std::string& engine, const std::string& command,
-                     const report::Table& others = {});
+                     const report::Table& trees);
 
 }  // namespace lrb::profile

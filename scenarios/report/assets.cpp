@@ -146,26 +146,6 @@ std::vector<std::uint8_t> as_jpeg(const render::Image& image) {
   return out;
 }
 
-render::Image halved(const render::Image& image) {
-  render::Image half(std::max(1, image.width() / 2), std::max(1, image.height() / 2));
-  for (int y = 0; y < half.height(); ++y) {
-    for (int x = 0; x < half.width(); ++x) {
-      const auto mean = [&](auto channel) {
-        int sum = 2;
-        for (const int dy : {0, 1})
-          for (const int dx : {0, 1})
-            sum += channel(
-                image.at(std::min(2 * x + dx, image.width() - 1), std::min(2 * y + dy, image.height() - 1)));
-        return static_cast<std::uint8_t>(sum / 4);
-      };
-      half.at(x, y) = {
-          mean([](const render::Rgba& c) { return c.r; }), mean([](const render::Rgba& c) { return c.g; }),
-          mean([](const render::Rgba& c) { return c.b; }), mean([](const render::Rgba& c) { return c.a; })};
-    }
-  }
-  return half;
-}
-
 InlinedImages as_jpegs(const std::vector<PngBytes>& pngs, int halvings, std::size_t& size) {
   InlinedImages out;
   size = 0;
@@ -186,6 +166,26 @@ InlinedImages as_jpegs(const std::vector<PngBytes>& pngs, int halvings, std::siz
 
 std::string data_uri(const std::string& type, const std::uint8_t* bytes, std::size_t size) {
   return "data:" + type + ";base64," + base64(bytes, size);
+}
+
+render::Image halved(const render::Image& image) {
+  render::Image half(std::max(1, image.width() / 2), std::max(1, image.height() / 2));
+  for (int y = 0; y < half.height(); ++y) {
+    for (int x = 0; x < half.width(); ++x) {
+      const auto mean = [&](auto channel) {
+        int sum = 2;
+        for (const int dy : {0, 1})
+          for (const int dx : {0, 1})
+            sum += channel(
+                image.at(std::min(2 * x + dx, image.width() - 1), std::min(2 * y + dy, image.height() - 1)));
+        return static_cast<std::uint8_t>(sum / 4);
+      };
+      half.at(x, y) = {
+          mean([](const render::Rgba& c) { return c.r; }), mean([](const render::Rgba& c) { return c.g; }),
+          mean([](const render::Rgba& c) { return c.b; }), mean([](const render::Rgba& c) { return c.a; })};
+    }
+  }
+  return half;
 }
 
 InlinedImages inline_pngs(const std::vector<PngBytes>& pngs, std::size_t budget) {

@@ -31,6 +31,9 @@ struct InlinedImages {
 };
 InlinedImages inline_pngs(const std::vector<PngBytes>& pngs, std::size_t budget = kInlineBudget);
 
+/// Returns a picture of half the size each way. Each pixel is the mean of four.
+render::Image halved(const render::Image& image);
+
 /// Returns "data:TYPE;base64,...".
 std::string data_uri(const std::string& type, const std::uint8_t* bytes, std::size_t size);
 

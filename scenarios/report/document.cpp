@@ -35,6 +35,10 @@ std::string cell_html(const std::string& cell, bool numeric) {
   return fill("<td{!}>{}</td>", {kind, cell});
 }
 
+std::string text_html(const Text& text) {
+  return fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
+}
+
 std::string tab_html(const std::string& name, const std::string& html) {
   return html.empty() ? "" : fill("<div class=\"tab\" data-tab=\"{}\">\n{!}</div>\n", {name, html});
 }
@@ -275,12 +279,12 @@ std::string Document::tooltip(std::string_view name) const {
 }
 
 Document& Document::text(const Text& text) {
-  texts_ += fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
+  texts_ += text_html(text);
   return *this;
 }
 
 Document& Document::reading(const Text& text) {
-  reading_ += fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
+  reading_ += text_html(text);
   return *this;
 }
 
