@@ -37,6 +37,7 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
   if (c.trees[pair.trees[0]].mesh != c.trees[pair.trees[1]].mesh) note(globals, bodies[1].notes);
   spec::Scenario scenario = profile::captured_scenario(c, pair, bodies, o.file);
   apply(o.picture, scenario.frames);
+  scenario.gzip = true;  // an engine's events are many; viewers read compressed traces as well
   profile::CapturedRunSettings settings = profile::captured_settings(scenario, c, pair, o.file);
   settings.check = !o.no_check;
   const run::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, progress);

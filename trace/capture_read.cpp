@@ -33,7 +33,7 @@ constexpr std::size_t kFileHeader = 16, kChunkHeader = 24;
 constexpr double kRigid = 1e-6;  ///< of a rotation's determinant and of the products of its columns
 
 /// Bits of the word of options of a TREE.
-constexpr std::uint32_t kHasIds = 1, kFloatVolumes = 2;
+constexpr std::uint32_t kHasIds = 1, kFloatVolumes = 2, kSplits = 4;
 /// Bits of the first byte of an event, above its kind.
 constexpr std::uint8_t kMet = 4, kCounted = 8, kHasAxis = 16, kKnownBits = 31;
 constexpr std::size_t kLeastEvent = 3;  ///< bytes of an event in the file
@@ -225,7 +225,8 @@ class Reader {
     static constexpr std::pair<std::string_view, void (Reader::*)()> kKinds[] = {
         {"HEAD", &Reader::read_engine}, {"SYNC", &Reader::read_sync},   {"STOP", &Reader::read_stop},
         {"NAME", &Reader::read_name},   {"MESH", &Reader::read_mesh},   {"TREE", &Reader::read_tree},
-        {"QRYB", &Reader::read_begin},  {"QRYE", &Reader::read_answer}, {"EVTS", &Reader::read_events}};
+        {"QRYB", &Reader::read_begin},  {"QRYE", &Reader::read_answer}, {"EVTS", &Reader::read_events},
+        {"VALU", &Reader::read_value}};
     for (const auto& [kind, read] : kKinds) {
       if (kind_ != kind) continue;
       if (version != 1) fail("expected version 1, found " + text(version) + "; use a newer lrbscope");
@@ -295,7 +296,8 @@ class Reader {
       if (replaces == tree.id) fail("tree " + text(tree.id) + " replaces itself; name the tree before it");
     }
     require(nodes != 0 && nodes != kNull, "expected at least one node; also describe the root");
-    require((options & ~(kHasIds | kFloatVolumes)) == 0, "unknown options of a tree; use a newer lrbscope");
+    require((options & ~(kHasIds | kFloatVolumes | kSplits)) == 0,
+            "unknown options of a tree; use a newer lrbscope");
     require(kind != static_cast<std::uint32_t>(VolumeKind::kdop) || directions <= left() / 24,
             "more directions than its content has room for; the file is damaged");
     const std::uint64_t per_node = numbers_of(kind, directions);
@@ -303,6 +305,10 @@ class Reader {
       fail("expected a bounding volume of kind 1 (AABB) to 5 (k-DOP with directions), found kind " +
            text(kind) + "; see docs/capture.md");
     tree.volume = static_cast<VolumeKind>(kind);
+    tree.splits = (options & kSplits) != 0;
+    require(
+        !tree.splits || (tree.volume != VolumeKind::sphere && tree.volume != VolumeKind::rss),
+        "expected AABBs, OBBs or k-DOPs of a tree with spatial splits, found spheres or RSS; leave LRBCAP_SPLITS out");
     if ((options & kHasIds) != 0) tree.ids = numbers<std::uint32_t>(nodes);
     read_ranges(nodes, nodes, "child", tree.first_child, tree.child);
     read_ranges(nodes, kNull, "triangle", tree.first_triangle, tree.triangle);
@@ -425,6 +431,21 @@ class Reader {
     const auto found = queries_.find(query_);
     require(found != queries_.end(), "the query was not begun; pass what LRBCAP_BEGIN returned");
     return found->second;
+  }
+
+  void read_value() {
+    query_ = static_cast<std::uint32_t>(u64());
+    Query& query = begun().query;
+    const auto lower = number<double>(), upper = number<double>();
+    require(query.kind == QueryKind::distance,
+            "expected a value of a distance query only; see LRBCAP_VALUE in docs/capture.md");
+    require(!query.ended && !query.value,
+            "expected one value, before the end of its query; call LRBCAP_VALUE once");
+    if (!(std::isfinite(lower) && lower <= upper && std::isfinite(upper)))
+      fail("expected a finite lower bound of the distance and an upper one above it, found " +
+           io::number_text(lower) + " and " + io::number_text(upper) +
+           "; give the engine's distance twice if it has no bounds");
+    query.value = {lower, upper};
   }
 
   void read_answer() {
@@ -562,25 +583,21 @@ class Reader {
            text(triangle) + "; use the numbers of the mesh's description");
   }
 
-  /// Checks that a traversal begins at the roots, or without a test of these at children of both; that of
-  /// helpers and of a query of one tree with itself (which may begin with siblings) need not.
+  /// Checks that a traversal begins at the roots or their children: an engine need not test the roots, or may
+  /// compare one with the children of the other. That of helpers and of a query of one tree with itself
+  /// (which may begin with siblings) need not.
   void check_start(const Growing& growing, Growing::Stored& part, const Event& e) const {
     part.rooted = true;
     if (&part != &growing.parts[0] || growing.query.kind == QueryKind::self ||
         growing.query.kind == QueryKind::shape)
       return;
     const std::uint32_t nodes[] = {e.a, e.b};
-    const auto is_below_root = [&](std::size_t side) {
-      const std::uint32_t tree = growing.query.trees[side];
-      if (tree == kNull) return true;
-      const auto children = out_.trees[tree].children(0);
-      return std::find(children.begin(), children.end(), nodes[side]) != children.end();
-    };
-    if (is_below_root(0) && is_below_root(1)) return;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
       const std::uint32_t tree = growing.query.trees[side];
-      if (tree != kNull && nodes[side] != 0)
-        fail("expected the roots in the first test of nodes, found node " +
+      if (tree == kNull || nodes[side] == 0) continue;
+      const auto children = out_.trees[tree].children(0);
+      if (std::find(children.begin(), children.end(), nodes[side]) == children.end())
+        fail("expected the roots or their children in the first test of nodes, found node " +
              text(out_.trees[tree].id_of(nodes[side])) + " of " + "AB"[side] +
              "; check the order of A and B, the tree, and that node 0 of its description is the root");
     }

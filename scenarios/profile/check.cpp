@@ -236,7 +236,7 @@ std::vector<WasteMap> most_wasted(const capture::Capture& capture, PriceBook& bo
   return out;
 }
 
-/// Finds an error of the recorded poses that explains wrong answers.
+/// Finds an error of the recorded poses, or of the numbers of triangles, that explains wrong answers.
 class PoseErrors {
  public:
   void add(const CheckedQuery& checked, const capture::Query& query, const QueryWalk* walk,
@@ -246,6 +246,7 @@ class PoseErrors {
     // A few wrong pairs have another cause.
     const bool mostly_wrong = checked.verdict.extra > checked.verdict.found / 2;
     ++(mostly_wrong ? wrong_ : right_);
+    as_many_ += mostly_wrong && checked.verdict.found == checked.verdict.exact_pairs;
     if (!mostly_wrong || tried_ == kTries) return;
     ++tried_;
     const auto explains = checker.explaining_errors(query, *walk);
@@ -256,6 +257,9 @@ class PoseErrors {
     std::string out;
     for (std::size_t i = 0; i < kPoseErrors; ++i)
       if (possible_[i]) out += (out.empty() ? "" : "; or ") + std::string(words(static_cast<PoseError>(i)));
+    if (out.empty() && as_many_ == wrong_)
+      return "Each query finds as many pairs as there are, but others: the engine probably numbers the triangles in "
+             "another way than the recorded mesh.";
     return out.empty()
                ? out
                : "The poses are probably recorded wrongly, because then the pairs are right: " + out + ".";
@@ -265,7 +269,7 @@ class PoseErrors {
   static constexpr int kTries = 8;
   std::array<bool, kPoseErrors> possible_{true, true, true, true};
   int tried_ = 0;
-  std::uint64_t wrong_ = 0, right_ = 0;
+  std::uint64_t wrong_ = 0, right_ = 0, as_many_ = 0;
 };
 
 /// Returns a sentence about the faults of the trees that have visits, with the first one.

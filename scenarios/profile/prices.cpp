@@ -151,9 +151,15 @@ std::optional<std::uint64_t> least_visits(CapturedBodies& bodies, const QueryWal
   const std::vector<capture::Event>& events = walk.query().events;
   for (const std::uint32_t i : walk.from_root())
     if (walk.is_start(i) && walk.first_visit(i) == i) search.reach(events[i].a, events[i].b);
-  for (const capture::Event& e : events)
-    if (e.kind == capture::EventKind::triangles)
-      *saved += !search.is_reached(walk.index(0).leaf[e.a], walk.index(1).leaf[e.b]);
+  for (const capture::Event& e : events) {
+    if (e.kind != capture::EventKind::triangles) continue;
+    bool is_reached = false;
+    walk.index(0).for_each_leaf(e.a, [&](std::uint32_t a) {
+      walk.index(1).for_each_leaf(
+          e.b, [&](std::uint32_t b) { is_reached = is_reached || search.is_reached(a, b); });
+    });
+    *saved += !is_reached;
+  }
   return least;
 }
 
@@ -197,10 +203,12 @@ bool is_exhaustive(const capture::Query& query) {
 /// compared before, as those of the children of two wide leaves are.
 bool is_crowded(const QueryWalk& walk, std::size_t event) {
   const Event& e = walk.query().events[event];
-  const std::uint32_t a = walk.index(0).leaf[e.a], b = walk.index(1).leaf[e.b], visit = walk.parent(event);
+  std::uint32_t a = walk.index(0).leaf[e.a], b = walk.index(1).leaf[e.b];
+  const std::uint32_t visit = walk.parent(event);
   if (a == kNull || b == kNull) return false;
   if (visit != QueryWalk::kNone) {
     const Event& test = walk.query().events[visit];
+    if (walk.index(0).is_leaf(test.a) && walk.index(1).is_leaf(test.b)) a = test.a, b = test.b;
     if (test.tests > 1 && test.a == a && test.b == b) return false;
   }
   return std::uint64_t{walk.index(0).triangles_below[a]} * walk.index(1).triangles_below[b] > 1;

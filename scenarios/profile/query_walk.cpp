@@ -25,9 +25,15 @@ TreeIndex::TreeIndex(const capture::Tree& tree, std::size_t triangles)
       depth[child] = depth[n] + 1;
       from_root.push_back(child);
     }
-    for (const std::uint32_t t : tree.triangles(n))
-      if (t < triangles && leaf[t] == kNull) leaf[t] = n;
+    for (const std::uint32_t t : tree.triangles(n)) {
+      if (t >= triangles) continue;
+      if (leaf[t] == kNull)
+        leaf[t] = n;
+      else if (tree.splits && leaf[t] != n)
+        more_leaves.emplace_back(t, n);
+    }
   }
+  std::ranges::sort(more_leaves);
   // Sums from the leaves upward.
   for (std::size_t i = from_root.size(); i-- > 0;) {
     const std::uint32_t n = from_root[i];
@@ -65,8 +71,15 @@ std::vector<Visit> visits_of(const TreeIndex& tree_a, const TreeIndex& tree_b,
     if (e.kind == capture::EventKind::triangles) {
       const std::uint32_t a = tree_a.leaf[e.a], b = tree_b.leaf[e.b];
       if (a == kNull || b == kNull) continue;
-      if (const std::uint32_t* const found = tests.find(a, b); found != nullptr)
-        out[i].parent = *found;
+      std::uint32_t last = kNull;  // test of leaves that have the triangles
+      tree_a.for_each_leaf(e.a, [&](std::uint32_t x) {
+        tree_b.for_each_leaf(e.b, [&](std::uint32_t y) {
+          const std::uint32_t* const found = tests.find(x, y);
+          if (found != nullptr && (last == kNull || *found > last)) last = *found;
+        });
+      });
+      if (last != kNull)
+        out[i].parent = last;
       else
         link(a, b, i);  // an engine without a test of the leaves' volumes
     } else if (e.kind == capture::EventKind::nodes) {
@@ -228,9 +241,14 @@ std::uint32_t QueryWalk::deepest_above(const TrianglePair& pair) const {
 }
 
 std::uint32_t QueryWalk::deepest_above(std::uint32_t a, std::uint32_t b) const {
-  const std::uint32_t leaf_a = index_[0]->leaf[a], leaf_b = index_[1]->leaf[b];
-  if (leaf_a == kNull || leaf_b == kNull) return kNone;
-  return deepest_from(leaf_a, leaf_b, [](const capture::Event&) { return true; });
+  std::uint32_t best = kNone;
+  index_[0]->for_each_leaf(a, [&](std::uint32_t x) {
+    index_[1]->for_each_leaf(b, [&](std::uint32_t y) {
+      const std::uint32_t found = deepest_from(x, y, [](const capture::Event&) { return true; });
+      if (found != kNone && (best == kNone || depth_of(found) > depth_of(best))) best = found;
+    });
+  });
+  return best;
 }
 
 }  // namespace lrb::profile

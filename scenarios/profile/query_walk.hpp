@@ -2,12 +2,14 @@
 /// A captured query with what its analysis needs: the bodies and trees of its capture, and its visits linked
 /// to one another.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "scenarios/bodies/loaded_body.hpp"
@@ -93,7 +95,16 @@ struct TreeIndex {
   TreeIndex(const capture::Tree& tree, std::size_t triangles);
 
   bool is_leaf(std::uint32_t node) const { return !has_children[node]; }
+  /// Calls visit(leaf) for each leaf of a triangle: several in a tree with spatial splits.
+  template <class Visit>
+  void for_each_leaf(std::uint32_t triangle, const Visit& visit) const {
+    if (leaf[triangle] != kNull) visit(leaf[triangle]);
+    auto i = std::ranges::lower_bound(more_leaves, std::pair(triangle, std::uint32_t{0}));
+    for (; i != more_leaves.end() && i->first == triangle; ++i) visit(i->second);
+  }
   std::vector<char> has_children;
+  /// With spatial splits: (triangle, leaf) of the leaves after the first one, ascending.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> more_leaves;
 };
 
 /// A test of bounding volumes with the one that led to it.

@@ -87,6 +87,7 @@ class Finder {
   }
   void find_in_leaves();
   void find_in_volumes(const NodeMeasures& measures, double tolerance);
+  void find_in_parts(const NodeMeasures& measures, double tolerance);
   TreeFaults result() {
     for (std::vector<FoundFault>& some : found_)
       std::move(some.begin(), some.end(), std::back_inserter(out_.first));
@@ -187,7 +188,7 @@ void Finder::find_parents() {
 
 void Finder::find_in_leaves() {
   const std::size_t triangles = mesh_.triangles.size();
-  std::vector<char> seen(triangles, 0);  // in its first leaf
+  std::vector<std::uint32_t> last(triangles, kNull);  // by triangle: the last leaf that has it
   for (std::uint32_t n = 0; n < tree_.size(); ++n) {
     if (!reached(n)) continue;
     const auto listed = tree_.triangles(n);
@@ -200,12 +201,12 @@ void Finder::find_in_leaves() {
     for (const std::uint32_t t : listed) {
       if (t >= triangles)
         add({TreeFault::nonexistent_triangle, n, {}, t});
-      else if (index_.leaf[t] != n)
+      else if (index_.leaf[t] != n && !tree_.splits)
         add({TreeFault::triangle_in_two_leaves, n, {index_.leaf[t], n}, t});
-      else if (seen[t])
+      else if (last[t] == n)
         add({TreeFault::triangle_twice_in_leaf, n, {}, t});
       else
-        seen[t] = 1;
+        last[t] = n;
     }
   }
   for (std::uint32_t t = 0; t < triangles; ++t)
@@ -260,13 +261,56 @@ void Finder::find_in_volumes(const NodeMeasures& measures, double tolerance) {
   for (FoundFault& fault : outside) add(std::move(fault));
 }
 
+/// A traversal reaches a point of a triangle through a leaf if all volumes from the root to the leaf contain
+/// it. Cuts the part that lies in them off the triangle, for one leaf after the other, until nothing is left.
+void Finder::find_in_parts(const NodeMeasures& measures, double tolerance) {
+  using Polygon = std::vector<Vector3d>;
+  const double most = std::max(tolerance, 1e-12) * diagonal_of(mesh_);
+  std::vector<std::vector<HalfSpace>> sides(tree_.size());  // of the volumes, larger by the tolerance
+  for (const std::uint32_t n : index_.from_root) {
+    if (measures.empty[n]) add({TreeFault::empty_volume, n});
+    sides[n] = volumes_.half_spaces(n);
+    for (HalfSpace& side : sides[n]) side.offset += most;
+  }
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    if (index_.leaf[t] == kNull) continue;
+    const auto& corners = mesh_.triangles[t];
+    const Polygon all = {mesh_.vertices[corners[0]], mesh_.vertices[corners[1]], mesh_.vertices[corners[2]]};
+    const double area = area_of(all);
+    std::vector<Polygon> left = {all}, outside;
+    index_.for_each_leaf(t, [&](std::uint32_t leaf) {
+      outside.clear();
+      for (Polygon& part : left)
+        for (std::uint32_t n = leaf; n != kNull && !part.empty(); n = index_.parent[n])
+          for (const HalfSpace& side : sides[n]) {
+            Polygon beyond = part;
+            clip(beyond, {-side.normal, -side.offset});
+            if (area_of(beyond) > 0) outside.push_back(std::move(beyond));
+            clip(part, side);
+          }
+      left.swap(outside);
+    });
+    if (left.empty()) continue;
+    FoundFault fault{TreeFault::part_outside, index_.leaf[t], {}, t};
+    const Polygon& largest = *std::ranges::max_element(left, {}, area_of);
+    fault.point = std::accumulate(largest.begin(), largest.end(), Vector3d(0, 0, 0)) /
+                  static_cast<double>(largest.size());
+    for (const Polygon& part : left) fault.by += area_of(part);
+    fault.by_share = fault.by / area;
+    add(std::move(fault));
+  }
+}
+
 /// Returns the faults of a tree. A corner may lie outside by `tolerance`, relative to the mesh's diagonal.
 TreeFaults find_faults(const Volumes& volumes, const capture::Mesh& mesh, const TreeIndex& index,
                        const NodeMeasures& measures, double tolerance) {
   Finder finder(volumes, mesh, index);
   finder.find_in_graph();
   finder.find_in_leaves();
-  finder.find_in_volumes(measures, tolerance);
+  if (volumes.tree().splits)
+    finder.find_in_parts(measures, tolerance);
+  else
+    finder.find_in_volumes(measures, tolerance);
   return finder.result();
 }
 
@@ -320,6 +364,12 @@ std::string text_of(const FoundFault& fault, const capture::Tree& tree, const ca
                         io::number_text(fault.by_share, 3) + " of the diagonal";
       if (fault.count > 1) out += "; and " + std::to_string(fault.count - 1) + " other corners, by less";
       return out;
+    }
+    case TreeFault::part_outside: {
+      const auto number = [](double x) { return io::number_text(x, 6); };
+      return "a part of " + triangle + " around (" + number(fault.point.x()) + ", " +
+             number(fault.point.y()) + ", " + number(fault.point.z()) + "), " +
+             io::number_text(fault.by_share, 3) + " of its area, lies in the volumes of none of its leaves";
     }
     case TreeFault::empty_volume:
       return node +
@@ -385,11 +435,15 @@ class Surface {
   template <class At>
   std::uint64_t visit(std::uint32_t triangle, const AlignedBox3d& box, const At& at) const {
     std::uint64_t looked = 0;
-    const std::uint32_t leaf = index.leaf[triangle];
     for (std::uint32_t i = 0; i < subtrees.nodes.size(); ++looked) {
       const std::uint32_t n = subtrees.nodes[i];
       const bool is_near = reach_[n].intersects(box);
-      if (is_near && !(leaf != kNull && subtrees.contains(n, leaf))) at(n);
+      if (is_near) {
+        bool is_own = false;
+        index.for_each_leaf(triangle,
+                            [&](std::uint32_t leaf) { is_own = is_own || subtrees.contains(n, leaf); });
+        if (!is_own) at(n);
+      }
       i = is_near ? i + 1 : subtrees.end[n];
     }
     return looked;

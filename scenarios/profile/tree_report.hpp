@@ -23,20 +23,21 @@
 namespace lrb::profile {
 
 enum class TreeFault : std::uint8_t {
-  two_parents,                ///< a node is a child of several nodes, or twice of one
-  no_parent,                  ///< a node other than the root is a child of no node
-  cycle,                      ///< a node is below itself
-  nonexistent_triangle,       ///< a leaf has a triangle that the mesh does not have
-  triangle_in_two_leaves,     ///
-  triangle_twice_in_leaf,     ///
-  triangle_in_no_leaf,        ///< in no leaf below the root
-  corner_outside,             ///< a corner of a triangle lies outside the volume of a node above it
-  empty_volume,               ///< a volume contains no point, e.g. for a negative radius
+  two_parents,             ///< a node is a child of several nodes, or twice of one
+  no_parent,               ///< a node other than the root is a child of no node
+  cycle,                   ///< a node is below itself
+  nonexistent_triangle,    ///< a leaf has a triangle that the mesh does not have
+  triangle_in_two_leaves,  ///
+  triangle_twice_in_leaf,  ///
+  triangle_in_no_leaf,     ///< in no leaf below the root
+  corner_outside,          ///< a corner of a triangle lies outside the volume of a node above it
+  part_outside,            ///< spatial splits: a part of a triangle lies in the volumes of none of its leaves
+  empty_volume,            ///< a volume contains no point, e.g. for a negative radius
   inner_node_with_triangles,  ///
   leaf_without_triangles,
 };
 constexpr auto enum_names(TreeFault) {
-  return std::array<EnumName<TreeFault>, 11>{{
+  return std::array<EnumName<TreeFault>, 12>{{
       {TreeFault::two_parents, "two_parents"},
       {TreeFault::no_parent, "no_parent"},
       {TreeFault::cycle, "cycle"},
@@ -45,6 +46,7 @@ constexpr auto enum_names(TreeFault) {
       {TreeFault::triangle_twice_in_leaf, "triangle_twice_in_leaf"},
       {TreeFault::triangle_in_no_leaf, "triangle_in_no_leaf"},
       {TreeFault::corner_outside, "corner_outside"},
+      {TreeFault::part_outside, "part_outside"},
       {TreeFault::empty_volume, "empty_volume"},
       {TreeFault::inner_node_with_triangles, "inner_node_with_triangles"},
       {TreeFault::leaf_without_triangles, "leaf_without_triangles"},
@@ -62,10 +64,12 @@ struct FoundFault {
   /// no_parent: the number of nodes below. corner_outside: the number of corners outside, counted by
   /// triangle.
   std::uint64_t count = 0;
-  // corner_outside: the farthest corner.
+  // corner_outside: the farthest corner. part_outside: `point`, the centre of the largest part.
   int corner = -1;
   std::uint32_t depth = 0;
-  double by = 0, by_share = 0;  ///< distance from the volume; relative to the mesh's diagonal
+  /// Distance from the volume, and relative to the mesh's diagonal. part_outside: area, and share of the
+  /// triangle's.
+  double by = 0, by_share = 0;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
 };
 

@@ -239,6 +239,7 @@ QueryVerdict Checker::check(const Query& query, const QueryWalk* walk) {
   if (query.kind == QueryKind::all_pairs || query.kind == QueryKind::any || posed.is_self())
     check_pairs(posed, *walk, out);
   check_answer(posed, out);
+  if (query.value) check_value(posed, out);
   out.outcome = out.answer;
   if (out.pairs_checked) worsen(out.outcome, Judgement::right);
   if (out.undecidable > 0) worsen(out.outcome, Judgement::undecidable);
@@ -341,6 +342,40 @@ void Checker::check_pairs(const Posed& posed, const QueryWalk& walk, QueryVerdic
   out.wrong = std::move(wrong);
 }
 
+double Checker::error_of_distance(const Posed& posed) const {
+  double terms = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    double largest = 0;
+    for (const Eigen::Vector3d& x : posed.meshes[side]->vertices)
+      largest = std::max(largest, largest_term(posed.poses[side], x));
+    terms += largest;
+  }
+  return kTestUlps * ulp_of(precision_) * terms;
+}
+
+void Checker::check_value(const Posed& posed, QueryVerdict& out) {
+  if (posed.bodies[0] == nullptr || posed.bodies[1] == nullptr) return;
+  // Between surfaces. An engine may give negative numbers for bodies that intersect.
+  double lower = 0, upper = 0;
+  if (out.exact.empty()) {
+    DistanceRequest request;
+    request.relation = false;
+    const auto& exact =
+        distance(*posed.bodies[0], posed.poses[0], *posed.bodies[1], posed.poses[1], request, workspace_)
+            .value();
+    lower = exact.lower, upper = exact.upper;
+  }
+  const auto [least, most] = *posed.query.value;
+  const double by = std::max({lower - std::max(most, 0.0), std::max(least, 0.0) - upper, 0.0});
+  const bool is_error = by > error_of_distance(posed);
+  worsen(out.answer, is_error ? Judgement::wrong : by > 0 ? Judgement::undecidable : Judgement::right);
+  if (!is_error) return;
+  const auto number = [](double x) { return io::number_text(x, 9); };
+  if (!out.remark.empty()) out.remark += "; ";
+  out.remark += "the engine's distance is " + number(least) + (most > least ? " to " + number(most) : "") +
+                "; it is " + number(upper);
+}
+
 void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
   const Query& query = posed.query;
   if (query.verdict == Verdict::unreported) return;
@@ -360,15 +395,8 @@ void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
     }
     // The bodies' gap decides, because the pair that the engine took for intersecting may be unrecorded.
     const bool close = posed.bodies[0] != nullptr && posed.bodies[1] != nullptr && [&] {
-      double terms = 0;
-      for (std::size_t side = 0; side < 2; ++side) {
-        double largest = 0;
-        for (const Eigen::Vector3d& x : posed.meshes[side]->vertices)
-          largest = std::max(largest, largest_term(posed.poses[side], x));
-        terms += largest;
-      }
       DistanceRequest request;
-      request.within = kTestUlps * ulp_of(precision_) * terms;
+      request.within = error_of_distance(posed);
       request.relation = false;
       return distance(*posed.bodies[0], posed.poses[0], *posed.bodies[1], posed.poses[1], request, workspace_)
           .value()

@@ -7,7 +7,7 @@
 /// - any: the verdict, and the tests of triangles that were recorded.
 /// - self: the pairs of triangles without a common vertex, as all pairs. Engines differ about neighbours, so
 ///   neither these nor the number of pairs are compared.
-/// - distance: the verdict alone.
+/// - distance: the verdict, and the distance if it was recorded.
 /// - first contact: the bodies must not be called separate if they intersect at the poses of the query, where
 ///   the motion begins. Nothing else is known about the motion.
 ///
@@ -142,6 +142,10 @@ class Checker {
   void blame(const Posed& posed, const QueryWalk& walk, bool tested, WrongPair& wrong);
   void check_pairs(const Posed& posed, const QueryWalk& walk, QueryVerdict& out);
   void check_answer(const Posed& posed, QueryVerdict& out);
+  /// Compares the engine's distance with the proven one.
+  void check_value(const Posed& posed, QueryVerdict& out);
+  /// Returns the bound of the error of a distance in the engine's format.
+  double error_of_distance(const Posed& posed) const;
 
   CapturedBodies& bodies_;
   Precision precision_;

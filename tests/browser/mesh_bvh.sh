@@ -33,12 +33,14 @@ grep -q '^three-mesh-bvh: 8 queries: 8 not checked' "$work/said" || { echo "mesh
 cat >"$work/compare.mjs" <<'END'
 import assert from "assert";
 import fs from "fs";
+import zlib from "zlib";
 const read = (file) => JSON.parse(fs.readFileSync(file, "utf8")), found = read("found.json"), trees = read("trees.json").trees;
 found.trees.forEach(({ nodes, leaves, depth }, i) =>
   assert.deepEqual([trees[i].triangles, trees[i].nodes, trees[i].leaves, trees[i].depth], [1024, nodes, leaves, depth]));
 let tests = 0;
 found.queries.forEach((query, i) => {
-  const events = read(`import/pair_${i + 1}/trace.json`).traceEvents, boxes = read(`import/pair_${i + 1}/trees.json`).trees[0].boxes;
+  const trace = zlib.gunzipSync(fs.readFileSync(`import/pair_${i + 1}/trace.json.gz`));
+  const events = JSON.parse(trace).traceEvents, boxes = read(`import/pair_${i + 1}/trees.json`).trees[0].boxes;
   const named = (name) => events.filter((e) => e.name === name).map((e) => e.args);
   const nodes = named("node pair").map((e) => [e["node of A"], e["boxes that meet"] > 0]);
   assert.deepEqual(nodes, query.nodes, `nodes of query ${i + 1}`);

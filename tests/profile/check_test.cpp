@@ -127,6 +127,13 @@ TEST_CASE("Poses that are recorded wrongly are named, and only these") {
   const Check shifted = checked_with([](auto& poses) { poses[1].t.x() += 0.1; });
   CHECK(shifted.is_wrong());
   CHECK(shifted.pose_error.empty());
+  // Triangles with other numbers.
+  capture::Capture renumbered = c.engine.capture;
+  for (capture::Query& q : renumbered.queries)
+    for (capture::Event& e : q.events)
+      if (e.kind == capture::EventKind::triangles)
+        e.a = static_cast<std::uint32_t>(c.engine.capture.meshes[0].triangles.size()) - 1 - e.a;
+  CHECK(check(renumbered, {}).pose_error.find("numbers the triangles in another way") != std::string::npos);
   c.lie();
   CHECK(check(c.engine.capture, {}).pose_error.empty());
 }

@@ -301,6 +301,40 @@ TEST_CASE("a chain of 100,000 nodes is measured without recursion") {
   CHECK(broken.faults.first[2].kind == TreeFault::triangle_in_no_leaf);
 }
 
+TEST_CASE("with spatial splits, every part of a triangle must be in the volumes of a leaf and above it") {
+  // The first triangle of a strip is cut at x = 0.5: nodes 3 and 4 have a half of it each.
+  const capture::Mesh mesh = strip(2);
+  capture::Tree tree;
+  tree.splits = true;
+  tree.first_child = {0, 2, 4, 4, 4, 4}, tree.child = {1, 2, 3, 4};
+  tree.first_triangle = {0, 0, 0, 1, 2, 3}, tree.triangle = {1, 0, 0};
+  tree.volumes = {0, 0, 0, 2, 1, 0, 0,   0, 0, 1,   1, 0, 1, 0,   0,
+                  2, 1, 0, 0, 0, 0, 0.5, 1, 0, 0.5, 0, 0, 1, 0.5, 0};
+  const auto texts_of = [&] { return texts(profile::report_tree(tree, mesh), tree, mesh); };
+  CHECK(texts_of() == Texts{});
+  const capture::Tree good = tree;
+  tree.volumes[4 * 6] = 0.75;  // a gap from x = 0.5 to 0.75
+  tree.volumes[4 * 6 + 4] = 0.25;
+  CHECK(texts_of() ==
+        Texts{"a part of triangle 0 around (0.625, 0.1875, 0), 0.187 of its area, lies in the volumes of "
+              "none of its leaves"});
+  tree = good;
+  tree.volumes[1 * 6 + 3] = 0.75;  // the node above cuts off the end
+  CHECK(texts_of() ==
+        Texts{"a part of triangle 0 around (0.833333, 0.0833333, 0), 0.0625 of its area, lies in the "
+              "volumes of none of its leaves"});
+  tree = good;
+  tree.splits = false;
+  CHECK(profile::report_tree(tree, mesh)
+            .faults.totals[static_cast<std::size_t>(TreeFault::triangle_in_two_leaves)] == 1);
+  // Any tree whose leaves contain whole triangles is one.
+  for (const VolumeKind kind : {VolumeKind::aabb, VolumeKind::obb, VolumeKind::kdop}) {
+    capture::Tree whole = test::halving_tree(strip(40), kind);
+    whole.splits = true;
+    CHECK(profile::report_tree(whole, strip(40)).faults.total() == 0);
+  }
+}
+
 TEST_CASE("a mesh of one triangle, of none, and a tree of no nodes") {
   const capture::Mesh one = strip(1);
   for (const VolumeKind kind : kAll) {

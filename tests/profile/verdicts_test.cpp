@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/support/faulty_engine.hpp"
+#include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb::profile {
@@ -273,6 +274,50 @@ TEST_CASE("A query of kind any is checked by its verdict and its tests, not by t
   CHECK(v.answer == Judgement::right);
   CHECK(v.missed == 1);
   CHECK(v.wrong[0].culprit == Culprit::triangle_test);
+}
+
+TEST_CASE("The distance that an engine recorded is compared with the proven one") {
+  using capture::Verdict;
+  struct Case {
+    double lower, upper;  // relative to the distance
+    Judgement outcome;
+  };
+  const Case cases[] = {{1, 1, Judgement::right},     {0.5, 2, Judgement::right},
+                        {1.1, 1.1, Judgement::wrong}, {0.9, 0.9, Judgement::wrong},
+                        {-1, 0, Judgement::wrong},    {1 + 1e-7, 1 + 1e-7, Judgement::undecidable},
+                        {-1, 1.5, Judgement::right}};
+  Sheets sheets;
+  sheets.pose.t.z() += 4;
+  capture::Query& q = sheets.ask();
+  q.kind = QueryKind::distance;
+  q.verdict = Verdict::separate;
+  const capture::Capture& c = sheets.engine.capture;
+  CapturedBodies bodies(c);
+  DistanceRequest request;
+  request.relation = false;
+  Workspace workspace;
+  const double exact =
+      distance(*bodies.body(0), q.poses[0], *bodies.body(1), q.poses[1], request, workspace).value().upper;
+  REQUIRE(exact > 1);
+  for (const Verdict verdict : {Verdict::separate, Verdict::unreported})
+    for (const Case& k : cases) {
+      CAPTURE(k.lower);
+      q.verdict = verdict;
+      q.value = {k.lower * exact, k.upper * exact};
+      const QueryVerdict v = verdict_of(c, 0, Precision::float32);
+      CHECK(v.outcome == k.outcome);
+      CHECK((v.remark.find("the engine's distance is") != std::string::npos) ==
+            (k.outcome == Judgement::wrong));
+    }
+  // Bodies that intersect: 0, or a negative number.
+  Sheets crossing;
+  capture::Query& touching = crossing.ask();
+  touching.kind = QueryKind::distance;
+  for (const auto& [value, outcome] :
+       {std::pair{-1.0, Judgement::right}, {0.0, Judgement::right}, {0.1, Judgement::wrong}}) {
+    touching.value = {value, value};
+    CHECK(verdict_of(crossing.engine.capture).outcome == outcome);
+  }
 }
 
 TEST_CASE("A self query is checked for triangles without a common vertex") {

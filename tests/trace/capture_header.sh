@@ -38,6 +38,7 @@ int main(int argc, char **argv) {
     LRBCAP_NODES(0, 0, 4, 2, LRBCAP_NO_AXIS);
     LRBCAP_PRIM(0, 0, 1);
     LRBCAP_COUNT(name, q);
+    LRBCAP_VALUE(0, 0.5 * q);
     LRBCAP_END(LRBCAP_INTERSECTING, 1);
   }
   if (argc > 2) return 0; /* without LRBCAP_CLOSE */
@@ -67,6 +68,17 @@ for compiler in gcc clang aarch64-linux-gnu-gcc x86_64-w64-mingw32-gcc; do
       builds=$((builds + 3))
     done
   done
+  if [ "$compiler" = clang ]; then # every warning, also in the dialect of Visual C++
+    for how in "c c99" "cpp c++11" "cpp c++20"; do
+      read -r language standard <<<"$how"
+      for dialect in -fno-ms-extensions "-fms-extensions -fms-compatibility"; do
+        # shellcheck disable=SC2086
+        clang -std=$standard -Weverything -I "$tree/trace/include" $dialect -DLRBCAP_ENABLE -DLRBCAP_IMPLEMENTATION -c "calls.$language" -o all.o 2>said ||
+          fail "clang $how $dialect: $(cat said)"
+        if grep -q 'lrbscope_capture.h:.*warning' said; then fail "clang -Weverything $how $dialect: $(grep 'capture.h:.*warning' said)"; fi
+      done
+    done
+  fi
   for enable in -DLRBCAP_ENABLE -DNDEBUG; do
     "$compiler" -std=c99 "${warnings[@]}" "$enable" -c block.c -o block.o || fail "$compiler: the C blocks of docs/capture.md"
   done

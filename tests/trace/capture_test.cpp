@@ -283,7 +283,7 @@ TEST_CASE("trees of every volume are read, and a tree may replace another") {
     for (const std::uint32_t volume : {LRBCAP_AABB, LRBCAP_SPHERE, LRBCAP_OBB, LRBCAP_RSS, LRBCAP_KDOP}) {
       lrbcap_tree tree = shape_of_tree(mesh);
       tree.replaces = before;
-      tree.volume = volume;
+      tree.volume = volume == LRBCAP_OBB ? volume | LRBCAP_SPLITS : volume;
       tree.volumes = numbers.data();
       tree.directions = volume == LRBCAP_KDOP ? 4 : 0;
       tree.direction = directions;
@@ -294,6 +294,7 @@ TEST_CASE("trees of every volume are read, and a tree may replace another") {
   const std::size_t per_node[] = {6, 4, 12, 10, 8};
   for (std::uint32_t i = 0; i < 5; ++i) {
     CHECK(c.trees[i].numbers() == per_node[i]);
+    CHECK(c.trees[i].splits == (i == 2));
     CHECK(c.trees[i].volumes.size() == 3 * per_node[i]);
     CHECK(c.trees[i].replaces == (i == 0 ? std::uint32_t{kNull} : i - 1));
   }
@@ -417,7 +418,8 @@ TEST_CASE("descriptions of meshes and trees are checked") {
   contains(refusal(with(good, "TREE", 8, 1u)), {"tree 1 replaces itself"});
   contains(refusal(with(good, "TREE", 12, 0u)), {"at least one node"});
   contains(refusal(with(good, "TREE", 16, 6u)), {"bounding volume of kind 1", "found kind 6"});
-  contains(refusal(with(good, "TREE", 24, 4u)), {"unknown options"});
+  contains(refusal(with(good, "TREE", 24, 8u)), {"unknown options"});
+  contains(refusal(with(good, "TREE", 24, 7u, 1)), {"AABBs, OBBs or k-DOPs of a tree with spatial splits"});
   contains(refusal(with(good, "TREE", 32, 1u)), {"offsets of child indices: expected 0 first, found 1"});
   contains(refusal(with(good, "TREE", 36, 3u)), {"offsets of child indices", "found 2 after 3 (node 1)"});
   contains(refusal(with(good, "TREE", 48, 3u)), {"node 0: expected a child below 3, found 3", "not ids"});
@@ -446,6 +448,26 @@ TEST_CASE("captures with invalid queries are rejected") {
   contains(refusal(with(good, "QRYE", 12, 3u)), {"query 1: expected the verdict 0", "found 3"});
   contains(refusal(twice(good, "QRYE")), {"query 1: ends a second time"});
   contains(refusal(with(good, "QRYE", 24, std::uint64_t{5})), {"at least the 6 events stored, found 5"});
+}
+
+TEST_CASE("distances are read with their bounds, once, and of distance queries only") {
+  const auto with_value = [](double lower, double upper, int times = 1, int kind = LRBCAP_DISTANCE) {
+    return record([&] {
+      const std::uint32_t tree = a_tree();
+      LRBCAP_VALUE(1, 1);  // outside of a query: ignored
+      LRBCAP_BEGIN(static_cast<std::uint32_t>(kind), tree, nullptr, tree, kPose);
+      for (int i = 0; i < times; ++i) LRBCAP_VALUE(lower, upper);
+      LRBCAP_END(LRBCAP_SEPARATE, 0);
+    });
+  };
+  CHECK(read(with_value(0.5, 0.75)).queries.at(0).value == std::array<double, 2>{0.5, 0.75});
+  CHECK_FALSE(read(with_value(0, 0, 0)).queries.at(0).value);
+  contains(refusal(with_value(0.5, 0.25)),
+           {"(VALU at byte ", "query 1: expected a finite lower bound", "0.5 and 0.25"});
+  contains(refusal(with_value(0, std::numeric_limits<double>::infinity())), {"finite"});
+  contains(refusal(with_value(std::numeric_limits<double>::quiet_NaN(), 1)), {"finite"});
+  contains(refusal(with_value(0, 0, 2)), {"expected one value, before the end of its query"});
+  contains(refusal(with_value(0, 0, 1, LRBCAP_ANY)), {"a value of a distance query only"});
 }
 
 TEST_CASE("poses must be rigid, row by row") {
@@ -482,9 +504,14 @@ TEST_CASE("captures with invalid events are rejected") {
            {"event 2", "tree 2 (B)", "found id 2"});
   contains(refusal(reported([&] { LRBCAP_PRIM(0, 4, 1); })),
            {"event 1: expected a triangle of B below 4, found 4"});
-  contains(refusal(reported([&] { LRBCAP_PRIM(0, 1, 1), LRBCAP_NODE(0, 10, 1, 255); })),
-           {"event 2: expected the roots in the first test of nodes, found node 10 of B"});
-  contains(refusal(reported([&] { LRBCAP_NODE(2, 30, 1, 255); })), {"event 1", "found node 2 of A"});
+  // The root of B has the id 30, and its children 10 and 20. Here that of A is another one.
+  const auto without_root = [&](std::uint32_t a, std::uint32_t b) {
+    return with(reported([&] { LRBCAP_PRIM(0, 1, 1), LRBCAP_NODE(a, b, 1, 255); }), "TREE", 36, 0x200000001u);
+  };
+  CHECK(read(without_root(0, 10)).queries[0].complete());
+  CHECK(read(without_root(1, 30)).queries[0].complete());
+  contains(refusal(without_root(2, 30)),
+           {"event 2: expected the roots or their children in the first test of nodes, found node 2 of A"});
   CHECK(read(reported([&] { LRBCAP_NODE(1, 10, 1, 255); }, LRBCAP_SELF)).queries[0].complete());
   contains(refusal(reported([&] { LRBCAP_NODES(0, 30, 2, 3, 255); })), {"event 1", "found 3 of 2"});
   contains(refusal(reported([&] { LRBCAP_NODES(0, 30, 0, 0, 255); })), {"event 1", "at least one test"});

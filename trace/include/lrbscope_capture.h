@@ -1,4 +1,4 @@
-/* lrbscope_capture.h 0.1: records what a collision engine does, for `lrbscope import`.
+/* lrbscope_capture.h 0.2: records what a collision engine does, for `lrbscope import`.
  *
  * One header in C99 or C++11 that needs only the C library. Copy it, or include the installed one.
  * - Without LRBCAP_ENABLE, the macros below do nothing: arguments are not evaluated, and the program contains
@@ -47,6 +47,15 @@
 #define LRBSCOPE_CAPTURE_H
 #include <stddef.h>
 #include <stdint.h>
+#ifdef __clang__ /* for users of -Weverything */
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wunknown-warning-option"
+#pragma clang diagnostic ignored "-Wcomma"
+#pragma clang diagnostic ignored "-Wdeclaration-after-statement"
+#pragma clang diagnostic ignored "-Wpadded"
+#pragma clang diagnostic ignored "-Wunsafe-buffer-usage"
+#pragma clang diagnostic ignored "-Wzero-as-null-pointer-constant"
+#endif
 
 /* Kinds of queries. LRBCAP_SELF: one tree with itself. LRBCAP_SHAPE: a tree with a shape, whose tree has one
  * node, and whose triangles are for pictures only; events name its node 0 and its triangle 0. */
@@ -69,7 +78,10 @@ enum {
   LRBCAP_SPHERE = 2, /* 4: centre, radius */
   LRBCAP_OBB = 3,    /* 12: centre, three half axes */
   LRBCAP_RSS = 4,    /* 10: a corner of the rectangle, its two sides as vectors, radius */
-  LRBCAP_KDOP = 5    /* 2 k: for each direction the least and the greatest product with it */
+  LRBCAP_KDOP = 5,   /* 2 k: for each direction the least and the greatest product with it */
+  /* Added to one of these but spheres and RSS, for a tree with spatial splits: a triangle may be in several leaves, and
+   * the volumes of each contain a part of it. */
+  LRBCAP_SPLITS = 256
 };
 
 /* A tree of n nodes. Node 0 is the root. Set unused members to zero. */
@@ -77,7 +89,7 @@ typedef struct lrbcap_tree {
   uint32_t mesh;       /* result of LRBCAP_MESH */
   uint32_t replaces;   /* result of LRBCAP_TREE for the tree that this one refits or replaces; 0: none */
   uint32_t nodes;      /* n */
-  uint32_t volume;     /* LRBCAP_AABB ... */
+  uint32_t volume;     /* LRBCAP_AABB ..., with LRBCAP_SPLITS or without */
   uint32_t directions; /* k of a k-DOP */
   const uint32_t* ids; /* n numbers by which events name the nodes; NULL: 0, 1, 2 ... */
   const uint32_t* first_child; /* n + 1: node i has child[first_child[i]] to child[first_child[i + 1] - 1] */
@@ -143,6 +155,8 @@ LRBCAP_INLINE uint32_t lrbcap_none(size_t size) {
   LRBCAP_RESULT(lrbcap_begin(kind, tree_a, pose_a, tree_b, pose_b))
 #define LRBCAP_END(verdict, pairs) \
   LRBCAP_CALL(lrbcap_end(LRBCAP_CAST(uint32_t, verdict), LRBCAP_CAST(uint64_t, pairs)))
+/* Before the END of a query of kind DISTANCE: the engine's distance, which is between these bounds. */
+#define LRBCAP_VALUE(lower, upper) LRBCAP_CALL(lrbcap_value(lower, upper))
 /* This thread helps with a query that another one began; 0: no longer. */
 #define LRBCAP_JOIN(query) LRBCAP_CALL(lrbcap_join(query))
 #define LRBCAP_THREAD_END() LRBCAP_CALL(lrbcap_thread_end())
@@ -172,6 +186,7 @@ uint32_t lrbcap_add_tree(const lrbcap_tree* tree);
 uint32_t lrbcap_name(const char* name);
 uint32_t lrbcap_begin(uint32_t kind, uint32_t tree_a, const double* pose_a, uint32_t tree_b,
                       const double* pose_b);
+void lrbcap_value(double lower, double upper);
 void lrbcap_end(uint32_t verdict, uint64_t pairs);
 void lrbcap_join(uint32_t query);
 void lrbcap_thread_end(void);
@@ -544,25 +559,25 @@ uint32_t lrbcap_mesh(const char* name, uint32_t n_vertices, const double* xyz, u
 uint32_t lrbcap_add_tree(const lrbcap_tree* tree) {
   static const uint32_t numbers_of[] = {0, 6, 4, 12, 10};
   const uint64_t n = tree->nodes;
+  const uint32_t volume = tree->volume & ~LRBCAP_CAST(uint32_t, LRBCAP_SPLITS);
   const int floats = !tree->volumes;
   uint64_t numbers;
   uint32_t head[8] = {0, 0, 0, 0, 0, 0, 0, 0};
   const void* parts[8];
   uint64_t sizes[8];
   if (lrbcap_writes() == LRBCAP_WRITES_NOTHING) return 0;
-  if (n == 0 || tree->volume == 0 || tree->volume > LRBCAP_KDOP || (floats && !tree->float_volumes)) {
+  if (n == 0 || volume == 0 || volume > LRBCAP_KDOP || (floats && !tree->float_volumes)) {
     lrbcap_warn("a tree without nodes, or without volumes of a known kind, is not recorded", "LRBCAP_TREE");
     return 0;
   }
-  numbers =
-      tree->volume == LRBCAP_KDOP ? LRBCAP_CAST(uint64_t, tree->directions) * 2 : numbers_of[tree->volume];
+  numbers = volume == LRBCAP_KDOP ? LRBCAP_CAST(uint64_t, tree->directions) * 2 : numbers_of[volume];
   head[0] = LRBCAP_CAST(uint32_t, lrbcap_add(&lrbcap_g.trees, 1)) + 1;
   head[1] = tree->mesh;
   head[2] = tree->replaces;
   head[3] = tree->nodes;
-  head[4] = tree->volume;
+  head[4] = volume;
   head[5] = tree->directions;
-  head[6] = (tree->ids ? 1u : 0u) | (floats ? 2u : 0u);
+  head[6] = (tree->ids ? 1u : 0u) | (floats ? 2u : 0u) | (tree->volume != volume ? 4u : 0u);
   parts[0] = head, sizes[0] = sizeof head;
   parts[1] = tree->ids, sizes[1] = tree->ids ? n * 4 : 0;
   parts[2] = tree->first_child, sizes[2] = (n + 1) * 4;
@@ -573,7 +588,7 @@ uint32_t lrbcap_add_tree(const lrbcap_tree* tree) {
     parts[6] = tree->float_volumes, sizes[6] = n * numbers * 4;
   else
     parts[6] = tree->volumes, sizes[6] = n * numbers * 8;
-  parts[7] = tree->direction, sizes[7] = tree->volume == LRBCAP_KDOP ? numbers * 12 : 0;
+  parts[7] = tree->direction, sizes[7] = volume == LRBCAP_KDOP ? numbers * 12 : 0;
   return lrbcap_gather("TREE", parts, sizes, 8) ? head[0] : 0;
 }
 
@@ -719,6 +734,16 @@ uint32_t lrbcap_begin(uint32_t kind, uint32_t tree_a, const double* pose_a, uint
   return query;
 }
 
+void lrbcap_value(double lower, double upper) {
+  unsigned char bytes[LRBCAP_HEADER + 24], *p;
+  if (!lrbcap_mine || !lrbcap_mine->open) return;
+  p = lrbcap_chunk(bytes, "VALU", 24, lrbcap_ticks());
+  p = lrbcap_u64(p, lrbcap_mine->query);
+  p = lrbcap_put(p, &lower, 8);
+  lrbcap_put(p, &upper, 8);
+  lrbcap_write(bytes, sizeof bytes);
+}
+
 void lrbcap_end(uint32_t verdict, uint64_t pairs) {
   const uint64_t now = lrbcap_ticks();
   lrbcap_state* s = lrbcap_mine;
@@ -761,4 +786,7 @@ void lrbcap_thread_end(void) {
 #pragma warning(pop)
 #endif
 #endif /* LRBCAP_IMPLEMENTATION */
+#ifdef __clang__
+#pragma clang diagnostic pop
+#endif
 #endif /* LRBSCOPE_CAPTURE_H */

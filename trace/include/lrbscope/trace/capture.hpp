@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -50,6 +51,8 @@ struct Tree {
   std::uint32_t mesh = 0;          ///< index in Capture::meshes
   std::uint32_t replaces = kNull;  ///< index in Capture::trees of the tree that this one refits; kNull: none
   VolumeKind volume = VolumeKind::aabb;
+  /// With spatial splits: a triangle may be in several leaves, and the volumes of each contain a part of it.
+  bool splits = false;
   std::vector<std::uint32_t> first_child, child;        ///< children of node n: child[first_child[n] ..)
   std::vector<std::uint32_t> first_triangle, triangle;  ///< triangles of leaf n, in the same form
   std::vector<double> volumes;                          ///< numbers() for each node, finite
@@ -114,7 +117,8 @@ struct Query {
   double duration_ns = 0;     ///< 0 if the capture was cut off before the end
   bool ended = false;         ///< false: the capture was cut off before the end
   Verdict verdict = Verdict::unreported;
-  std::uint64_t pairs = 0;        ///< the number of pairs that the engine found, by its own count
+  std::uint64_t pairs = 0;  ///< the number of pairs that the engine found, by its own count
+  std::optional<std::array<double, 2>> value;  ///< of kind distance: the engine's bounds of the distance
   std::uint64_t events_seen = 0;  ///< by the thread that began it; more than stored if events were not kept
   std::vector<Event> events;      ///< by thread, each in the engine's order
   std::vector<Part> parts;        ///< the first is that of `thread`; a helper has one each time it joined
