@@ -102,6 +102,7 @@ class FindingsListBuilder {
       for (const Element& e : report_[kind].first) choose_colours(kind, e);
     veiled_ = o_.focus && (*o_.focus == MeshFault::inside_out || is_hidden(*o_.focus));
     mesh_.dim == 2 ? segments() : faces();
+    for (const auto& [p, q] : o_.crossings) line({p, q}, style_.contact, 2, true, style_.paper);
     std::vector<MeshFault> marked = kinds(report_);
     // The subject of the picture is drawn last, over the others.
     std::stable_partition(marked.begin(), marked.end(),

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "render/scene_parts.hpp"
@@ -150,14 +151,23 @@ void check(std::span<const SceneBody> bodies, const SceneHighlight& highlight, c
   }
 }
 
-/// Returns the values at the ends of the scale bar: as requested, else zero and the maximum.
-std::array<double, 2> value_range(std::span<const SceneBody> bodies, const SceneOptions& options) {
-  if (options.value_range) return *options.value_range;
-  double high = 0;
-  for (const SceneBody& b : bodies) {
-    for (const double v : b.face_values) high = std::max(high, v);
-  }
-  return {0, high};
+struct ValueRange {
+  double low = 0, high = 0;  ///< at the ends of the scale
+  double most = 0;           ///< the maximum, which `high` may be below
+};
+
+/// Returns the range of values: as requested, else from zero to what 99 of 100 positive values do not exceed,
+/// since few outliers would leave all others pale.
+ValueRange value_range(std::span<const SceneBody> bodies, const SceneOptions& options) {
+  std::vector<double> values;
+  for (const SceneBody& b : bodies)
+    std::copy_if(b.face_values.begin(), b.face_values.end(), std::back_inserter(values),
+                 [](double v) { return v > 0; });
+  std::sort(values.begin(), values.end());
+  ValueRange out;
+  if (!values.empty()) out = {0, values[(99 * values.size() + 99) / 100 - 1], values.back()};
+  if (options.value_range) out.low = (*options.value_range)[0], out.high = (*options.value_range)[1];
+  return out;
 }
 
 void add_pair_under_test(std::span<const SceneBody> bodies, const SceneHighlight& highlight,
@@ -247,14 +257,14 @@ Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highl
                   const SceneOptions& options) {
   check(bodies, highlight, options);
   // Values and layers are common to all bodies, so that colours are comparable.
-  const auto [low, high] = value_range(bodies, options);
+  const ValueRange range = value_range(bodies, options);
   const bool flat = bodies[0].rep->dim() == 2;
   std::uint32_t layers = 1;
   for (const SceneBody& b : bodies) layers = std::max(layers, b.rep->layer_count());
   Scene out;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const scene::Context context{bodies[i], i == 0 ? Side::a : Side::b, highlight, options, low, high, layers,
-                                 out};
+    const scene::Context context{
+        bodies[i], i == 0 ? Side::a : Side::b, highlight, options, range.low, range.high, layers, out};
     flat ? scene::add_body_2d(context) : scene::add_body_3d(context);
   }
   if (!highlight.refining[0].empty() || !highlight.refining[1].empty()) {
@@ -267,7 +277,12 @@ Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highl
   const double size = bounds(out.list).isEmpty() ? 0 : bounds(out.list).diagonal().norm();
   if (highlight.under_test) add_pair_under_test(bodies, highlight, options, out);
   add_contacts(highlight, options, size, flat, out);
-  if (options.colour_by == ColourBy::value) out.scale = ScaleBar{options.value_name, low, high};
+  if (options.colour_by == ColourBy::value) {
+    const auto most = static_cast<std::uint64_t>(range.most + 0.5);
+    out.scale =
+        ScaleBar{options.value_name + (range.most > range.high ? ", at most " + group_digits(most) : ""),
+                 range.low, range.high};
+  }
   if (options.colour_by == ColourBy::layer) {
     out.scale = ScaleBar{"layer (0: innermost)", 0, static_cast<double>(layers - 1)};
   }

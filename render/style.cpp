@@ -9,26 +9,10 @@
 
 namespace lrb::render::palette {
 
-Rgba viridis(double t) {
-  // Every sixteenth entry of the map that matplotlib published into the public domain (CC0), interpolated
-  // linearly: the difference is invisible.
-  static constexpr std::array<Rgba, 17> kStops = {{{68, 1, 84},
-                                                   {72, 23, 105},
-                                                   {71, 44, 122},
-                                                   {66, 64, 134},
-                                                   {59, 82, 139},
-                                                   {51, 99, 141},
-                                                   {44, 114, 142},
-                                                   {38, 130, 142},
-                                                   {33, 145, 140},
-                                                   {31, 160, 136},
-                                                   {40, 174, 128},
-                                                   {63, 188, 115},
-                                                   {94, 201, 98},
-                                                   {132, 212, 75},
-                                                   {173, 220, 48},
-                                                   {216, 226, 25},
-                                                   {253, 231, 37}}};
+Rgba heat(double t) {
+  // In hues that neither bodies nor events have; the lightness in Oklab falls from 0.94 to 0.27.
+  static constexpr std::array<Rgba, 5> kStops = {
+      {{238, 232, 243}, {205, 184, 221}, {166, 118, 190}, {122, 54, 149}, {66, 10, 92}}};
   const double at = (t > 0 ? std::min(t, 1.0) : 0.0) * (kStops.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
   return mix(kStops[i], kStops[i + 1], at - static_cast<double>(i));
@@ -78,7 +62,7 @@ constexpr Style kScreen = {.paper = kWhite,
                            .lid_pale = {palette::kLidPale, palette::kLidPale},
                            .edge_share = {palette::kEdgeShare, palette::kEdgeShare},
                            .weight = 1,
-                           .falling = false};
+                           .rising = false};
 
 /// Black on white; kinds differ more in lightness than on a screen, for greyscale print. B is lighter than A
 /// in everything: faces, pseudo faces and lines.
@@ -98,7 +82,7 @@ constexpr Style kPrint = {.paper = kWhite,
                           .lid_pale = {0.45, 0.85},
                           .edge_share = {0.80, 0.50},
                           .weight = 0.7F,
-                          .falling = true};
+                          .rising = false};
 
 /// For slides: almost black background, light lines and texts.
 constexpr Style kDark = {.paper = {20, 22, 27},
@@ -117,7 +101,7 @@ constexpr Style kDark = {.paper = {20, 22, 27},
                          .lid_pale = {0.25, 0.25},
                          .edge_share = {palette::kEdgeShare, palette::kEdgeShare},
                          .weight = 1.15F,
-                         .falling = false};
+                         .rising = true};
 
 }  // namespace
 

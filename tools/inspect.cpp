@@ -405,7 +405,12 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     const std::vector<BoundaryLoop> loops = find_boundary_loops(mesh.mesh(), mesh.use());
     j = mesh_json(mesh, loops);
     const MeshReport shown = mesh.report().shortened();
-    if (!o.drawing.empty()) draw_findings({mesh.mesh(), shown, loops}, o, j, notes);
+    if (!o.drawing.empty()) {
+      const bool cross = shown[MeshFault::self_intersection].count > 0;
+      draw_findings({mesh.mesh(), shown, loops,
+                     cross ? self_intersections(mesh).segments : SelfIntersections().segments},
+                    o, j, notes);
+    }
     if (o.validate)
       rep = std::make_unique<LrbRep>(bodies::build_from_mesh(std::move(mesh), {}, notes));
     else if (o.render || o.regions)

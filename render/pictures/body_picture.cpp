@@ -309,6 +309,7 @@ Image draw_one(Rasterizer& rasterizer, const FaultyMesh& faulty, const Look& loo
                const PixelRect& place, float text) {
   findings::Options options;
   options.loops = faulty.loops;
+  options.crossings = faulty.crossings;
   options.style = look.style;
   options.scale = text / kUsualText;
   options.width = place.width;
@@ -330,7 +331,9 @@ std::optional<Image> picture_of(const FaultyMesh& given, const Look& requested) 
   const std::vector<MeshFault> kinds = findings::kinds(given.report);
   if (kinds.empty()) return std::nullopt;
   const Mesh mesh = findings::to_unit_size(given.mesh);
-  const FaultyMesh faulty{mesh, given.report, given.loops};
+  FaultyMesh faulty{mesh, given.report, given.loops, given.crossings};
+  for (auto& ends : faulty.crossings)
+    for (Eigen::Vector3d& x : ends) x = findings::to_unit_size(given.mesh, x);
   const Grid grid(kinds.size());
   Look look = requested;
   for (Look::View& view : look.views)

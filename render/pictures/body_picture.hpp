@@ -1,6 +1,7 @@
 #pragma once
 /// Pictures of a body: its wrappers, regions of it, and the faults of its mesh.
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,6 +48,7 @@ struct FaultyMesh {
   const Mesh& mesh;
   const MeshReport& report;
   const std::vector<BoundaryLoop>& loops;
+  std::vector<std::array<Eigen::Vector3d, 2>> crossings = {};  ///< segments in which faces intersect
 };
 
 /// Draws a mesh's findings: the whole mesh in panel (a), from the look's first view, then a close-up of the

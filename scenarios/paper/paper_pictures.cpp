@@ -101,7 +101,7 @@ render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, doub
   list.edge_styles[0] = {render::with_alpha(render::kWhite, 110), 0.8F};
   for (const FaceId f : cursor.wrapper(view.side).boundary()) {
     render::DrawTriangle t;
-    t.colour = tests[f] > 0 ? render::palette::viridis(share(tests[f], most)) : render::palette::kPaleFront;
+    t.colour = tests[f] > 0 ? render::palette::heat(share(tests[f], most)) : render::palette::kPaleFront;
     t.edges = 7;
     list.add_polygon(run::corners_of(rep, f, pose_of(view)), t, {}, run::corners_of(rep, f));
   }

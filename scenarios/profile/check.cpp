@@ -29,7 +29,7 @@ run::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::ScaleB
   for (FaceId f = 0; f < rep.real_face_count(); ++f) {
     const double share = render::place_on(scale, map.waste[f]);
     render::DrawTriangle t;
-    t.colour = share > 0 ? render::palette::viridis(share) : render::palette::kPaleFront;
+    t.colour = share > 0 ? render::palette::heat(share) : render::palette::kPaleFront;
     t.edges = 7;
     panel.list.add_polygon(run::corners_of(rep, f), t);
   }

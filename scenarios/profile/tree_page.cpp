@@ -216,7 +216,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
   using namespace render::svg_text;
   constexpr double kWidth = 1200, kMargin = 8, kRow = 18, kText = 11, kRule = 0.7, kRuleShare = 0.2;
   constexpr double kRoomForText = 40, kNarrowest = 1;  // pixels
-  constexpr double kPale = 0.45;  // share of the colour scale above which black is better legible than white
+  constexpr double kDark = 0.5;  // share of the colour scale above which white is better legible than black
   constexpr std::uint32_t kMaxDepths = 40;
   double largest = 0;
   if (figures.epo)
@@ -240,7 +240,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
     // The square root spreads the small values.
     const double epo = figures.epo ? figures.epo->by_node[n] : 0;
     const double value = largest > 0 ? std::sqrt(epo / largest) : 0;
-    const render::Rgba colour = render::palette::viridis(value);
+    const render::Rgba colour = render::palette::heat(value);
     const std::string name = std::to_string(tree.id_of(n));
     boxes += "<rect" + attribute("data-node", name) + attribute("x", number(x)) + attribute("y", number(y)) +
              attribute("width", number(width - rule)) + attribute("height", number(kRow - rule)) +
@@ -251,7 +251,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
     if (width > kRoomForText)
       boxes += "<text" + attribute("x", number(x + width / 2)) + attribute("y", number(y + kRow / 2)) +
                font(kText) + attribute("text-anchor", "middle") + attribute("dominant-baseline", "central") +
-               paint("fill", value > kPale ? render::kBlack : render::kWhite) + ">" + name + "</text>\n";
+               paint("fill", value > kDark ? render::kWhite : render::kBlack) + ">" + name + "</text>\n";
   }
   const double height = 2 * kMargin + kRow * depths;
   return svg_open(kWidth, height) + "<title>The nodes of the tree by depth</title>\n<rect" +

@@ -98,6 +98,22 @@ void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& 
   }
 }
 
+std::vector<std::uint32_t> shown_pseudo_faces(const LrbRep& rep, Side side, const trace::Trace& trace) {
+  std::vector<bool> shown(rep.region_count());
+  const auto show = [&](FaceId f) {
+    if (is_region(rep.inner_cell(f))) shown[rep.inner_cell(f).as_region()] = true;
+  };
+  for (const FaceId f : rep.outermost_faces()) show(f);
+  for (const trace::Event& e : trace.events)
+    if (e.kind == EventKind::refine && e.side == side)
+      for (const FaceId f : rep.floor(RegionId(e.a))) show(f);
+  const auto is_of_shown = [&](CellId c) { return is_region(c) && shown[c.as_region()]; };
+  std::vector<std::uint32_t> out;
+  for (FaceId f(rep.real_face_count()); f < rep.face_count(); ++f)
+    if (is_of_shown(rep.inner_cell(f)) || is_of_shown(rep.outer_cell(f))) out.push_back(f.value());
+  return out;
+}
+
 namespace {
 
 using nlohmann::json;
@@ -150,37 +166,32 @@ std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Number
 
 // ---- bodies
 
-/// `faces`: number of faces: all, or the real ones, which come first; then without regions.
-json geometry(const LrbRep& rep, const SceneFrame& frame, std::uint32_t faces) {
+/// `shown`: the pseudo faces that have corners on the page; null: all.
+json geometry(const LrbRep& rep, const SceneFrame& frame, const Numbers* shown = nullptr) {
   const Eigen::Vector3d centre = body_centre(rep);
   std::vector<float> vertices;
   for (const Eigen::Vector3d& v : rep.vertices()) frame.add_vector(vertices, v - centre);
-  const bool with_regions = faces == rep.face_count();
-  Numbers sizes, inner, outer, parents, layers;
+  Numbers sizes, corners, inner, outer, parents, layers;
   const auto region_or_null = [](CellId c) { return is_region(c) ? c.value() : std::uint32_t{kNull}; };
-  std::size_t corners = 0;
-  for (FaceId f = 0; f < faces; ++f) {
-    corners += rep.face(f).size();
+  for (FaceId f = 0; f < rep.face_count(); ++f) {
     sizes.push_back(static_cast<std::uint32_t>(rep.face(f).size()));
-    inner.push_back(with_regions ? region_or_null(rep.inner_cell(f)) : std::uint32_t{kNull});
-    outer.push_back(with_regions ? region_or_null(rep.outer_cell(f)) : std::uint32_t{kNull});
+    inner.push_back(region_or_null(rep.inner_cell(f)));
+    outer.push_back(region_or_null(rep.outer_cell(f)));
+    if (shown == nullptr || rep.is_real(f) || std::binary_search(shown->begin(), shown->end(), f.value()))
+      for (const VertexId v : rep.face(f)) corners.push_back(v.value());
   }
-  for (RegionId r = 0; with_regions && r < rep.region_count(); ++r) {
+  for (RegionId r = 0; r < rep.region_count(); ++r) {
     parents.push_back(region_or_null(rep.parent(r)));
     layers.push_back(rep.layer(r));
   }
-  json out = {{"vertices", packed(vertices)},
-              {"sizes", packed(sizes)},
-              {"corners", packed_each(std::span(rep.data().face_vertices).first(corners),
-                                      [](VertexId v) { return v.value(); })},
-              {"inner", packed(inner)},
-              {"outer", packed(outer)},
-              {"parent", packed(parents)},
-              {"layer", packed(layers)}};
+  json out = {{"vertices", packed(vertices)}, {"sizes", packed(sizes)},
+              {"corners", packed(corners)},   {"inner", packed(inner)},
+              {"outer", packed(outer)},       {"parent", packed(parents)},
+              {"layer", packed(layers)},      {"shown", shown == nullptr ? "" : packed(*shown)}};
   // The corners of all triangles, in the order of the simplices; without them, polygons are fans.
   if (!rep.has_cut_faces()) return out;
   Numbers triangles;
-  for (SimplexId s = 0; s < rep.simplex_count() && rep.face_of_simplex(s) < faces; ++s) {
+  for (SimplexId s = 0; s < rep.simplex_count(); ++s) {
     VertexId v[3];
     rep.simplex(s, v);
     for (const VertexId corner : v) triangles.push_back(corner.value());
@@ -267,16 +278,21 @@ json boxes_json(const LrbRep& rep, const SceneFrame& frame, const ShownBoxes& sh
 }
 
 json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, const SceneLimits& limits,
-               bool with_geometry) {
+               std::size_t faces) {
   const LrbRep& rep = *p.reps[i];
   json out = {{"name", std::filesystem::path(rep.name()).stem().string()},
               {"hash", trace::to_hex(rep.hash())},
               {"faces", rep.face_count()},
               {"realFaces", rep.real_face_count()},
               {"regions", rep.region_count()}};
-  if (!with_geometry) return out;
+  if (faces > limits.faces) return out;
   const trace::FaceCounts counts = trace::count_faces(rep, static_cast<Side>(i), p.trace->events);
-  out["geometry"] = geometry(rep, frame, rep.face_count());
+  if (faces > limits.with_all_lids && !p.trace->header.construction) {
+    const Numbers shown = shown_pseudo_faces(rep, static_cast<Side>(i), *p.trace);
+    out["geometry"] = geometry(rep, frame, &shown);
+  } else {
+    out["geometry"] = geometry(rep, frame);
+  }
   // Another engine traverses trees of its own, which may be unknown.
   const std::vector<SimplexId> compared = compared_simplices(p, static_cast<Side>(i));
   const bool ours = p.trace->header.engine.empty(), is_known = p.trees != nullptr && i < p.trees->size();
@@ -603,8 +619,7 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
   std::size_t faces = 0;
   for (const LrbRep* rep : p.reps) faces += rep->face_count();
   json bodies = json::array();
-  for (std::size_t i = 0; i < p.reps.size(); ++i)
-    bodies.push_back(body_json(p, i, frame, limits, faces <= limits.faces));
+  for (std::size_t i = 0; i < p.reps.size(); ++i) bodies.push_back(body_json(p, i, frame, limits, faces));
   const json out = {{"dim", p.reps[0]->dim()},
                     {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
                     {"unit", frame.unit},
@@ -638,26 +653,13 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-namespace {
-
-/// Returns a colour of the page's scale: from pale to dark, in hues that neither bodies nor events have.
-render::Rgba heat(double t) {
-  static constexpr render::Rgba kKnots[] = {
-      {238, 232, 243}, {205, 184, 221}, {166, 118, 190}, {122, 54, 149}, {66, 10, 92}};
-  const double at = t * (std::size(kKnots) - 1);
-  const auto i = std::min<std::size_t>(static_cast<std::size_t>(at), std::size(kKnots) - 2);
-  return render::mix(kKnots[i], kKnots[i + 1], at - static_cast<double>(i));
-}
-
-}  // namespace
-
 json scene_colours() {
   namespace palette = render::palette;
   using render::css;
   constexpr std::uint32_t kStops = 17, kCategories = 96;
   json scale = json::array(), categories = json::array();
   for (std::uint32_t i = 0; i < kStops; ++i)
-    scale.push_back(css(heat(static_cast<double>(i) / (kStops - 1))));
+    scale.push_back(css(palette::heat(static_cast<double>(i) / (kStops - 1))));
   for (std::uint32_t i = 0; i < kCategories; ++i) categories.push_back(css(palette::category(i)));
   return {{"bodies", {css(palette::body(Side::a)), css(palette::body(Side::b))}},
           {"contact", css(palette::kContact)},
@@ -681,9 +683,9 @@ json posed_bodies_json(const RecordedRun& p) {
   const SceneFrame frame = scene_frame(p);
   json bodies = json::array(), steps = json::array();
   for (std::size_t i = 0; i < p.reps.size(); ++i) {
-    json body = body_json(p, i, frame, {}, false);
+    json body = body_json(p, i, frame, {}, kNull);
     const Eigen::Vector3d centre = body_centre(*p.reps[i]);
-    body["geometry"] = geometry(*p.reps[i], frame, p.reps[i]->face_count());
+    body["geometry"] = geometry(*p.reps[i], frame);
     body["boxes"] = boxes_json(*p.reps[i], frame, {});
     body["centre"] = {centre.x(), centre.y(), centre.z()};
     body["simplices"] = p.reps[i]->real_simplex_count();

@@ -25,6 +25,10 @@ Eigen::Vector3d body_centre(const LrbRep& rep);
 void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& centre,
               const SceneFrame& frame);
 
+/// Returns the pseudo faces, ascending, that a body's wrapper shows at some event, and the lids and floors of
+/// the regions behind them.
+std::vector<std::uint32_t> shown_pseudo_faces(const LrbRep& rep, Side side, const trace::Trace& trace);
+
 /// Returns the trees of a run's traversals, for the page's proof map (proof_map.js); null without pairs of
 /// nodes.
 nlohmann::json map_json(const RecordedRun& p);
@@ -35,8 +39,10 @@ nlohmann::json scene_colours();
 /// Size limits of a page, which opens in a second or two at these limits.
 struct SceneLimits {
   std::size_t events = 200'000;
-  std::size_t faces = 300'000;  ///< of both bodies; with more, there is no 3D view
-  std::size_t boxes = 4'096;    ///< of tree nodes, for each body
+  std::size_t faces = 1'500'000;  ///< of both bodies; with more, there is no 3D view
+  std::size_t with_all_lids =
+      300'000;                ///< with more faces, the page has only those pseudo faces that it shows
+  std::size_t boxes = 4'096;  ///< of tree nodes, for each body
   ExplainLimits explained = {};
 };
 

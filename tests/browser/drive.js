@@ -57,7 +57,7 @@
       equal(badge.textContent, result.relation.replaceAll("_", " "), `the badge of step ${index}`);
       const shown = [...numbers.children].map((n) => n.textContent).slice(0, 2).join();
       equal(shown, `Step${digits(index)},Pairs${digits(result.pairs)}`, "and its figures");
-      equal(view.curves.count > 0, result.pairs > 0, "a step with pairs has contact curves");
+      equal(view.curves.now.length > 0, result.pairs > 0, "a step with pairs has contact curves");
       equal(text("legend").includes("contact"), result.pairs > 0, "which the legend names");
     }
     selection.goTo(firstContact());

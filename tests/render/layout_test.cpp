@@ -74,8 +74,8 @@ TEST_CASE("the overlay draws only within its layout" * doctest::test_suite("font
   const render::PixelRect& m = layout.event_mark;
   CHECK(frame.at(m.x + m.width / 2, m.y + m.height / 2) == render::palette::kYellow);
   const render::PixelRect& s = layout.bar;
-  CHECK(frame.at(s.x, s.y + 2) == render::palette::viridis(0));
-  CHECK(frame.at(s.right() - 1, s.y + 2) == render::palette::viridis(1));
+  CHECK(frame.at(s.x, s.y + 2) == render::palette::heat(0));
+  CHECK(frame.at(s.right() - 1, s.y + 2) == render::palette::heat(1));
   for (const auto& t : layout.texts) {
     int ink = 0;
     for (int y = t.box.y; y < t.box.bottom(); ++y) {

@@ -113,7 +113,7 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
   for (const render::DrawTriangle& t : scene.list.triangles) {
     if (t.layer != render::Layer::translucent) continue;
     const std::uint16_t layer = rep.layer(rep.inner_cell(FaceId(t.id)).as_region());
-    CHECK(render::with_alpha(t.colour, 255) == render::palette::viridis(layer / 2.0));
+    CHECK(render::with_alpha(t.colour, 255) == render::palette::heat(layer / 2.0));
   }
   options.colour_by = render::ColourBy::region;
   scene = render::build_scene(body, {}, options);
@@ -126,8 +126,8 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
   CHECK(scene.scale->high == 40);
   std::map<std::uint32_t, render::Rgba> colour;
   for (const render::DrawTriangle& t : scene.list.triangles) colour[t.id] = render::with_alpha(t.colour, 255);
-  CHECK(colour[rep.outermost_faces()[2]] == render::palette::viridis(1));
-  CHECK(colour[rep.outermost_faces()[5]] == render::palette::viridis(0.25));
+  CHECK(colour[rep.outermost_faces()[2]] == render::palette::heat(1));
+  CHECK(colour[rep.outermost_faces()[5]] == render::palette::heat(0.25));
   options.value_range = {{0.0, 20.0}};
   CHECK(render::build_scene(body, {}, options).scale->high == 20);
 }

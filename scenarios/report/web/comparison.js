@@ -35,6 +35,7 @@ for (const section of document.querySelectorAll(".comparison")) {
     const mode = { s: "side", w: "swipe", d: "difference" }[e.key];
     if (mode && !e.ctrlKey && !e.metaKey && !e.altKey) look(mode);
   });
-  const requested = new URLSearchParams(location.search).get("compare"); // ?compare=swipe opens all in that mode
+  // ?compare=swipe opens all in that mode
+  const requested = new URLSearchParams(location.search).get("compare");
   if (requested && buttons.some((b) => b.dataset.mode === requested)) look(requested);
 }

@@ -13,14 +13,16 @@ export const percent = (part, whole) => `${rounded((100 * part) / whole, part ==
 export const plural = (n, one, many = one + "s") => `${digits(n)} ${n === 1 ? one : many}`;
 
 // The parser names the namespace of pictures, so that pages contain no address.
-const SVG = Object.assign(document.createElement("template"), { innerHTML: "<svg>" }).content.firstChild.namespaceURI;
+const SVG = Object.assign(document.createElement("template"),
+    { innerHTML: "<svg>" }).content.firstChild.namespaceURI;
 const fill = (node, attributes, content) => {
   for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
   node.append(...content);
   return node;
 };
 /** Makes an element with attributes and content: texts and elements. */
-export const element = (tag, attributes = {}, ...content) => fill(document.createElement(tag), attributes, content);
+export const element = (tag, attributes = {}, ...content) =>
+    fill(document.createElement(tag), attributes, content);
 /** As above, of a picture. */
 export const svgElement = (tag, attributes = {}, ...content) =>
   fill(document.createElementNS(SVG, tag), attributes, content);

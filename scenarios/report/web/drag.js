@@ -1,6 +1,6 @@
 import { byId, digits, element, oncePerFrame, plural } from "./dom.js";
 import { FIELD } from "./scene_camera.js";
-import { Body, NONE } from "./scene_run.js";
+import { Body, NONE, SIDES } from "./scene_run.js";
 import { BodiesCanvas, webglWorks } from "./scene_view.js";
 
 // ---- the live page of a run: B is dragged, and the engine in this page (wasm/engine.cpp) answers every pose
@@ -50,8 +50,12 @@ class Engine {
   }
 }
 
-/** The pose of a body, in doubles: x' = Q (R x) + t. Q, a rotation, is the identity until the body is rotated,
-    so that a given pose is kept to the last bit. */
+/** Returns the faces of A and of B in pairs of simplices. */
+const facesOf = (pairs, bodies) =>
+  pairs.map((list, side) => new Set([...list].map((s) => bodies[side].faceOfSimplex(s))));
+
+/** The pose of a body, in doubles: x' = Q (R x) + t. Q, a rotation, is the identity until the body is
+    rotated, so that a given pose is kept to the last bit. */
 class DraggedPose {
   constructor(rows) {
     this.set(rows);
@@ -67,7 +71,7 @@ class DraggedPose {
   rows() {
     const q = new THREE.Matrix4().makeRotationFromQuaternion(this.q).elements, // column by column
       r = [0, 1, 2].map((i) =>
-        [0, 1, 2].map((j) => q[i] * this.base[0][j] + q[4 + i] * this.base[1][j] + q[8 + i] * this.base[2][j]),
+        [0, 1, 2].map((j) => this.base.reduce((sum, row, k) => sum + q[4 * k + i] * row[j], 0)),
       );
     return r.flatMap((row, i) => [...row, this.t[i]]);
   }
@@ -136,16 +140,18 @@ class DragView extends BodiesCanvas {
   /** Shows an answer. `picked`: index of a pair, or -1. */
   show(answer, picked) {
     const { bodies, colours, shown } = this;
-    const faces = (lists) => lists.flatMap((list, side) => [...list].map((face) => ({ side, face })));
-    const hit = answer.pairs.map((list, side) => new Set([...list].map((s) => bodies[side].faceOfSimplex(s))));
+    const faces = (lists) => lists.flatMap((list, side) => bodies[side].sided(list));
+    const hit = facesOf(answer.pairs, bodies);
     const missed = answer.tested.map((list, side) => [...list].filter((face) => !hit[side].has(face)));
     this.views.forEach((view, side) => this.showWrapper(view, side, answer.opened[side]));
-    const set = (name, list, look) => this.marks.set(name, list.map((f) => `${f.side}${f.face}`).join(" "), list, look);
-    set("tested", shown.tested ? faces(missed) : [], { colour: colours.underTest, opacity: 0.55, width: 0.8, through: false });
+    const set = (name, list, look) => this.marks.set(name, list.map(Object.values).join(" "), list, look);
+    set("tested", shown.tested ? faces(missed) : [],
+        { colour: colours.underTest, opacity: 0.55, width: 0.8, through: false });
     set("contacts", faces(hit), { colour: colours.contact, opacity: 0.95, width: 1.5 });
     set(
       "picked",
-      picked < 0 ? [] : answer.pairs.map((list, side) => ({ side, face: bodies[side].faceOfSimplex(list[picked]) })),
+      picked < 0 ? []
+          : answer.pairs.map((list, side) => ({ side, face: bodies[side].faceOfSimplex(list[picked]) })),
       { colour: colours.selected, opacity: 0.9, width: 3, over: true },
     );
     this.legend.also(
@@ -153,8 +159,9 @@ class DragView extends BodiesCanvas {
         [colours.bodies[0], `A, ${bodies[0].name}`],
         [colours.bodies[1], `B, ${bodies[1].name}`],
         ...(hit[0].size ? [[colours.contact, "in contact"]] : []),
-        ...(shown.tested && missed.some((m) => m.length) ? [[colours.underTest, "tested, not in contact"]] : []),
-        ...(shown.lids && bodies.some((b) => b.regionCount) ? [[colours.lid(0), "wrapper of A", colours.edge(0)], [colours.lid(1), "wrapper of B", colours.edge(1)]] : []),
+        ...(shown.tested && missed.flat().length ? [[colours.underTest, "tested, not in contact"]] : []),
+        ...(shown.lids && bodies.some((b) => b.regionCount)
+          ? SIDES.map((s, side) => [colours.lid(side), `wrapper of ${s}`, colours.edge(side)]) : []),
         ...(picked < 0 ? [] : [[colours.selected, "selected pair"]]),
       ],
       "answer",
@@ -199,7 +206,8 @@ class DragView extends BodiesCanvas {
     const { camera } = this.camera,
       centre = this.views[1].toWorld([0, 0, 0]),
       depth = centre.clone().sub(camera.position).dot(this.axes().out.negate());
-    const half = this.camera.orthographic ? this.camera.halfHeight : Math.max(depth, 1e-6) * Math.tan(FIELD / 2);
+    const { halfHeight, orthographic } = this.camera,
+      half = orthographic ? halfHeight : Math.max(depth, 1e-6) * Math.tan(FIELD / 2);
     return (2 * half * this.json.unit) / this.size.y;
   }
 }
@@ -216,7 +224,8 @@ class LivePage {
     this.poseA = poseA;
     this.pose = new DraggedPose(poseOfAddress() || poseB);
     this.view = webglWorks() ? new DragView(json, this.bodies) : null;
-    if (!this.view) fail("This browser has no WebGL, so the bodies are not drawn. The engine still answers the pose below.");
+    if (!this.view)
+      fail("This browser has no WebGL, so nothing is drawn. The engine still answers the pose below.");
     this.connect();
     this.changed();
     if (this.view) this.view.frameAll(this.view.camera.from);
@@ -244,8 +253,8 @@ class LivePage {
     this.timer = setTimeout(() => this.rested(rows), 250);
   }
 
-  /** Called once B stays where it is: measures the time again, for longer, and puts the pose into the address,
-      which browsers let change only now and then. */
+  /** Called once B stays where it is: measures the time again, for longer, and puts the pose into the
+      address, which browsers let change only now and then. */
   rested(rows) {
     this.answer.micros = this.engine.query([this.poseA, rows], 0.05).micros;
     this.writeTime();
@@ -263,7 +272,7 @@ class LivePage {
     const { answer, bodies } = this,
       count = answer.pairs[0].length,
       put = (id, text) => (byId(id).textContent = text),
-      faces = answer.pairs.map((list, side) => new Set([...list].map((s) => bodies[side].faceOfSimplex(s))).size);
+      faces = facesOf(answer.pairs, bodies).map((set) => set.size);
     put("relation", answer.relation.replace(/_/g, " "));
     put("relation-cell", answer.relation.replace(/_/g, " "));
     put("pairs", digits(count));
@@ -274,7 +283,8 @@ class LivePage {
     put("node-pairs", digits(answer.nodePairs));
     put("fallbacks", digits(answer.fallbacks));
     ["a", "b"].forEach((name, side) =>
-      put(`refined-${name}`, `${digits(answer.opened[side].length)} of ${plural(bodies[side].regionCount, "region")}`),
+      put(`refined-${name}`,
+          `${digits(answer.opened[side].length)} of ${plural(bodies[side].regionCount, "region")}`),
     );
     byId("pose").value = rows.join(" ");
     byId("pose").removeAttribute("aria-invalid");
@@ -288,22 +298,22 @@ class LivePage {
       time = `${micros < 10 ? micros.toFixed(1) : digits(Math.round(micros))} \u00b5s`;
     byId("time").textContent = time;
     byId("view-caption").textContent =
-      `${relation.replace(/_/g, " ")}: ${plural(pairs[0].length, "pair")}, ${plural(faceTests, "face test")}, ${time}`;
+      `${relation.replace(/_/g, " ")}: ${plural(pairs[0].length, "pair")}, ` +
+      `${plural(faceTests, "face test")}, ${time}`;
   }
 
   writePairs() {
-    const most = 200,
-      { pairs } = this.answer,
+    const most = 200, rows = byId("pair-rows"), { pairs } = this.answer,
       count = Math.min(most, pairs[0].length);
     byId("pairs-shown").textContent = pairs[0].length > most ? `the first ${most}` : "";
-    byId("pair-rows").replaceChildren(
+    rows.replaceChildren(
       ...Array.from({ length: count }, (_, i) => {
         const [a, b] = pairs.map((list, side) => this.bodies[side].faceOfSimplex(list[i])),
           words = `face ${digits(a)} of A, face ${digits(b)} of B`,
           row = element("button", { type: "button", title: "Show this pair" }, words);
         row.onclick = () => {
           this.picked = this.picked === i ? -1 : i;
-          [...byId("pair-rows").children].forEach((r, k) => r.setAttribute("aria-pressed", k === this.picked));
+          [...rows.children].forEach((r, k) => r.setAttribute("aria-pressed", k === this.picked));
           this.draw();
         };
         return row;
@@ -331,7 +341,8 @@ class LivePage {
     if (this.json.dim === 2) {
       this.pose.turn(new THREE.Vector3(0, 0, 1), aboutOut || aboutUp, centre);
     } else {
-      const axis = axes.up.multiplyScalar(aboutUp).addScaledVector(axes.right, aboutRight).addScaledVector(axes.out, aboutOut),
+      const axis = axes.up.multiplyScalar(aboutUp).addScaledVector(axes.right, aboutRight)
+          .addScaledVector(axes.out, aboutOut),
         angle = axis.length();
       if (angle > 0) this.pose.turn(axis.divideScalar(angle), angle, centre);
     }
@@ -412,7 +423,8 @@ class LivePage {
     // Pointer events precede the mouse and touch events that turn the camera.
     canvas.addEventListener("pointerdown", (e) => {
       if (grabbed || !this.view.isOverB(e.clientX, e.clientY)) return;
-      grabbed = { id: e.pointerId, x: e.clientX, y: e.clientY, turns: e.button === 2 || e.shiftKey || this.turning };
+      grabbed = { id: e.pointerId, x: e.clientX, y: e.clientY, turns: this.turning };
+      grabbed.turns ||= e.button === 2 || e.shiftKey;
       controls.enabled = false;
       try {
         canvas.setPointerCapture(e.pointerId);
@@ -447,7 +459,7 @@ class LivePage {
   }
 
   press(e) {
-    if (e.ctrlKey || e.metaKey || e.altKey || ["TEXTAREA", "SELECT", "INPUT"].includes(e.target.tagName)) return;
+    if (e.ctrlKey || e.metaKey || e.altKey || e.target.matches("textarea, select, input")) return;
     const step = Number(byId("step").value),
       way = step * this.radius;
     const toggle = (id) => byId(id).click();
@@ -504,5 +516,6 @@ async function startLive() {
 
 export const live = startLive().catch((e) => {
   byId("relation").textContent = "not started";
-  fail(`The engine did not start: ${e.message || e}. It needs a browser with WebAssembly SIMD (since 2021; Safari since 2023).`);
+  fail(`The engine did not start: ${e.message || e}. ` +
+      "It needs a browser with WebAssembly SIMD (since 2021; Safari since 2023).");
 });

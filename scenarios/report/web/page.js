@@ -5,7 +5,8 @@ export const data = JSON.parse(document.getElementById("data").textContent);
 // ---- the current frame or event: a frame, or an event of the run with the frame that shows it best; and its
 // listeners
 let current = 0; // index of the frame
-export const moment = { event: -1, step: -1, about: { event: [], step: [] } }; // negative: unknown; about: of the selection
+// negative: unknown; about: of the selection
+export const moment = { event: -1, step: -1, about: { event: [], step: [] } };
 export const listeners = [];
 export function tell() { for (const listener of listeners) listener(data.frames[current], current); }
 export function show(index) {
@@ -38,7 +39,7 @@ export function seekBy(action) { go = action; }
 
 function startPlayer() {
   const image = byId("frame"), link = byId("frame-link"), scrub = byId("scrub"), play = byId("play");
-  const images = data.frames.map((f) => { const i = new Image(); i.src = f.src; return i; }); // decoded ahead of use
+  const images = data.frames.map(({ src }) => Object.assign(new Image(), { src })); // decoded ahead of use
   scrub.max = data.frames.length - 1;
   listeners.push((frame, index) => {
     image.src = images[index].src;
@@ -51,11 +52,17 @@ function startPlayer() {
   });
 
   let timer = null;
-  const pause = () => { clearInterval(timer); timer = null; play.classList.remove("playing"); play.setAttribute("aria-label", "Play"); };
+  const pause = () => {
+    clearInterval(timer);
+    timer = null;
+    play.classList.remove("playing");
+    play.setAttribute("aria-label", "Play");
+  };
   const start = () => {
     if (current === data.frames.length - 1) show(0);
     clearInterval(timer);
-    timer = setInterval(() => { show(current + 1); if (current === data.frames.length - 1) pause(); }, 1000 / byId("speed").value);
+    timer = setInterval(() => { show(current + 1); if (current === data.frames.length - 1) pause(); },
+        1000 / byId("speed").value);
     play.classList.add("playing"); play.setAttribute("aria-label", "Pause");
   };
   const toggle = () => (timer ? pause() : start());
@@ -68,7 +75,8 @@ function startPlayer() {
   byId("speed").onchange = () => { if (timer) start(); };
   scrub.oninput = () => go(Number(scrub.value));
   const keys = {
-    ArrowLeft: (e) => go(current - (e.shiftKey ? 10 : 1)), ArrowRight: (e) => go(current + (e.shiftKey ? 10 : 1)),
+    ArrowLeft: (e) => go(current - (e.shiftKey ? 10 : 1)),
+    ArrowRight: (e) => go(current + (e.shiftKey ? 10 : 1)),
     Home: () => go(0), End: () => go(data.frames.length - 1), " ": toggle,
   };
   if (!byId("scene")) document.addEventListener("keydown", (e) => { // there, keys move between events
@@ -92,9 +100,11 @@ const marksPlugin = {
       c.beginPath(); c.moveTo(x0, y0); c.lineTo(x1, y1); c.stroke();
     };
     c.save();
-    for (const set of chart.data.datasets) if (chart.isDatasetVisible(chart.data.datasets.indexOf(set))) for (const p of set.data) {
+    const { datasets } = chart.data, seen = datasets.filter((_, i) => chart.isDatasetVisible(i));
+    for (const set of seen) for (const p of set.data) {
       const px = x.getPixelForValue(p.x), py = y.getPixelForValue(p.y);
-      if (p.high !== undefined) line(set.borderColor, [], px, y.getPixelForValue(p.low), px, y.getPixelForValue(p.high));
+      if (p.high !== undefined)
+        line(set.borderColor, [], px, y.getPixelForValue(p.low), px, y.getPixelForValue(p.high));
       if (p.from !== undefined) line(set.borderColor, [2, 3], x.getPixelForValue(p.from), py, px, py);
     }
     const at = chart.config.options.cursorAt, px = x.getPixelForValue(at);
@@ -113,27 +123,34 @@ const marksPlugin = {
     but powers of ten. */
 function ticksWithin(axis) {
   const many = 80, isPower = (t) => Math.abs(Math.log10(t.value) - Math.round(Math.log10(t.value))) < 1e-6;
-  const within = axis.ticks.filter((t) => t.value >= axis.min * (1 - 1e-9) && t.value <= axis.max * (1 + 1e-9));
-  axis.ticks = within.length ? within.filter((t) => within.length < many || isPower(t)) : [{ value: axis.min }, { value: axis.max }];
+  const { min, max } = axis, slack = 1 + 1e-9,
+    within = axis.ticks.filter(({ value }) => value * slack >= min && value <= max * slack);
+  axis.ticks = within.length ? within.filter((t) => within.length < many || isPower(t))
+      : [{ value: axis.min }, { value: axis.max }];
 }
 
-/** Returns the label of a tick of a logarithmic axis: 0.01, 100, 10⁵; on an axis of several powers of ten, nothing between them. */
+/** Returns the label of a logarithmic axis: 0.01, 100, 10⁵; on a long axis of powers of ten only */
 function logLabel(value, { min, max }) {
-  const power = Math.round(Math.log10(value)), superscript = (n) => String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
-  if (Math.abs(Math.log10(value) - power) > 1e-6) return max < 30 * min ? String(Number(value.toPrecision(2))) : "";
+  const power = Math.round(Math.log10(value)),
+    superscript = (n) => String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
+  if (Math.abs(Math.log10(value) - power) > 1e-6)
+    return max < 30 * min ? String(Number(value.toPrecision(2))) : "";
   return power >= -2 && power <= 3 ? String(Number(value.toPrecision(2))) : `10${superscript(power)}`;
 }
 
 function axis({ label, log, min, max, ticks }, isWhole = true) {
   const given = new Map(ticks.map((t) => [t.at, t.label]));
   return {
-    ...(given.size ? { afterBuildTicks: (a) => { a.ticks = ticks.map((t) => ({ value: t.at })); } } : log ? { afterBuildTicks: ticksWithin } : {}),
+    ...(given.size ? { afterBuildTicks: (a) => { a.ticks = ticks.map((t) => ({ value: t.at })); } }
+      : log ? { afterBuildTicks: ticksWithin } : {}),
     ...(max > min ? { min, max } : {}),
-    type: log ? "logarithmic" : "linear", bounds: "data", title: { display: true, text: label, color: style("--soft") },
+    type: log ? "logarithmic" : "linear", bounds: "data",
+    title: { display: true, text: label, color: style("--soft") },
     grid: { color: style("--grid"), borderColor: style("--line") },
     ticks: {
       color: style("--soft"), maxRotation: 0, precision: log || !isWhole ? undefined : 0,
-      ...(given.size ? { callback: (value) => given.get(value) } : log ? { callback(value) { return logLabel(value, this); } } : {}),
+      ...(given.size ? { callback: (value) => given.get(value) } : log
+        ? { callback(value) { return logLabel(value, this); } } : {}),
     },
   };
 }
@@ -141,7 +158,8 @@ function axis({ label, log, min, max, ticks }, isWhole = true) {
 function nearestFrame(key, value) {
   let best = -1;
   data.frames.forEach((f, i) => {
-    if (f[key] >= 0 && (best < 0 || Math.abs(f[key] - value) < Math.abs(data.frames[best][key] - value))) best = i;
+    const far = (frame) => Math.abs(frame[key] - value);
+    if (f[key] >= 0 && (best < 0 || far(f) < far(data.frames[best]))) best = i;
   });
   return best;
 }
@@ -150,7 +168,8 @@ function nearestFrame(key, value) {
 function seen(colour) {
   const parts = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
   const light = (rgb) => {
-    const [r, g, b] = rgb.map((x) => (x / 255 <= 0.03928 ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4));
+    const linear = (x) => (x <= 0.03928 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4),
+      [r, g, b] = rgb.map((x) => linear(x / 255));
     return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
   };
   const from = parts(colour), ink = parts(style("--ink")), card = light(parts(style("--card")));
@@ -188,33 +207,44 @@ function makeRoom(spec, canvas, width) {
 
 function makeChart(spec, canvas) {
   const colours = spec.series.map((s, i) => seen(s.colour || style(`--s${i % 7}`)));
-  const scatter = spec.series.some((s) => s.line === "none"), shaped = spec.series.some((s) => s.shape && s.shape !== "none");
+  const scatter = spec.series.some((s) => s.line === "none"),
+    shaped = spec.series.some((s) => s.shape && s.shape !== "none");
   const radius = (s) => (s.shape === "none" ? 0 : scatter ? 4 : s.data.length > 80 ? 0 : 2.2);
   const stacked = spec.series.some((s) => s.line === "bars");
   const datasets = spec.series.map((s, i) => ({
-    ...(s.line === "bars" ? { type: "bar", stack: "bars", grouped: false, barPercentage: 1, categoryPercentage: 0.9 } : {}),
-    label: s.label, data: s.data, borderColor: colours[i], backgroundColor: colours[i], borderWidth: s.line === "bars" ? 0 : 1.8,
-    stepped: s.line === "steps" ? "before" : false, showLine: s.line !== "none", borderDash: s.line === "dashed" ? [5, 4] : [],
-    pointRadius: radius(s), pointHitRadius: radius(s) || !scatter ? 8 : 0, pointStyle: s.shape === "none" ? "line" : s.shape || "circle", clip: 12,
+    ...(s.line === "bars"
+      ? { type: "bar", stack: "bars", grouped: false, barPercentage: 1, categoryPercentage: 0.9 } : {}),
+    label: s.label, data: s.data, borderColor: colours[i], backgroundColor: colours[i],
+    borderWidth: s.line === "bars" ? 0 : 1.8,
+    stepped: s.line === "steps" ? "before" : false, showLine: s.line !== "none",
+    borderDash: s.line === "dashed" ? [5, 4] : [],
+    pointRadius: radius(s), pointHitRadius: radius(s) || !scatter ? 8 : 0, pointStyle: s.shape === "none"
+        ? "line" : s.shape || "circle", clip: 12,
   }));
-  const bars = spec.series.flatMap((s) => s.data.filter((p) => p.high !== undefined).map((p) => p.high)); // error bars
+  const ends = spec.series.flatMap((s) => s.data.flatMap((p) => p.high ?? [])), // of error bars
+    whole = spec.series.every((s) => s.data.every((p) => Number.isInteger(p.y)));
   const room = makeRoom(spec, canvas, canvas.parentElement.clientWidth);
   const chart = new Chart(canvas, {
     type: scatter ? "scatter" : "line", data: { datasets }, plugins: [marksPlugin],
     options: {
       animation: false, parsing: false, normalized: true, maintainAspectRatio: false,
       interaction: { mode: scatter ? "nearest" : "index", intersect: false },
-      scales: { x: { ...axis(spec.x), ...(stacked ? { offset: true } : {}) }, y: { ...axis(spec.y, spec.series.every((s) => s.data.every((p) => Number.isInteger(p.y)))), stacked, bounds: "ticks", beginAtZero: !spec.y.log, ...(bars.length ? { suggestedMax: Math.max(...bars) } : {}) } },
+      scales: { x: { ...axis(spec.x), ...(stacked ? { offset: true } : {}) },
+          y: { ...axis(spec.y, whole), stacked, bounds: "ticks", beginAtZero: !spec.y.log,
+              ...(ends.length ? { suggestedMax: Math.max(...ends) } : {}) } },
       plugins: {
         legend: {
           display: hasLegend(spec), position: "bottom", maxHeight: room,
-          labels: { color: style("--ink"), boxWidth: 14, boxHeight: shaped ? 6 : 2, usePointStyle: shaped, filter: (item) => item.text },
+          labels: { color: style("--ink"), boxWidth: 14, boxHeight: shaped ? 6 : 2, usePointStyle: shaped,
+              filter: (item) => item.text },
         },
         decimation: { enabled: !scatter, algorithm: "min-max" },
         tooltip: { callbacks: {
-          title: (items) => (!items.length ? "" : items[0].raw.note ? items[0].dataset.label : `${spec.x.label} ${items[0].parsed.x.toLocaleString()}`),
+          title: ([item]) => (!item ? "" : item.raw.note ? item.dataset.label
+              : `${spec.x.label} ${item.parsed.x.toLocaleString()}`),
           label: ({ raw, dataset, formattedValue }) =>
-            raw.note ? raw.note.split("\n") : `${dataset.label}: ${formattedValue}${raw.high === undefined ? "" : `, ${raw.low} to ${raw.high}`}`,
+            raw.note ? raw.note.split("\n") : `${dataset.label}: ${formattedValue}` +
+                (raw.high === undefined ? "" : `, ${raw.low} to ${raw.high}`),
         } },
       },
       onResize(chart, size) {

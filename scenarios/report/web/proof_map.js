@@ -26,7 +26,8 @@ class MapAxis {
 /** The cells of a step's last traversal, by event, made as in proof_map.cpp. */
 class MapCells {
   constructor(scene, events, step) {
-    Object.assign(this, { events, list: [], visits: new Map(), tests: new Map(), open: new Set(scene.map.open) });
+    const open = new Set(scene.map.open);
+    Object.assign(this, { events, list: [], visits: new Map(), tests: new Map(), open });
     const first = events.firstOfStep[step],
       end = events.endOfStep(step);
     this.complete = events.id(end - 1) - events.id(first) === end - 1 - first;
@@ -108,14 +109,15 @@ class MapCells {
   }
 }
 
-/** Returns the largest gap of two boxes along a face normal, {gap, axis}. Boxes: centre and half axes, world. */
+/** Returns the largest gap of two boxes, centre and half axes in the world, along a normal: {gap, axis}. */
 function separation(boxes) {
   const way = boxes[1][0].clone().sub(boxes[0][0]),
     halves = boxes.flatMap(([, ...half]) => half);
   const axes = halves.map((half, i) => {
     const n = half.clone().normalize(),
       reach = halves.reduce((sum, h) => sum + Math.abs(n.dot(h)), 0);
-    return { gap: Math.abs(n.dot(way)) - reach, axis: `axis ${(i % 3) + 1} of ${SIDES[i < 3 ? 0 : 1]}\u2019s box` };
+    return { gap: Math.abs(n.dot(way)) - reach,
+        axis: `axis ${(i % 3) + 1} of ${SIDES[i < 3 ? 0 : 1]}\u2019s box` };
   });
   return axes.reduce((p, q) => (q.gap > p.gap ? q : p));
 }
@@ -126,7 +128,8 @@ export class ProofMap {
     Object.assign(this, { scene, events, selection, view, key: "", window: [0, 0, 1] });
     const label = "Proof map: all pairs of faces, by the test that decided them",
       whole = textButton("whole", () => this.zoom([0, 0], [0, 0], 1), "Show all pairs; the wheel enlarges");
-    this.canvas = element("canvas", { style: "flex:none;cursor:crosshair", role: "img", "aria-label": label });
+    const look = "flex:none;cursor:crosshair";
+    this.canvas = element("canvas", { style: look, role: "img", "aria-label": label });
     this.words = element("p", { class: "note", style: "min-height:4.5em;max-width:60ch" });
     this.legend = element("table");
     const side = element("div", {}, element("p", { class: "parts" }, whole), this.words, this.legend);
@@ -231,7 +234,8 @@ export class ProofMap {
       nodes = this.events.about(now, "node").map((n) => n.number),
       range = (name) => nodes.map((n, side) => axes[side][name][n]),
       marked = this.pointed || (nodes.length && { low: range("low"), high: range("high") }),
-      wrong = this.events.wrong[this.events.step(now)].map((w) => w.simplices.map((s, side) => axes[side].rank[s])),
+      wrong = this.events.wrong[this.events.step(now)]
+          .map((w) => w.simplices.map((s, side) => axes[side].rank[s])),
       frames = wrong.map((low) => [{ low, high: low.map((x) => x + 1) }, this.scene.colours.wrong]);
     for (const [cell, colour] of marked ? [...frames, [marked, style("--ink")]] : frames) {
       const [x0, x1, y0, y1] = this.rectangle({ argument: CONTACT, ...cell }, size);
@@ -266,7 +270,8 @@ export class ProofMap {
     const row = (name, n, { colour, pale } = { colour: "transparent", pale: 0 }) => {
       const paint = `color-mix(in srgb, var(--card) ${100 * pale}%, ${colour}), ${colour}`,
         look = `display:inline-block;width:2.2em;height:.8em;background:linear-gradient(to right, ${paint})`,
-        cells = [element("i", { style: look }), name, digits(n), `${Number((100 * n / pairs).toPrecision(2))} %`];
+        cells = [element("i", { style: look }), name, digits(n),
+            `${Number((100 * n / pairs).toPrecision(2))} %`];
       return element("tr", {}, ...cells.map((cell, i) => element("td", { class: i > 1 ? "n" : "" }, cell)));
     };
     this.legend.replaceChildren(
@@ -280,7 +285,8 @@ export class ProofMap {
   find(at, last) {
     const { list, axes } = this.cells || { list: [] },
       holds = ({ low, high }) =>
-        [at[1], at[0]].every((x, side) => low[side] <= x * axes[side].size && x * axes[side].size < high[side]);
+        [at[1], at[0]]
+            .every((x, side) => low[side] <= x * axes[side].size && x * axes[side].size < high[side]);
     return list.findLast((cell) => cell.event <= last && holds(cell));
   }
 
@@ -306,11 +312,13 @@ export class ProofMap {
 
   text({ low, high, event, argument, nodes, pairs }) {
     const name = `${this.scene.map.arguments[argument].name}.`,
-      [what, two] = isPoint(argument) ? ["Triangles", [this.events.a[event], this.events.b[event]]] : ["Nodes", nodes],
+      [what, two] = isPoint(argument) ? ["Triangles", [this.events.a[event], this.events.b[event]]]
+          : ["Nodes", nodes],
       sizes = high.map((x, side) => digits(x - low[side])).join(" \u00d7 "),
       [a, b] = two.map(digits),
       apart = argument <= NODE_BOXES ? this.apart(nodes) : "";
-    return `Event ${digits(this.events.id(event))}. ${what} ${a} of A, ${b} of B; ${sizes} = ${plural(pairs, "pair")}: ${name} ${apart}`;
+    return `Event ${digits(this.events.id(event))}. ${what} ${a} of A, ${b} of B; ` +
+      `${sizes} = ${plural(pairs, "pair")}: ${name} ${apart}`;
   }
 
   /** Says along which axis the boxes of two nodes are disjoint; empty: not known. */
@@ -320,7 +328,8 @@ export class ProofMap {
       const first = 12 * body.boxes.node.indexOf(nodes[side]),
         part = (k) => new THREE.Vector3(...body.boxes.places.subarray(first + k, first + k + 3)),
         centre = part(0).applyMatrix4(group.matrix);
-      return first < 0 ? null : [centre, ...[3, 6, 9].map((k) => part(0).add(part(k)).applyMatrix4(group.matrix).sub(centre))];
+      return first < 0 ? null
+          : [centre, ...[3, 6, 9].map((k) => part(0).add(part(k)).applyMatrix4(group.matrix).sub(centre))];
     });
     if (boxes.includes(null)) return "";
     const { gap, axis } = separation(boxes);

@@ -79,12 +79,12 @@ class TraceReader {
     Object.assign(this, { scene, metadata, kinds });
     this.kindByName = new Map(kinds.map((k, i) => [k.name, i]));
     this.words = [];
-    this.parts = new Map((scene.work ? scene.work.outcomes : []).map((o, i) => [`${o.phase}: ${o.outcome}`, i]));
+    this.parts = new Map((scene.work?.outcomes || []).map((o, i) => [`${o.phase}: ${o.outcome}`, i]));
     this.walk = metadata.request.recursion === "complete" ? "walk of the bodies" : "recursion";
   }
 
   columns(slices) {
-    const names = ["kind", "side", "meet", "a", "b", "cause", "boundary", "depthA", "depthB", "outcome", "work"],
+    const names = "kind side meet a b cause boundary depthA depthB outcome work".split(" "),
       out = Object.fromEntries(names.map((name) => [name, new Uint32Array(slices.length)])),
       steps = [];
     for (const slice of slices) {
@@ -157,7 +157,8 @@ class TraceReader {
     const of = (phase, outcome) => this.parts.get(`${phase}: ${outcome}`) ?? NONE;
     switch (kind) {
       case "node pair":
-        return of(this.walk, args.step === "leaves" ? (this.scene.engine ? "boxes of leaves" : "boxes and planes of faces") : "boxes of nodes");
+        return of(this.walk, args.step === "leaves"
+            ? (this.scene.engine ? "boxes of leaves" : "boxes and planes of faces") : "boxes of nodes");
       case "plane test":
         return of(this.walk, "boxes and planes of faces");
       case "face test":
@@ -202,7 +203,8 @@ class Together {
     document.documentElement.classList.add("alone");
     view.camera.controls.addEventListener("change", () => this.tell({ camera: view.camera.json() }));
     selection.listeners.push((what) => what === "event" && this.tell({ step: this.step }));
-    window.addEventListener("message", (e) => e.source === parent && e.data.lrbscope && this.hear(e.data.lrbscope));
+    window.addEventListener("message", (e) => e.source === parent && e.data.lrbscope
+        && this.hear(e.data.lrbscope));
     this.tell({ camera: view.camera.json(), step: this.step }); // the view that is created last sets both
   }
 
@@ -222,8 +224,7 @@ class Together {
     this.listening = false;
   }
 
-  /** Selects a region, and fills the view with it, just after it was made or before it is refined; null: none is
-      selected. */
+  /** Selects a region, and frames it just after it was made or before it is refined; null: selects none. */
   showRegion(region) {
     const { events, selection, view } = this;
     if (region === null) return selection.pick(null);
@@ -314,7 +315,8 @@ function startScene() {
   byId("picked-events").onclick = listPicked;
   byId("help-open").onclick = toggleHelp;
   followPage(events, selection);
-  listenToKeys({ ...keysOf(timeline, table, selection, controls), ...keysOfTabs(tabs, listPicked), ...(attempts ? keysOfAttempts(attempts) : {}) });
+  const keys = { ...keysOf(timeline, table, selection, controls), ...keysOfTabs(tabs, listPicked) };
+  listenToKeys(attempts ? { ...keys, ...keysOfAttempts(attempts) } : keys);
   if (controls && events.passes) {
     controls.colourBy("region");
     view.opened = { ...view.now };
@@ -326,7 +328,8 @@ function startScene() {
   const address = new PageAddress({ events, selection, view, controls, tabs });
   if (location.hash.length > 1) address.read();
   if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events);
-  return { scene, events, map, selection, wrappers, timeline, table, filter, form, panel, why, work, attempts, view, controls, loader, strip, tabs, address };
+  return { scene, events, map, selection, wrappers, timeline, table, filter, form, panel, why, work,
+      attempts, view, controls, loader, strip, tabs, address };
 }
 
 /** Removes the elements about queries if a construction is shown, and vice versa. */
@@ -358,7 +361,8 @@ function openView(scene, selection, wrappers, why) {
 function markAbout(events, selection) {
   const { picked } = selection, about = [];
   for (let i = 0; picked && i < events.count; i++) if (concernsPicked(events, i, picked)) about.push(i);
-  moment.about = { event: about.map((i) => events.id(i)), step: [...new Set(about.map((i) => events.stepNumber(i)))] };
+  moment.about = { event: about.map((i) => events.id(i)),
+      step: [...new Set(about.map((i) => events.stepNumber(i)))] };
   tell();
 }
 

@@ -1,12 +1,12 @@
 import { byId, digits, element, linkRow, short } from "./dom.js";
 import { grouped, lastAtMost, NONE, outcomeText, unpack } from "./scene_run.js";
 
-// ---- the attempts of a builder to cover parts of the front with caps, and the places where they were made, as in
-// scenarios/record/attempts.hpp
+// ---- the attempts of a builder to cover parts of the front with caps, and the places where they were made,
+// as in scenarios/record/attempts.hpp
 
 const ACCEPTED = "accepted"; // the verdict
 export class Attempts {
-  /** `json`: {counts, vertices, verdicts}: the interior vertices of each patch on the page, and what verdicts mean. */
+  /** `json`: {counts, vertices, verdicts}: the interior vertices of each patch, and what verdicts mean. */
   constructor(events, json) {
     this.events = events;
     this.body = events.bodies[0];
@@ -50,7 +50,8 @@ export class Attempts {
     }
     this.atVertex = new Map();
     for (const attempt of this.list)
-      for (const v of this.placesOf(attempt)) this.atVertex.set(v, [...(this.atVertex.get(v) || []), attempt]);
+      for (const v of this.placesOf(attempt))
+        this.atVertex.set(v, [...(this.atVertex.get(v) || []), attempt]);
     this.cache = { key: "", list: [], events: new Set() };
   }
 
@@ -75,20 +76,23 @@ export class Attempts {
   coveredBy(region) {
     const { body } = this,
       kept = new Set([...body.lids(region)].flatMap((f) => [...body.face(f)]));
-    return [...new Set([...body.floor(region)].flatMap((f) => [...body.face(f)]))].filter((v) => !kept.has(v));
+    return [...new Set([...body.floor(region)].flatMap((f) => [...body.face(f)]))]
+        .filter((v) => !kept.has(v));
   }
   /** Returns the region that covers a vertex; NONE: the outermost wrapper has it. */
   coverOf(vertex) {
     const regions = this.around(vertex).flatMap((f) => [this.body.inner[f], this.body.outer[f]]);
-    return [...new Set(regions)].find((r) => r < this.body.regionCount && this.coveredBy(r).includes(vertex)) ?? NONE;
+    return [...new Set(regions)].find((r) => r < this.body.regionCount && this.coveredBy(r).includes(vertex))
+        ?? NONE;
   }
 
-  /** Returns the attempts at a selected vertex, face or region, in order, and the set of their events: {list, events}. */
+  /** Returns the attempts at a selected vertex, face or region, and the set of their events. */
   there(picked) {
     const key = picked && this.body.complete ? `${picked.vertex} ${picked.face} ${picked.region}` : "";
     if (this.cache.key !== key) {
       const list = key ? this.find(picked) : [];
-      this.cache = { key, list, events: new Set(list.flatMap((a) => [a.patch, a.cap, ...a.regions.map((r) => r.event)])) };
+      this.cache = { key, list,
+          events: new Set(list.flatMap((a) => [a.patch, a.cap, ...a.regions.map((r) => r.event)])) };
     }
     return this.cache;
   }
@@ -116,10 +120,11 @@ export class Attempts {
     return inOrder(new Set([...among(this.coveredBy(region)), ...(maker ? [maker] : [])]));
   }
 
-  /** Returns the faces of an attempt's patch that are on the front after the current event: [{side, face}]. */
+  /** Returns the faces of an attempt's patch on the front after the current event: [{side, face}]. */
   facesOf(attempt, wrappers) {
     if (attempt.whole && !attempt.vertices.length) return [];
-    const faces = new Set([...(attempt.vertices.length ? attempt.vertices : [attempt.vertex])].flatMap((v) => this.around(v)));
+    const { vertices, vertex } = attempt,
+      faces = new Set([...(vertices.length ? vertices : [vertex])].flatMap((v) => this.around(v)));
     return [...faces].filter((f) => wrappers.onBoundary(0, f)).map((face) => ({ side: 0, face }));
   }
 
@@ -207,7 +212,8 @@ export class AttemptPanel {
     const [faces, covered] = [events.a[attempt.cap], events.b[attempt.cap]];
     cell(pass ? pass.words.split(":")[0].replace("pass ", "") : "", true, pass ? pass.words : "");
     cell(digits(events.b[attempt.patch]), true, "faces of the patch");
-    cell(covered ? `${digits(faces)} for ${digits(covered)}` : "none", false, "faces of the cap, for the faces of the front that it replaces");
+    cell(covered ? `${digits(faces)} for ${digits(covered)}` : "none", false,
+        "faces of the cap, for the faces of the front that it replaces");
     cell(outcomeText(events, attempt.cap), false, "").append(element("small", {}, attempts.reason(attempt)));
     linkRow(row, () => this.show(attempt));
     row.attempt = attempt;
@@ -228,6 +234,6 @@ export class AttemptPanel {
     byId("attempt-after").setAttribute("aria-pressed", Boolean(after));
     byId("attempt-after").disabled = !current.regions.length;
     byId("attempt-kept").textContent = !current.rejected ? ""
-      : "Rejected: the front stays as it is. The trace has the patch and the sizes of the cap, not its shape.";
+      : "Rejected: the front stays as it is. The trace has the patch and the size of the cap, not its shape.";
   }
 }

@@ -1,4 +1,4 @@
-import { boxEdges, fadingLines, WHITE } from "./scene_lines.js";
+import { boxEdges, fadingLines, HOLES, holeUniforms, WHITE } from "./scene_lines.js";
 import { NONE } from "./scene_run.js";
 
 // ---- counters as colours: one number for each face, on a scale common to both bodies
@@ -41,7 +41,7 @@ export class Colours {
     this.bodies = json.bodies.map(rgb);
     this.scale = json.scale.map(rgb);
     this.categories = json.categories.map(rgb);
-    for (const name of ["contact", "refining", "underTest", "selected", "ink", "wrong", "separationVector"]) this[name] = rgb(json[name]);
+    for (const n of ["contact", "refining", "underTest", "selected", "ink", "wrong"]) this[n] = rgb(json[n]);
     this.stops = json.scale;
     this.edgeInk = rgb(json.edgeInk);
     this.shares = json.shares; // interpolation weights: of edges towards edgeInk, of pale faces towards white
@@ -90,9 +90,9 @@ export class Colours {
               ),
         key: null,
       };
-    // The scale ends at the number that 99 of 100 counted faces do not exceed: few outliers would hide the others.
-    const counted = counts.flatMap((values) => [...values].filter((v) => v > 0)).sort((x, y) => x - y),
-      most = counted.length ? counted[Math.floor(0.99 * (counted.length - 1))] : 0,
+    // The scale ends at what 99 of 100 counted faces do not exceed: few outliers would hide the others.
+    const counted = counts.flatMap((values) => [...values.filter((v) => v > 0)]).sort((x, y) => x - y),
+      most = counted.length ? counted[Math.ceil(0.99 * counted.length) - 1] : 0,
       top = counted.length ? counted[counted.length - 1] : 0;
     return {
       of: (side, face) => counts[side][face] > 0 ? this.onScale(counts[side][face] / most)
@@ -113,15 +113,8 @@ export class FaceMesh {
       : faces.reduce((n, f) => n + Math.max(0, body.offsets[f + 1] - body.offsets[f] - 2), 0);
     this.faceOf = new Uint32Array(this.triangles); // of each triangle
     const positions = new Float32Array(9 * this.triangles), normals = new Float32Array(9 * this.triangles);
-    let t = 0;
     if (this.flat) faces.forEach((face, k) => this.faceOf.fill(face, 2 * k, 2 * k + 2));
-    faces.forEach((face, k) => {
-      if (this.flat) return;
-      for (const corners of body.trianglesOf(face)) {
-        this.faceOf[t] = face;
-        this.place(positions, normals, 9 * t++, [...corners], shifts ? shifts[k] : [0, 0, 0]);
-      }
-    });
+    else this.placeAll(faces, shifts, positions, normals);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
     geometry.setAttribute("normal", new THREE.BufferAttribute(normals, 3));
@@ -130,18 +123,22 @@ export class FaceMesh {
     this.mesh.userData.faces = this;
   }
 
-  place(positions, normals, at, corners, shift) {
-    const v = this.body.vertices,
-      p = corners.map((c) => [0, 1, 2].map((i) => v[3 * c + i] + shift[i]));
-    const u = [0, 1, 2].map((i) => p[1][i] - p[0][i]),
-      w = [0, 1, 2].map((i) => p[2][i] - p[0][i]);
-    const n = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]],
-      length = Math.hypot(...n) || 1;
-    for (let c = 0; c < 3; c++)
-      for (let i = 0; i < 3; i++) {
-        positions[at + 3 * c + i] = p[c][i];
-        normals[at + 3 * c + i] = n[i] / length;
+  /** Writes the corners and normals of all triangles, without arrays for each: there may be 300,000. */
+  placeAll(faces, shifts, positions, normals) {
+    const { body } = this, { vertices: v, offsets } = body;
+    let at = 0;
+    for (let k = 0; k < faces.length; k++) {
+      const face = faces[k], count = offsets[face + 1] - offsets[face] - 2, shift = shifts?.[k] || [0, 0, 0];
+      for (let i = 0; i < count; i++, at += 9) {
+        this.faceOf[at / 9] = face;
+        for (let c = 0; c < 9; c++)
+          positions[at + c] = v[3 * body.cornerOf(face, i, (c / 3) | 0) + (c % 3)] + shift[c % 3];
+        const along = (c) => positions[at + c] - positions[at + (c % 3)],
+          normal = (i, j) => along(3 + i) * along(6 + j) - along(3 + j) * along(6 + i),
+          [x, y, z] = [normal(1, 2), normal(2, 0), normal(0, 1)], length = Math.hypot(x, y, z) || 1;
+        for (let c = 0; c < 9; c++) normals[at + c] = (c % 3 === 0 ? x : c % 3 === 1 ? y : z) / length;
       }
+    }
   }
 
   /** Widens the segments of a 2D body to strips of a width. */
@@ -156,7 +153,8 @@ export class FaceMesh {
         length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1,
         along = [((b[0] - a[0]) / length) * (width / 2), ((b[1] - a[1]) / length) * (width / 2)],
         // Slightly longer than the segment, so that strips join at corners.
-        corner = (end, s, t) => [end[0] + 0.7 * s * along[0] - t * along[1], end[1] + 0.7 * s * along[1] + t * along[0], 0];
+        corner = (end, s, t) =>
+            [end[0] + 0.7 * s * along[0] - t * along[1], end[1] + 0.7 * s * along[1] + t * along[0], 0];
       const [w, x, y, z] = [corner(a, -1, -1), corner(b, 1, -1), corner(b, 1, 1), corner(a, -1, 1)];
       position.array.set([w, x, y, w, y, z].flat(), 18 * k);
       for (let i = 0; i < 6; i++) normal.array.set([0, 0, 1], 18 * k + 3 * i);
@@ -166,12 +164,13 @@ export class FaceMesh {
   }
 
   paint(colourOf) {
-    const colour = this.mesh.geometry.attributes.color;
-    for (let t = 0; t < this.triangles; t++) {
-      const c = colourOf(this.faceOf[t]);
-      for (let k = 0; k < 9; k++) colour.array[9 * t + k] = Math.round(255 * c[k % 3]);
+    const { color } = this.mesh.geometry.attributes, { array } = color;
+    let face = NONE, bytes = null;
+    for (let t = 0, k = 0; t < this.triangles; t++) {
+      if (this.faceOf[t] !== face) bytes = colourOf((face = this.faceOf[t])).map((c) => Math.round(255 * c));
+      for (const end = k + 9; k < end; k++) array[k] = bytes[k % 3];
     }
-    colour.needsUpdate = true;
+    color.needsUpdate = true;
   }
 
   /** Shows only the faces that pass. */
@@ -211,7 +210,8 @@ export function edgesOf(body, faces, rim = false) {
   const sorted = Float64Array.from(keys).sort(), out = [];
   for (let first = 0, end = 0; first < sorted.length; first = end) {
     while (end < sorted.length && sorted[end] === sorted[first]) end++;
-    if (!rim || end - first === 1 || body.dim === 2) out.push(Math.floor(sorted[first] / vertices), sorted[first] % vertices);
+    if (!rim || end - first === 1 || body.dim === 2)
+      out.push(Math.floor(sorted[first] / vertices), sorted[first] % vertices);
   }
   return out;
 }
@@ -303,16 +303,19 @@ export class BodyView {
   constructor(body, colours, lens) {
     Object.assign(this, { body, colours, lens, group: new THREE.Group(), pieces: [] });
     this.group.matrixAutoUpdate = false;
-    this.materials = BodyView.materialsOf(body.dim);
+    this.materials = BodyView.materialsOf(body.dim, lens);
     const range = (from, to) => Uint32Array.from({ length: to - from }, (_, i) => from + i),
       flat = body.dim === 2;
-    this.real = new FaceMesh(body, range(0, body.realCount), this.materials.real);
+    this.realFaces = range(0, body.realCount);
+    this.real = new FaceMesh(body, this.realFaces, this.materials.real);
     // In 2D the whole wrapper is one bold line, also where it is the body itself.
-    this.lids = new FaceMesh(body, range(flat ? 0 : body.realCount, body.faceCount), this.materials.lids);
+    this.lidFaces = range(flat ? 0 : body.realCount, body.faceCount)
+        .filter((f) => body.offsets[f] < body.offsets[f + 1]);
+    this.lids = new FaceMesh(body, this.lidFaces, this.materials.lids);
     this.lids.mesh.renderOrder = 1;
     this.lids.mesh.frustumCulled = false;
     this.group.add(this.real.mesh, this.lids.mesh);
-    this.put("edges", this.lines(flat ? [] : edgesOf(body, range(0, body.realCount)), 0.5));
+    this.put("edges", this.lines(flat ? [] : edgesOf(body, this.realFaces), 0.5));
     this.put("lidEdges", this.lines([], 0));
     this.measure();
     this.fills = flat ? this.makeFills() : null;
@@ -327,24 +330,26 @@ export class BodyView {
   }
 
   /** Returns thin lines along edges, pairs of corners. */
-  lines(edges, opacity) {
+  lines(edges, opacity, more) {
     const { vertices } = this.body, ends = new Float32Array(3 * edges.length);
-    edges.forEach((v, i) => ends.set(vertices.subarray(3 * v, 3 * v + 3), 3 * i));
-    return this.thin(ends, opacity);
+    for (let i = 0; i < ends.length; i++) ends[i] = vertices[3 * edges[(i / 3) | 0] + (i % 3)];
+    return this.thin(ends, opacity, more);
   }
-  thin(ends, opacity, depthWrite = false) {
-    const lines = fadingLines(ends, new THREE.Color(...this.colours.edge(this.body.side)), opacity, this.lens, depthWrite);
+  thin(ends, opacity, more) {
+    const colour = new THREE.Color(...this.colours.edge(this.body.side)),
+      lines = fadingLines(ends, colour, opacity, this.lens, more);
     lines.renderOrder = 2;
     return lines;
   }
 
   /** Returns the fills of a 2D body: of the solid, and under it, paler, of the wrapper. */
   makeFills() {
-    const { realCount, side } = this.body, colour = this.colours.bodies[side],
+    const { side } = this.body, colour = this.colours.bodies[side],
       fill = (shade, opacity, place) =>
         new FlatFill(this.body, shade, opacity, 2 * side + place, (0.02 - 0.005 * place) * this.radius);
-    const fills = { wrapper: fill(this.colours.lid(side), 0.8, 0), solid: fill(this.colours.solid(side), 0.85, 1) };
-    fills.solid.show(Array.from({ length: realCount }, (_, face) => face));
+    const fills = { wrapper: fill(this.colours.lid(side), 0.8, 0),
+        solid: fill(this.colours.solid(side), 0.85, 1) };
+    fills.solid.show([...this.realFaces]);
     for (const f of [fills.wrapper, fills.solid]) this.group.add(f.fan, f.sheet);
     return fills;
   }
@@ -364,9 +369,10 @@ export class BodyView {
     if (this.counted) this.counted.widen(4 * pixel);
   }
 
-  /** Returns the materials of faces. Lids are glass: nearly clear where they are seen from the front, visible where they
-      turn away, so that the body under them keeps its colour; `rim` 0: they are lit, and as opaque everywhere. */
-  static materialsOf(dim) {
+  /** Returns the materials of faces. Lids are glass: nearly clear where they are seen from the front, visible
+      where they turn away, so that the body under them keeps its colour; `rim` 0: they are lit, and as opaque
+      everywhere. They are cut open in front of contacts, with a line around the hole. */
+  static materialsOf(dim, lens) {
     const faces = (Material, before, more = {}) =>
         new Material({
           vertexColors: THREE.VertexColors, side: THREE.DoubleSide, polygonOffset: true,
@@ -377,15 +383,19 @@ export class BodyView {
       real: faces(THREE.MeshLambertMaterial, 2),
       lids: faces(THREE.ShaderMaterial, 1, {
         ...glass,
-        uniforms: { veil: { value: 1 }, rim: { value: 0 }, isPlane: { value: dim === 2 } },
+        uniforms: { veil: { value: 1 }, rim: { value: 0 }, isPlane: { value: dim === 2 },
+            ...holeUniforms(lens) },
         vertexShader: `
           varying vec3 tint;
           varying float facing;
+          varying vec3 seen;
           void main() {
             vec4 at = modelViewMatrix * vec4(position, 1.0);
             bool parallel = projectionMatrix[2][3] == 0.0;
-            facing = abs(dot(normalize(normalMatrix * normal), parallel ? vec3(0.0, 0.0, 1.0) : normalize(at.xyz)));
+            facing = abs(
+                dot(normalize(normalMatrix * normal), parallel ? vec3(0.0, 0.0, 1.0) : normalize(at.xyz)));
             tint = color;
+            seen = at.xyz;
             gl_Position = projectionMatrix * at;
           }`,
         fragmentShader: `
@@ -393,9 +403,14 @@ export class BodyView {
           uniform bool isPlane;
           varying vec3 tint;
           varying float facing;
+          ${HOLES}
           void main() {
+            float inside = intoHole();
+            if (inside > pixel) discard;
             float clear = isPlane ? 1.0 : mix(1.0, 0.06 + 0.94 * pow(1.0 - facing, 2.5), rim);
-            gl_FragColor = vec4(isPlane ? tint : tint * mix(0.6 + 0.45 * facing, 1.0, rim), veil * clear);
+            if (inside > -pixel) gl_FragColor = vec4(0.5 * tint, 0.6);
+            else gl_FragColor = vec4(isPlane ? tint : tint * mix(0.6 + 0.45 * facing, 1.0, rim),
+                veil * clear);
           }`,
       }),
       piece: faces(THREE.MeshLambertMaterial, 1),
@@ -411,7 +426,8 @@ export class BodyView {
       if (cell === NONE) outermost.push(face);
     });
     this.centroid = this.centroidOf(outermost);
-    this.extremes = this.reached = this.farthest((visit) => this.eachCorner(outermost, visit), outermost.length < 5e4 ? 2 : 1);
+    const most = outermost.length < 5e4 ? 2 : 1;
+    this.extremes = this.reached = this.farthest((visit) => this.eachCorner(outermost, visit), most);
     this.radius = 0;
     this.eachCorner(outermost, (x, y, z) => {
       this.radius = Math.max(
@@ -421,13 +437,14 @@ export class BodyView {
     });
   }
 
-  /** Returns the extreme points in some directions, to the points of a cube's surface with 2n + 1 points along an edge; `each`
-      calls its argument with every point. */
+  /** Returns the extreme points in some directions, to the points of a cube's surface with 2n + 1 points
+      along an edge; `each` calls its argument with every point. */
   farthest(each, n = 1) {
     const ways = [], range = Array.from({ length: 2 * n + 1 }, (_, i) => i - n);
     for (const x of range)
       for (const y of range)
-        for (const z of range) if (Math.max(Math.abs(x), Math.abs(y), Math.abs(z)) === n) ways.push([x, y, z]);
+        for (const z of range)
+          if (Math.max(Math.abs(x), Math.abs(y), Math.abs(z)) === n) ways.push([x, y, z]);
     const best = ways.map(() => [-Infinity, this.centroid]);
     each((x, y, z) =>
       ways.forEach((w, i) => {
@@ -480,11 +497,10 @@ export class BodyView {
 
   /** Shows the lids of the wrapper: its pseudo faces. */
   showLids(onBoundary) {
-    const { realCount, faceCount, dim } = this.body, shown = [];
+    const { realCount } = this.body, shown = [...this.lidFaces.filter(onBoundary)];
     this.lids.show(onBoundary);
-    for (let f = dim === 2 ? 0 : realCount; f < faceCount; f++) if (onBoundary(f)) shown.push(f);
     if (this.fills) this.fills.wrapper.show(shown);
-    else this.put("lidEdges", this.lines(edgesOf(this.body, shown), 0.25));
+    else this.put("lidEdges", this.lines(edgesOf(this.body, shown), 0.25, { opens: true }));
     this.lidCount = shown.filter((f) => f >= realCount).length;
   }
 
@@ -562,6 +578,6 @@ export class BodyView {
   showBoxes(depth) {
     const { depth: depths, places } = this.body.boxes,
       boxes = [...depths.keys()].filter((i) => depths[i] === depth);
-    this.put("boxLines", boxes.length ? this.thin(boxEdges(places, boxes), 0.8, true) : null);
+    this.put("boxLines", boxes.length ? this.thin(boxEdges(places, boxes), 0.8, { depthWrite: true }) : null);
   }
 }

@@ -59,8 +59,8 @@ export class SceneCamera {
     this.perspective.updateProjectionMatrix();
   }
 
-  /** Called before drawing: updates the range of depths to the distance. `slice`: the share of the bodies' depth, a
-      ball of this centre and radius, that is cut away in front. */
+  /** Called before drawing: updates the range of depths to the distance. `slice`: the share of the bodies'
+      depth, a ball of this centre and radius, that is cut away in front. */
   prepare({ centre, radius }, slice) {
     const d = this.distance;
     this.camera.updateMatrixWorld();
@@ -95,7 +95,8 @@ export class SceneCamera {
     const right = this.up.clone().cross(out).normalize(), up = out.clone().cross(right),
       slopeY = 0.94 * Math.tan(FIELD / 2),
       slopeX = slopeY * this.aspect, // the other axis is free
-      most = { right: -Infinity, left: -Infinity, top: -Infinity, bottom: -Infinity, near: -Infinity, far: Infinity };
+      most = { right: -Infinity, left: -Infinity, top: -Infinity, bottom: -Infinity, near: -Infinity,
+          far: Infinity };
     for (const p of points) {
       const [x, y, z] = [p.dot(right), p.dot(up), p.dot(out)];
       // moving towards the eye moves a point away from the centre
@@ -106,8 +107,10 @@ export class SceneCamera {
       most.near = Math.max(most.near, z);
       most.far = Math.min(most.far, z);
     }
-    const centre = right.multiplyScalar((most.right - most.left) / 2).addScaledVector(up, (most.top - most.bottom) / 2),
-      depth = Math.max((most.right + most.left) / 2 / slopeX, (most.top + most.bottom) / 2 / slopeY, most.near + 1e-6);
+    const centre = right.multiplyScalar((most.right - most.left) / 2)
+        .addScaledVector(up, (most.top - most.bottom) / 2),
+      depth = Math.max((most.right + most.left) / 2 / slopeX, (most.top + most.bottom) / 2 / slopeY,
+          most.near + 1e-6);
     this.controls.target.copy(centre).addScaledVector(out, (most.near + most.far) / 2);
     this.camera.position.copy(centre).addScaledVector(out, depth);
     this.flat.zoom = 1 / (this.distance * Math.tan(FIELD / 2));

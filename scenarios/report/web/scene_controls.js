@@ -176,6 +176,7 @@ export class ViewControls {
     if (!view.camera.plane) change("slice", (e) => this.slice(Number(e.value)));
     byId("ghost").onclick = () => this.toggle("ghost");
     byId("lids").onclick = () => this.toggle("lids");
+    if (!view.camera.plane) byId("open").onclick = () => this.toggle("open");
     byId("isolate").onclick = byId("picked-isolate").onclick = () => this.isolatePicked();
     byId("proof").onclick = () => this.toggle("why");
     if (!view.camera.plane) byId("orthographic").onclick = () => this.orthographic();
@@ -206,7 +207,8 @@ export class ViewControls {
     const { now, camera } = this.view, picked = this.selection.picked;
     for (const [id, on] of [
       ["ghost", now.ghost], ["lids", now.lids], ["isolate", Boolean(now.isolate)],
-      ...(camera.plane ? [] : [["orthographic", camera.orthographic]]), ["proof", now.why],
+      ...(camera.plane ? [] : [["orthographic", camera.orthographic], ["open", now.open]]),
+      ["proof", now.why],
     ])
       byId(id).setAttribute("aria-pressed", on);
     byId("isolate").disabled = !now.isolate && !(picked && picked.region !== NONE);
@@ -242,7 +244,7 @@ export class ViewControls {
   slice(share) {
     this.change({ slice: Math.max(0, Math.min(1, Number(share.toFixed(3)))) });
   }
-  /** Shows a region alone and fills the view with it; null: everything again, from where it was seen before. */
+  /** Shows a region alone and frames it; null: everything again, from where it was seen before. */
   isolate(region) {
     const { view } = this, { now, camera } = view;
     if (region && !now.isolate) this.seenFrom = { camera: camera.json(), fitted: camera.fitted };
@@ -289,7 +291,8 @@ export class ViewControls {
           d: () => view.camera.turn(turn, 0),
           e: () => view.camera.turn(0, turn),
           q: () => view.camera.turn(0, -turn),
-          c: (shift) => this.slice(view.now.slice + (shift ? -SLICE_BY : SLICE_BY)),
+          s: (shift) => this.slice(view.now.slice + (shift ? -SLICE_BY : SLICE_BY)),
+          z: () => this.toggle("open"),
         };
     return {
       ...ofSolids,

@@ -83,10 +83,10 @@ function concernsRegion(events, i, side, region) {
 
 /** Returns the name of a selected vertex, face or region. */
 export const placeText = (body, { vertex, face, region }) =>
-  vertex !== NONE ? `vertex ${digits(vertex)}` : face !== NONE ? body.faceText(face) : `region ${digits(region)}`;
+  vertex !== NONE ? `vertex ${digits(vertex)}` : face !== NONE ? body.faceText(face)
+      : `region ${digits(region)}`;
 
-/** Returns true if an event concerns the selected vertex, face or region; of a construction, if it is of an attempt
-    there. */
+/** Returns true if an event concerns the selection; of a construction, if it is of an attempt there. */
 export function concernsPicked(events, i, picked) {
   if (!picked) return false;
   if (events.attempts) return events.attempts.eventsAt(picked).has(i);
@@ -194,7 +194,8 @@ export class EventTable {
   line(row) {
     const i = this.rows[row], events = this.events, level = events.level(i),
       selected = i === this.selection.event,
-      line = element("div", { class: "row", role: "row", "aria-rowindex": row + 1, "aria-selected": selected });
+      line = element("div",
+          { class: "row", role: "row", "aria-rowindex": row + 1, "aria-selected": selected });
     line.classList.toggle("concerned", concernsPicked(events, i, this.selection.picked));
     line.dataset.event = i;
     const cause = events.cause[i];
@@ -269,7 +270,8 @@ export class FilterForm {
   showPicked(picked) {
     this.clear();
     const { attempts } = this.events;
-    if (attempts) this.filter.place = { name: placeText(attempts.body, picked), events: attempts.eventsAt(picked) };
+    if (attempts)
+      this.filter.place = { name: placeText(attempts.body, picked), events: attempts.eventsAt(picked) };
     else if (picked.face !== NONE)
       byId("filter-pair").value = picked.side === 0 ? `${picked.face},` : `,${picked.face}`;
     else {

@@ -6,32 +6,85 @@ function lineGeometry(ends) {
   const geometry = new THREE.BufferGeometry(), at = Float32Array.from(ends),
     span = new Float32Array(at.length / 3);
   for (let i = 0; i < span.length; i += 2)
-    span[i] = span[i + 1] = Math.hypot(at[3 * i] - at[3 * i + 3], at[3 * i + 1] - at[3 * i + 4], at[3 * i + 2] - at[3 * i + 5]);
+    span[i] = span[i + 1] = Math.hypot(at[3 * i] - at[3 * i + 3], at[3 * i + 1] - at[3 * i + 4],
+        at[3 * i + 2] - at[3 * i + 5]);
   geometry.setAttribute("position", new THREE.BufferAttribute(at, 3));
   geometry.setAttribute("span", new THREE.BufferAttribute(span, 1));
   return geometry;
 }
 
-/** Returns lines one pixel wide that fade where they are short on the screen, and with their distance. `lens`: size of
-    the picture and depths, kept by the view. */
-export function fadingLines(ends, colour, opacity, lens, depthWrite = false) {
+// ---- holes in wrappers, through which contacts are seen
+const MOST_HOLES = 8;
+
+/** The uniforms of HOLES. `lens`: see fadingLines(). */
+export const holeUniforms = ({ holes, holeCount, pixel }) => ({ holes, holeCount, pixel });
+
+/** Sets the holes: balls, {centre, radius} in the world; of many, the largest. */
+export function setHoles(lens, balls) {
+  const most = balls.sort((p, q) => q.radius - p.radius).slice(0, MOST_HOLES);
+  lens.holeCount.value = most.length;
+  most.forEach(({ centre, radius }, i) => lens.holes.value[i].set(centre.x, centre.y, centre.z, radius));
+}
+
+/** Returns a lens without holes; see BodiesCanvas. */
+export const lensOf = (size) => ({
+  size, depths: new THREE.Vector2(0, 1), pixel: { value: 1 }, holeCount: { value: 0 },
+  holes: { value: Array.from({ length: MOST_HOLES }, () => new THREE.Vector4()) },
+});
+
+/** Of a fragment shader: intoHole() returns how far the fragment, at `seen` before the camera, is inside of a
+    hole, which reaches from a ball, its back included, to the camera, as wide on the screen all the way. */
+export const HOLES = `
+  uniform vec4 holes[${MOST_HOLES}];
+  uniform int holeCount;
+  uniform float pixel;
+  uniform mat4 projectionMatrix;
+  varying vec3 seen;
+  float intoHole() {
+    float most = -1e9;
+    bool parallel = projectionMatrix[2][3] == 0.0;
+    for (int i = 0; i < ${MOST_HOLES}; i++) {
+      if (i >= holeCount) break;
+      vec3 centre = (viewMatrix * vec4(holes[i].xyz, 1.0)).xyz;
+      vec3 ahead = parallel ? vec3(0.0, 0.0, -1.0) : normalize(centre);
+      float depth = dot(seen, ahead), until = dot(centre, ahead);
+      vec3 aside = parallel ? seen - centre : (seen - depth * ahead) * until / max(depth, 1e-6);
+      float away = length(aside - ahead * dot(aside, ahead));
+      if (depth < until + holes[i].w) most = max(most, holes[i].w - away);
+    }
+    return most;
+  }`;
+
+/** Returns lines one pixel wide that fade where they are short on the screen, and with their distance.
+    `lens`: size of the picture and depths, kept by the view. `opens`: not drawn in holes. */
+export function fadingLines(ends, colour, opacity, lens, { depthWrite = false, opens = false } = {}) {
   const material = new THREE.ShaderMaterial({
-    uniforms: { colour: { value: colour }, opacity: { value: opacity }, size: { value: lens.size }, depths: { value: lens.depths } },
+    uniforms: {
+      colour: { value: colour }, opacity: { value: opacity }, size: { value: lens.size },
+      depths: { value: lens.depths }, ...holeUniforms(lens),
+    },
     vertexShader: `
       attribute float span;
       uniform vec2 size, depths;
-      varying float seen;
+      varying float shown;
+      varying vec3 seen;
       void main() {
         vec4 at = modelViewMatrix * vec4(position, 1.0);
         gl_Position = projectionMatrix * at;
+        seen = at.xyz;
         float pixels = span * projectionMatrix[1][1] * size.y / 2.0 / gl_Position.w;
-        seen = smoothstep(3.0, 60.0, pixels) * mix(1.0, 0.15, clamp((-at.z - depths.x) / depths.y, 0.0, 1.0));
+        shown = smoothstep(3.0, 60.0, pixels) * mix(1.0, 0.15,
+            clamp((-at.z - depths.x) / depths.y, 0.0, 1.0));
       }`,
     fragmentShader: `
       uniform vec3 colour;
       uniform float opacity;
-      varying float seen;
-      void main() { gl_FragColor = vec4(colour, opacity * seen); }`,
+      varying float shown;
+      ${HOLES}
+      void main() {
+        if (${opens} && intoHole() > 0.0) discard;
+        gl_FragColor = vec4(colour, opacity * shown);
+      }`,
     transparent: true,
     depthWrite,
   });
@@ -40,8 +93,8 @@ export function fadingLines(ends, colour, opacity, lens, depthWrite = false) {
   return lines;
 }
 
-/** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers for each line.
-    A line that starts where the one before it ends continues its dashes. */
+/** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers for
+    each line. A line that starts where the one before it ends continues its dashes. */
 export function thickLines(ends, material) {
   const count = ends.length / 6, at = new Float32Array(12 * count), other = new Float32Array(12 * count),
     side = new Float32Array(4 * count),
@@ -62,7 +115,8 @@ export function thickLines(ends, material) {
     index.set([0, 1, 2, 2, 1, 3].map((i) => 4 * l + i), 6 * l);
   }
   const geometry = new THREE.BufferGeometry();
-  for (const [name, array, size] of [["position", at, 3], ["other", other, 3], ["side", side, 1], ["along", along, 1]])
+  for (const [name, array, size] of [["position", at, 3], ["other", other, 3], ["side", side, 1],
+      ["along", along, 1]])
     geometry.setAttribute(name, new THREE.BufferAttribute(array, size));
   geometry.setIndex(new THREE.BufferAttribute(index, 1));
   const mesh = new THREE.Mesh(geometry, material);
@@ -70,8 +124,8 @@ export function thickLines(ends, material) {
   return mesh;
 }
 
-/** `lens`: see fadingLines(). `dash`: length of a dash and its gap in pixels; 0: no dashes. `hides`: bodies hide the line,
-    except where it is at most a few pixels behind their faces. */
+/** `lens`: see fadingLines(). `dash`: length of a dash and its gap in pixels; 0: no dashes. `hides`: bodies
+    hide the line, except where it is at most a few pixels behind their faces. */
 export function thickMaterial(colour, width, lens, { opacity = 1, dash = 0, hides = false } = {}) {
   return new THREE.ShaderMaterial({
     uniforms: {
@@ -90,7 +144,7 @@ export function thickMaterial(colour, width, lens, { opacity = 1, dash = 0, hide
         vec4 b = projectionMatrix * modelViewMatrix * vec4(other, 1.0);
         vec2 way = (b.xy / b.w - a.xy / a.w) * size;
         way = length(way) > 0.0 ? normalize(way) : vec2(1.0, 0.0);
-        a.xy += (vec2(-way.y, way.x) * side - 0.4 * way) * width / size * a.w; // a little longer, so that lines join
+        a.xy += (vec2(-way.y, way.x) * side - 0.4 * way) * width / size * a.w; // longer: lines join
         vec4 near = projectionMatrix * (at + vec4(0.0, 0.0, 4.0 * pixel, 0.0));
         a.z = near.z / near.w * a.w;
         on = along / pixel;
@@ -111,7 +165,7 @@ export function thickMaterial(colour, width, lens, { opacity = 1, dash = 0, hide
   });
 }
 
-/** Returns round points of a size in pixels with a rim, white or of another colour, seen through everything. */
+/** Returns round points of a size in CSS pixels, with a rim, seen through everything. */
 export function roundPoints(positions, colour, size, rim = WHITE) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(positions), 3));
@@ -120,7 +174,7 @@ export function roundPoints(positions, colour, size, rim = WHITE) {
     new THREE.ShaderMaterial({
       uniforms: {
         colour: { value: new THREE.Color(...colour) }, rim: { value: new THREE.Color(...rim) },
-        size: { value: size },
+        size: { value: size * Math.min(2, window.devicePixelRatio || 1) },
       },
       vertexShader: `
         uniform float size;

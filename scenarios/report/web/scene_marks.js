@@ -35,7 +35,8 @@ export class Marks {
       );
       rim.renderOrder = 6;
       if (!through)
-        Object.assign(rim.material, { depthTest: true, polygonOffset: true, polygonOffsetFactor: 0, polygonOffsetUnits: -40 });
+        Object.assign(rim.material,
+            { depthTest: true, polygonOffset: true, polygonOffsetFactor: 0, polygonOffsetUnits: -40 });
       view.group.add(mesh, rim);
       parts.push({ group: view.group, object: mesh }, { group: view.group, object: rim });
     });
@@ -49,7 +50,7 @@ export class Marks {
     this.clear(name);
     if (!at) return;
     const view = this.views[at.side],
-      disc = roundPoints(view.point(at.vertex), colour, 14 * Math.min(2, window.devicePixelRatio || 1), mixed(colour, this.colours.ink, 0.75));
+      disc = roundPoints(view.point(at.vertex), colour, 14, mixed(colour, this.colours.ink, 0.75));
     disc.renderOrder = 8;
     view.group.add(disc);
     this.shown.set(name, { key, parts: [{ group: view.group, object: disc }] });
@@ -185,15 +186,16 @@ export class WhyMarks {
   }
 }
 
+/** Returns a vector perpendicular to one of unit length. */
+const acrossTo = (n) => new THREE.Vector3(Math.abs(n.x) < 0.6, Math.abs(n.x) >= 0.6, 0).cross(n);
+
 /** Returns a square perpendicular to the line between two points, at its midpoint. `half`: from there to
     its corners. */
 function squareBetween(p, q, half) {
   const a = new THREE.Vector3(...p), b = new THREE.Vector3(...q), n = b.clone().sub(a);
   if (n.length() === 0) return [p, p, p, p];
   n.normalize();
-  const u = new THREE.Vector3(Math.abs(n.x) < 0.6 ? 1 : 0, Math.abs(n.x) < 0.6 ? 0 : 1, 0)
-      .cross(n)
-      .setLength(half),
+  const u = acrossTo(n).setLength(half),
     v = n.clone().cross(u),
     midpoint = a.add(b).multiplyScalar(0.5);
   return [u, v, u.clone().negate(), v.clone().negate()].map((way) => midpoint.clone().add(way).toArray());
@@ -220,7 +222,8 @@ export class MeasuredMarks {
         at = (i) => new THREE.Vector3(...ends.subarray(i, i + 3));
       unpack(measured.step).forEach((step, i) => {
         if (!this.ofStep.has(step)) this.ofStep.set(step, []);
-        this.ofStep.get(step).push({ kind: kinds[i], from: at(6 * i), to: at(6 * i + 3), words: measured.words[i] });
+        this.ofStep.get(step).push(
+            { kind: kinds[i], from: at(6 * i), to: at(6 * i + 3), words: measured.words[i] });
       });
     }
     view.stage.add(this.group);
@@ -273,19 +276,20 @@ export class MeasuredMarks {
       within = (v, half, size) => Math.max(half, Math.min(size - half, v));
     const places = [[x, top - h], [x, bottom + h], [left - w, y], [right + w, y]].map(([u, v]) => {
       const at = [within(u, w, width), within(v, h, height)];
-      return { at, far: Math.hypot(at[0] - x, at[1] - y) + 3 * Math.hypot(at[0] - u, at[1] - v) }; // those with room first
+      return { at, far: Math.hypot(at[0] - x, at[1] - y) + 3 * Math.hypot(at[0] - u, at[1] - v) }; // in it
     });
     const [u, v] = places.reduce((p, q) => (q.far < p.far ? q : p)).at;
     Object.assign(label.style, { left: `${u}px`, top: `${v}px` });
     const way = `rotate(${Math.atan2(y - v, x - u)}rad)`;
-    Object.assign(leader.style, { left: `${u}px`, top: `${v}px`, width: `${Math.hypot(x - u, y - v)}px`, transform: way });
+    Object.assign(leader.style,
+        { left: `${u}px`, top: `${v}px`, width: `${Math.hypot(x - u, y - v)}px`, transform: way });
   }
 }
 
 /** Returns the ends of an arrow's lines. */
 function arrowOf(from, to, dim) {
   const along = to.clone().sub(from), length = along.length(), n = along.clone().normalize(),
-    across = dim === 2 ? new THREE.Vector3(0, 0, 1).cross(n) : new THREE.Vector3(Math.abs(n.x) < 0.6 ? 1 : 0, Math.abs(n.x) < 0.6 ? 0 : 1, 0).cross(n);
+    across = dim === 2 ? new THREE.Vector3(0, 0, 1).cross(n) : acrossTo(n);
   across.setLength(0.11 * length);
   const sides = [across, across.clone().negate()];
   if (dim === 3) for (const s of sides.slice()) sides.push(n.clone().cross(s));
@@ -293,20 +297,19 @@ function arrowOf(from, to, dim) {
   return [from, to, ...sides.flatMap((side) => [back.clone().add(side), to])];
 }
 
-// ---- the curves along which the surfaces meet in the current step, over the wrappers: solid where they are seen, dashed
-// where a body hides them, as in frames
+// ---- the curves along which the surfaces meet in the current step, over the wrappers: solid where they are
+// seen, dashed where a body hides them, as in frames
 export class ContactCurves {
   /** `curves`: as the page has them; null: not known. */
   constructor(view, curves) {
-    Object.assign(this, { view, group: new THREE.Group(), shown: -1, count: 0, ofStep: new Map() });
+    Object.assign(this, { view, group: new THREE.Group(), shown: -1, now: [], ofStep: new Map() });
     view.stage.add(this.group);
     if (!curves) return;
     const [points, sizes, closed] = ["points", "size", "closed"].map((name) => unpack(curves[name]));
     let at = 0;
     unpack(curves.step).forEach((step, i) => {
       const number = view.events.stepNumbers[step],
-        own = Array.from({ length: sizes[i] }, (_, k) => [...points.subarray(3 * (at + k), 3 * (at + k) + 3)]);
-      at += sizes[i];
+        own = Array.from({ length: sizes[i] }, () => [...points.subarray(at, (at += 3))]);
       if (closed[i]) own.push(own[0]);
       this.ofStep.set(number, [...(this.ofStep.get(number) || []), own]);
     });
@@ -321,21 +324,23 @@ export class ContactCurves {
     const curves = this.ofStep.get(step) || [], { contact } = view.colours,
       ends = curves.flatMap((points) => points.slice(1).flatMap((p, i) => [...points[i], ...p])),
       hidden = view.events.dim === 3 ? [[WHITE, 5, 0.5, 0], [contact, 2.2, 0.85, 9]] : [];
-    this.count = curves.length;
+    this.now = curves;
     this.dashed = hidden.length > 0 && ends.length > 0;
     const add = (object) => {
       object.renderOrder = 7 + group.children.length;
       group.add(object);
     };
     if (ends.length) {
-      for (const [colour, width, opacity, dash] of hidden) add(thickLines(ends, thickMaterial(colour, width, view.lens, { opacity, dash })));
+      for (const [colour, width, opacity, dash] of hidden)
+        add(thickLines(ends, thickMaterial(colour, width, view.lens, { opacity, dash })));
       for (const [colour, width] of [[WHITE, 6], [contact, 3]])
         add(thickLines(ends, thickMaterial(colour, width, view.lens, { hides: view.events.dim === 3 })));
     }
     // Curves too small to be noticed, and single points, have a dot.
     const least = 0.01 * view.reach().radius,
-      small = curves.filter((points) => points.every((p) => Math.hypot(...p.map((x, i) => x - points[0][i])) < least));
-    if (small.length) add(roundPoints(small.flatMap((points) => points[0]), contact, 10 * Math.min(2, window.devicePixelRatio || 1)));
+      small = curves
+          .filter((points) => points.every((p) => Math.hypot(...p.map((x, i) => x - points[0][i])) < least));
+    if (small.length) add(roundPoints(small.flatMap((points) => points[0]), contact, 10));
   }
 }
 
@@ -394,17 +399,21 @@ export class Legend {
       withLids = bodies.filter((_, side) => views[side].lids.mesh.visible && views[side].lidCount);
     if (now.by === "kind")
       for (const { side } of withLids)
-        items.push([colours.lid(side), `pseudo faces${bodies.length > 1 ? ` of ${SIDES[side]}` : ""}`, colours.edge(side)]);
+        items.push([colours.lid(side), `pseudo faces${bodies.length > 1 ? ` of ${SIDES[side]}` : ""}`,
+            colours.edge(side)]);
     if (now.by === "region" && withLids.length)
-      items.push([colours.categories[0], `pseudo faces, a colour for each region${events.passes ? "; pale: of earlier passes" : ""}`]);
-    if (curves?.count && curves.group.visible) items.push([colours.contact, "contact", null, "line"]);
-    if (curves?.dashed && curves.group.visible) items.push([colours.contact, "contact, hidden", null, "dashed"]);
+      items.push([colours.categories[0],
+          `pseudo faces, a colour for each region${events.passes ? "; pale: of earlier passes" : ""}`]);
+    const { contact } = colours, seen = curves?.group.visible;
+    if (seen && curves.now.length > 0) items.push([contact, "contact", null, "line"]);
+    if (seen && curves.dashed) items.push([contact, "contact, hidden", null, "dashed"]);
     for (const [name, colour, words] of MARKED)
       if (marks.shown.get(name)?.parts.length)
         items.push(
           name === "tested" && events.kind[this.view.selection.event] === events.CONTACT
             ? [colours.contact, "intersecting pair"]
-            : [colours[colour], name === "refined" && events.passes ? "lids that are new in this pass" : words],
+            : [colours[colour], name === "refined" && events.passes ? "lids that are new in this pass"
+              : words],
         );
     return items;
   }
@@ -415,10 +424,12 @@ export class Legend {
     byId("scale").hidden = !key;
     if (!key) return;
     byId("scale-bar").style.background = `linear-gradient(to right, ${colours.stops.join(", ")})`;
-    byId("scale-most").textContent = key.top > key.most ? `\u2265 ${digits(key.most)} (at most ${digits(key.top)})` : digits(key.most);
+    byId("scale-most").textContent = key.top > key.most
+        ? `\u2265 ${digits(key.most)} (at most ${digits(key.top)})` : digits(key.most);
     const whose = bodies.length > 1 ? " of both bodies" : "";
     const when = now.scope === "run" ? "in the whole run" : "in this step so far";
     byId("scale-title").textContent = key.title || `${now.by} for each ${now.per}`;
-    byId("scale").title = key.title ? "" : `${now.by}, for each ${now.per}${whose}, ${when}. The scale ends where 99 % of the counted faces do`;
+    byId("scale").title = key.title ? ""
+        : `${now.by}, for each ${now.per}${whose}, ${when}; 99 % of the counted faces are on the scale`;
   }
 }

@@ -3,9 +3,9 @@ import { seek } from "./page.js";
 import { eventText, lastAtMost, NONE, SIDES } from "./scene_run.js";
 import { WORK_SORTS, workSort } from "./scene_work.js";
 
-// ---- the parts of the page of a run around its view: tabs, signs of scrolling, the picture of the cost, the address
+// ---- the page of a run around its view: tabs, signs of scrolling, the picture of the cost, the address
 
-const TAB_ORDER = ["Not as expected", "This step", "Events", "Work", "Proof map", "Steps", "Queries", "Charts"], // then all others
+const TAB_ORDER = "Not as expected,This step,Events,Work,Proof map,Steps,Queries,Charts".split(","),
   LAST_TABS = ["Frames", "Words", "Run"];
 
 /** Fades the edges of a box beyond which it can be scrolled. */
@@ -23,8 +23,8 @@ export function showMore(box) {
   return mark;
 }
 
-/** The parts of the page below the view, one at a time, closed until used. Without scripts, and in print, they follow each
-    other. */
+/** The parts of the page below the view, one at a time, closed until used. Without scripts, and in print,
+    they follow each other. */
 export class Tabs {
   constructor() {
     const groups = new Map();
@@ -39,7 +39,8 @@ export class Tabs {
     this.names = [...groups.keys()]
       .filter((name) => groups.get(name).some((part) => [...part.children].some((child) => !child.hidden)))
       .sort((p, q) => place(p) - place(q));
-    for (const [name, parts] of groups) if (!this.names.includes(name)) for (const part of parts) part.remove();
+    for (const [name, parts] of groups)
+      if (!this.names.includes(name)) for (const part of parts) part.remove();
     this.listeners = [];
     this.bar = element("div", { class: "tab-bar", role: "tablist" });
     this.body = element("div", { class: "tab-body" });
@@ -61,14 +62,16 @@ export class Tabs {
       this.show(this.names[at % this.names.length]);
       this.buttons.get(this.shown).focus();
     });
-    this.marks = [this.bar, this.body, ...this.body.querySelectorAll(".scroll, .charts, .event-rows")].map(showMore);
+    this.marks = [this.bar, this.body, ...this.body.querySelectorAll(".scroll, .charts, .event-rows")]
+        .map(showMore);
     if (byId("frames")) byId("frames").open = true;
     this.show("");
   }
 
   add(name, parts, i) {
     const id = `tab-${i}`,
-      button = element("button", { type: "button", id, role: "tab", title: i < 9 ? `Key ${i + 1}` : "" }, name),
+      button = element("button", { type: "button", id, role: "tab", title: i < 9 ? `Key ${i + 1}` : "" },
+          name),
       panel = element("div", { class: "tab-panel", role: "tabpanel", "aria-labelledby": id }, ...parts);
     button.onclick = () => this.toggle(name);
     this.bar.append(button);
@@ -98,7 +101,8 @@ export class Tabs {
     }
     this.body.scrollTop = this.body.scrollLeft = 0;
     const { bar } = this, button = this.buttons.get(name || this.names[0]);
-    if (button.offsetLeft < bar.scrollLeft || button.offsetLeft + button.offsetWidth > bar.scrollLeft + bar.clientWidth)
+    const right = button.offsetLeft + button.offsetWidth;
+    if (button.offsetLeft < bar.scrollLeft || right > bar.scrollLeft + bar.clientWidth)
       bar.scrollLeft = button.offsetLeft - 24;
     for (const mark of this.marks || []) mark();
     for (const listener of this.listeners) listener();
@@ -123,7 +127,8 @@ export function explainCells() {
     const row = cell.parentElement, head = row.closest("table").tHead?.rows[0].cells[cell.cellIndex];
     if (!head) return;
     const meaning = head.title ? `: ${head.title}` : "",
-      first = cell.cellIndex > 0 ? `, ${row.closest("table").tHead.rows[0].cells[0].textContent} ${row.cells[0].textContent}` : "";
+      first = cell.cellIndex > 0
+          ? `, ${row.closest("table").tHead.rows[0].cells[0].textContent} ${row.cells[0].textContent}` : "";
     cell.title = `${head.textContent}${first}${meaning}`;
   });
 }
@@ -142,8 +147,8 @@ export function printView(view) {
 
 // ---- at the top: what each step cost, and when the bodies meet; of a single body, how many faces it shows
 export class CostStrip {
-  /** `unit`: counted in the bars. `bars`: [{values, words, go}] with a value for each of `sorts`, [{name, colour}]; `contactStep`: index of
-      the bar of the first contact; -1: none. */
+  /** `unit`: counted in the bars. `bars`: [{values, words, go}] with a value for each of `sorts`, [{name,
+      colour}]; `contactStep`: index of the bar of the first contact; -1: none. */
   constructor({ title, unit, sorts, bars, contactStep = -1 }) {
     Object.assign(this, { title, unit, sorts, bars, contactStep, at: 0 });
     if (bars.length < 2) return;
@@ -158,8 +163,10 @@ export class CostStrip {
       sum = (b) => b.values.reduce((n, v) => n + v, 0),
       most = Math.max(1, ...bars.map(sum)),
       label = `${this.title}; a click selects one`,
-      svg = svgElement("svg", { viewBox: `0 0 ${width} ${height}`, preserveAspectRatio: "none", role: "img", "aria-label": label }),
-      step = width / bars.length;
+      viewBox = `0 0 ${width} ${height}`,
+      svg = svgElement("svg", { viewBox, preserveAspectRatio: "none", role: "img", "aria-label": label }),
+      step = width / bars.length,
+      contact = this.contactStep * step;
     const make = (name, parent, attributes) => parent.appendChild(svgElement(name, attributes));
     bars.forEach((bar, i) => {
       const group = make("g", svg, { class: "bar" });
@@ -173,14 +180,16 @@ export class CostStrip {
       bar.values.forEach((value, k) => {
         const h = (value / most) * 0.92 * height;
         top -= h;
-        if (h > 0) make("rect", group, { x: i * step, y: top, width: 0.88 * step, height: h }).style.fill = sorts[k].colour;
+        const box = { x: i * step, y: top, width: 0.88 * step, height: h };
+        if (h > 0) make("rect", group, box).style.fill = sorts[k].colour;
       });
       group.addEventListener("click", bar.go);
     });
     if (this.contactStep > 0)
-      make("line", svg, { x1: this.contactStep * step, x2: this.contactStep * step, y1: 0, y2: height, class: "contact" });
+      make("line", svg, { x1: contact, x2: contact, y2: height, class: "contact" });
     this.cursor = make("rect", svg, { y: 2, height: height - 4, width: Math.max(3, step), class: "cursor" });
-    const words = element("p", { title: `${this.title}; a click on a bar selects it` }, `up to ${digits(most)} ${this.unit}`);
+    const words = element("p", { title: `${this.title}; a click on a bar selects it` },
+        `up to ${digits(most)} ${this.unit}`);
     const addKey = (name) => {
       const dot = element("i");
       words.append(element("span", {}, dot, name));
@@ -211,7 +220,8 @@ export function stripOfRun(scene, events, selection, ofStep) {
         : bars.findIndex((b) => b.step === events.stepNumber(selection.event));
   const strip = new CostStrip({
     ...parts,
-    contactStep: scene.firstContact >= 0 ? bars.findIndex((b) => b.step === events.stepNumber(events.at(scene.firstContact))) : -1,
+    contactStep: scene.firstContact >= 0
+        ? bars.findIndex((b) => b.step === events.stepNumber(events.at(scene.firstContact))) : -1,
   });
   selection.listeners.push((what) => {
     if (what === "event" && bars.length) strip.mark(at());
@@ -222,7 +232,8 @@ export function stripOfRun(scene, events, selection, ofStep) {
 /** A bar for each step, divided by sorts of work. */
 function barsOfSteps(ofStep) {
   const bars = [...ofStep].map(([step, outcomes]) => {
-    const values = WORK_SORTS.map((sort) => outcomes.reduce((n, o) => n + (workSort(o) === sort ? o.operations : 0), 0));
+    const values = WORK_SORTS
+        .map((sort) => outcomes.reduce((n, o) => n + (workSort(o) === sort ? o.operations : 0), 0));
     return { step, values, words: `step ${digits(step)}`, go: () => seek("step", step) };
   });
   return { title: "operations in each step", unit: "operations", sorts: WORK_SORTS, bars };
@@ -230,7 +241,8 @@ function barsOfSteps(ofStep) {
 
 /** A bar for each pass of a construction, or each refinement. */
 function barsOfFaces(events, selection) {
-  const ends = [...events.kind.keys()].filter((i) => (events.passes ? events.kind[i] === events.PASS_END : events.changesWrapper(i)));
+  const ends = [...events.kind.keys()]
+      .filter((i) => (events.passes ? events.kind[i] === events.PASS_END : events.changesWrapper(i)));
   const bars = ends.map((i) => ({
     event: i,
     values: [events.boundary[i]],
@@ -238,7 +250,8 @@ function barsOfFaces(events, selection) {
     go: () => selection.goTo(i),
   }));
   return {
-    title: events.passes ? "faces of the front after each pass" : "faces of the wrapper after each refinement",
+    title: events.passes ? "faces of the front after each pass"
+        : "faces of the wrapper after each refinement",
     unit: "faces",
     sorts: [{ name: "faces", colour: "var(--work-boxes)" }],
     bars: events.bodies.length > 1 ? [] : bars,
@@ -267,12 +280,13 @@ export class PageAddress {
     const { events, selection, view, tabs } = this, parts = [`e${events.id(selection.event)}`],
       { picked, chosen } = selection;
     if (tabs.shown) parts.push(`tab=${encodeURIComponent(tabs.shown)}`);
-    if (picked)
-      parts.push(`pick=${SIDES[picked.side]}.${["vertex", "face", "region"].filter((sort) => picked[sort] !== NONE).map((sort) => `${sort}.${picked[sort]}`)[0]}`);
+    const sort = picked && ["vertex", "face", "region"].find((s) => picked[s] !== NONE);
+    if (picked) parts.push(`pick=${SIDES[picked.side]}.${sort}.${picked[sort]}`);
     if (chosen.every((s) => s !== NONE)) parts.push(`pair=${chosen.join(",")}`);
     if (view && !view.camera.fitted) {
       const { projection, eye, target } = view.camera.json();
-      parts.push(`camera=${projection},${[...eye, ...target].map((x) => Number(x.toPrecision(6))).join(",")}`);
+      const numbers = [...eye, ...target].map((x) => Number(x.toPrecision(6)));
+      parts.push(`camera=${[projection, ...numbers].join(",")}`);
     }
     const show = view ? this.layers() : [];
     if (tabs.tall) show.push("tall");
@@ -286,7 +300,7 @@ export class PageAddress {
     for (const name of Object.keys(opened)) {
       if (now[name] === opened[name]) continue;
       if (name === "isolate") out.push(`isolate:${SIDES[now.isolate.side]}.${now.isolate.region}`);
-      else out.push(typeof now[name] === "boolean" ? `${now[name] ? "" : "no-"}${name}` : `${name}:${now[name]}`);
+      else out.push(now[name] === true ? name : now[name] === false ? `no-${name}` : `${name}:${now[name]}`);
     }
     if (camera.fitted && camera.orthographic && !camera.plane) out.push("orthographic");
     return out;
@@ -323,7 +337,8 @@ export class PageAddress {
     if (!body || !body.complete) return;
     if (sort === "face" && number < body.faceCount) this.selection.pickFace(side, number);
     if (sort === "region" && number < body.regionCount) this.selection.pickRegion(side, number);
-    if (sort === "vertex" && this.events.attempts && number < body.vertices.length / 3) this.selection.pickVertex(side, number);
+    if (sort === "vertex" && this.events.attempts && number < body.vertices.length / 3)
+      this.selection.pickVertex(side, number);
   }
 
   show(words, controls) {
@@ -331,7 +346,8 @@ export class PageAddress {
     for (const word of words) {
       const [name, text] = word.split(":"), plain = name.replace(/^no-/, "");
       const isolate = /^([AB])\.(\d+)$/.exec(text || "");
-      if (name === "isolate" && isolate) change.isolate = { side: SIDES.indexOf(isolate[1]), region: Number(isolate[2]) };
+      if (name === "isolate" && isolate)
+        change.isolate = { side: SIDES.indexOf(isolate[1]), region: Number(isolate[2]) };
       else if (typeof change[plain] === "boolean") change[plain] = plain === name;
       else if (typeof change[name] === "number" && Number.isFinite(Number(text))) change[name] = Number(text);
       else if (typeof change[name] === "string" && text) change[name] = text;

@@ -122,15 +122,19 @@ export class AnswerLine {
     if (step === this.step) return;
     this.step = step;
     const { names, meanings } = this.answers,
-      rows = (this.ofStep.get(step) || []).map(([name, value, note]) => [names[name], value, [meanings[name], note].filter(Boolean).join("; ")]),
+      meaning = (name, note) => [meanings[name], note].filter(Boolean).join("; "),
+      given = this.ofStep.get(step) || [],
+      rows = given.map(([name, value, note]) => [names[name], value, meaning(name, note)]),
       inBadge = this.badge && rows.length > 0;
     if (inBadge) this.badge.textContent = rows[0][1];
     if (inBadge) this.badge.title = rows[0][2];
-    if (this.events.firstOfStep.length > 1) rows.unshift(["Step", digits(step), "time step that the figures and the view are about"]);
+    if (this.events.firstOfStep.length > 1)
+      rows.unshift(["Step", digits(step), "time step that the figures and the view are about"]);
     this.box.replaceChildren(
       ...rows
         .filter(([name]) => name !== "Relation" || !inBadge)
-        .map(([name, value, title]) => element("div", { title }, element("dt", {}, name), element("dd", {}, value))),
+        .map(([name, value, title]) =>
+          element("div", { title }, element("dt", {}, name), element("dd", {}, value))),
     );
   }
 }
@@ -161,17 +165,19 @@ export class Panel {
     const rows = [["kind", kind.name], ["what", eventText(events, i)]];
     if (outcomeText(events, i)) rows.push(["result", outcomeText(events, i)]);
     const attempt = events.attempts && events.attempts.ofEvent.get(i);
-    if (attempt && i === attempt.cap) rows.push([attempt.rejected ? "rejected" : "accepted", events.attempts.reason(attempt)]);
-    if (level >= 0 && !events.engine) rows.push(["level", level, "number of regions between it and the outside"]);
+    if (attempt && i === attempt.cap)
+      rows.push([attempt.rejected ? "rejected" : "accepted", events.attempts.reason(attempt)]);
+    if (level >= 0 && !events.engine) rows.push(["level", level, "number of regions up to the outside"]);
     if (cause >= 0)
       rows.push(["cause", textButton(`event ${digits(events.id(cause))}`, () => this.selection.goTo(cause))]);
     if (this.wrappers && !events.engine)
       rows.push([
         events.passes ? "front" : "wrapper",
-        events.passes ? `${digits(this.wrappers.sizes[0])} faces` : sizeText(this.bodies, this.wrappers.sizes),
+        events.passes ? `${digits(this.wrappers.sizes[0])} faces`
+            : sizeText(this.bodies, this.wrappers.sizes),
       ]);
     const wrong = events.wrong[events.step(i)];
-    if (wrong.length) rows.push(["wrong", this.wrongButton(wrong), "Pairs that the engine got wrong in this step"]);
+    if (wrong.length) rows.push(["wrong", this.wrongButton(wrong), "Pairs that the engine got wrong here"]);
     fillList(byId("event-facts"), rows);
     const parts = [
       ...events
@@ -190,7 +196,8 @@ export class Panel {
     ];
     if (attempt && this.bodies[0].complete)
       parts.push(
-        textButton(`vertex ${digits(attempt.vertex)}`, () => this.selection.pickVertex(0, attempt.vertex), "Start vertex of the patch (P)"),
+        textButton(`vertex ${digits(attempt.vertex)}`, () => this.selection.pickVertex(0, attempt.vertex),
+            "Start vertex of the patch (P)"),
       );
     byId("event-parts").replaceChildren(...parts);
   }
@@ -200,7 +207,8 @@ export class Panel {
     let next = 0;
     const button = textButton(plural(wrong.length, "wrong pair"), () => {
       const { simplices, missed } = wrong[next % wrong.length];
-      button.textContent = `${(next++ % wrong.length) + 1} of ${wrong.length}: ${missed ? "missed" : "reported"}`;
+      button.textContent =
+          `${(next++ % wrong.length) + 1} of ${wrong.length}: ${missed ? "missed" : "reported"}`;
       this.selection.choose(simplices);
     });
     return button;
@@ -216,7 +224,8 @@ export class Panel {
     byId("picked-title").textContent = name[0].toUpperCase() + name.slice(1) + this.name(picked.side);
     fillList(byId("picked-facts"), [
       ...(hasFace && !this.events.engine ? this.faceRows(body, picked.face) : []),
-      ...(picked.vertex !== NONE ? this.vertexRows(body, picked.vertex) : this.regionRows(body, picked.region)),
+      ...(picked.vertex !== NONE ? this.vertexRows(body, picked.vertex)
+        : this.regionRows(body, picked.region)),
       ...(this.events.passes ? [] : this.countRows(body, picked)),
     ]);
     byId("picked-isolate").disabled = picked.region === NONE;
@@ -236,7 +245,7 @@ export class Panel {
     const region = this.events.attempts.coverOf(vertex),
       made = this.events.attempts.around(vertex).every((f) => !body.isReal(f));
     return [
-      ["sort", made ? "of pseudo faces alone" : "the body's own", "vertices of pseudo faces are made by caps"],
+      ["sort", made ? "of pseudo faces alone" : "the body's own", "those of pseudo faces are made by caps"],
       [
         "covered by",
         region === NONE ? "no region: it is on the outermost wrapper"
@@ -275,7 +284,7 @@ export class Panel {
   }
 }
 
-// ---- rows of the page's tables link to regions, time steps, pairs and boxes, and show which of them is selected
+// ---- rows of tables link to regions, time steps, pairs and boxes, and show which of them is selected
 export class RowLinks {
   /** `controls`: of the view; null: there is none. */
   constructor(events, selection, controls) {

@@ -49,12 +49,12 @@ export class Body {
     const g = json.geometry;
     this.vertices = unpack(g.vertices);
     this.corners = unpack(g.corners);
-    this.triangles = g.triangles ? unpack(g.triangles) : null; // corners of each simplex; null: polygons are fans
+    this.triangles = g.triangles ? unpack(g.triangles) : null; // of all corners; null: polygons are fans
     this.inner = unpack(g.inner); // region behind each face; NONE: the solid
     this.outer = unpack(g.outer); // region in front of it; NONE: the outside
     this.parent = unpack(g.parent);
     this.layer = unpack(g.layer);
-    this.countCorners(unpack(g.sizes));
+    this.countCorners(unpack(g.sizes), g.shown ? unpack(g.shown) : null);
     this.lidsOf = grouped(this.inner, this.regionCount);
     this.floorOf = grouped(this.outer, this.regionCount);
     this.boxes = {
@@ -68,12 +68,15 @@ export class Body {
     this.counts.misses = this.counts.tests.map((n, f) => n - this.counts.hits[f]);
   }
 
-  /** Numbers the triangles of all faces (2D: segments), as LrbRep does. */
-  countCorners(sizes) {
+  /** Numbers the triangles of all faces (2D: segments), as LrbRep does. `shown`: the pseudo faces that have
+      corners on the page; null: all. */
+  countCorners(sizes, shown) {
     this.offsets = new Uint32Array(sizes.length + 1);
     this.firstSimplex = new Uint32Array(sizes.length + 1);
+    const has = new Uint8Array(sizes.length).fill(1, 0, shown ? this.realCount : sizes.length);
+    for (const f of shown || []) has[f] = 1;
     for (let f = 0; f < sizes.length; f++) {
-      this.offsets[f + 1] = this.offsets[f] + sizes[f];
+      this.offsets[f + 1] = this.offsets[f] + has[f] * sizes[f];
       this.firstSimplex[f + 1] = this.firstSimplex[f] + Math.max(1, sizes[f] - 2);
     }
   }
@@ -84,13 +87,10 @@ export class Body {
   face(face) {
     return this.corners.subarray(this.offsets[face], this.offsets[face + 1]);
   }
-  /** Returns the corners of the triangles of a face (not 2D). */
-  trianglesOf(face) {
-    const corners = this.face(face), first = this.firstSimplex[face];
-    return Array.from({ length: Math.max(0, corners.length - 2) }, (_, i) => this.triangles
-        ? this.triangles.subarray(3 * (first + i), 3 * (first + i + 1))
-        : [corners[0], corners[i + 1], corners[i + 2]],
-    );
+  /** Returns a corner, 0 to 2, of the i-th triangle of a face (not 2D). */
+  cornerOf(face, i, corner) {
+    if (this.triangles) return this.triangles[3 * (this.firstSimplex[face] + i) + corner];
+    return this.corners[this.offsets[face] + (corner ? i + corner : 0)];
   }
   faceOfSimplex(simplex) {
     return lastAtMost(this.firstSimplex, simplex);
@@ -99,6 +99,10 @@ export class Body {
       face; NONE: none. */
   regionOf(face) {
     return this.isReal(face) ? this.outer[face] : this.inner[face];
+  }
+  /** Returns faces as the view marks them. */
+  sided(faces) {
+    return [...faces].map((face) => ({ side: this.side, face }));
   }
   lids(region) {
     return this.lidsOf.of(region);
@@ -266,9 +270,9 @@ export class Events {
   }
 }
 
-/** Returns the most telling event, with which the page opens: with another engine's wrong answers, the end of the first such
-    step; else the last contact of the step that has most; without contact, the end of the step with most events; of one
-    body, the change halfway. */
+/** Returns the most telling event, with which the page opens: with another engine's wrong answers, the end of
+    the first such step; else the last contact of the step that has most; without contact, the end of the step
+    with most events; of one body, the change halfway. */
 export function tellingEvent(events) {
   const { kind, firstOfStep, bodies, wrong, CONTACT } = events, steps = [...firstOfStep.keys()],
     all = [...kind.keys()],
@@ -391,7 +395,7 @@ export class Wrappers {
   reset() {
     for (const flags of this.excluded) flags.fill(this.bare ? 1 : 0);
     for (const flags of this.discarded) if (flags) flags.fill(0);
-    this.sizes = this.bare ? this.bodies.map((b) => b.realCount) : this.outermost.slice(); // faces on the boundaries
+    this.sizes = this.bare ? this.bodies.map((b) => b.realCount) : this.outermost.slice(); // of boundaries
     this.version++;
   }
 
@@ -467,7 +471,8 @@ export function eventText(events, i) {
   if (kind === events.REFINE) return `region ${digits(a)}${side}: ${plural(b, "face")} exposed`;
   if (kind === events.COARSEN) return `region ${digits(a)}${side} added`;
   if (kind === events.RESULT)
-    return `${relationText(events.relations[a])}: ${plural(b, "intersecting pair of faces", "intersecting pairs of faces")}`;
+    return relationText(events.relations[a]) + ": " +
+      plural(b, "intersecting pair of faces", "intersecting pairs of faces");
   const faces = events.faces(i);
   if (faces.length)
     return faces.map((f) => `${events.bodies[f.side].faceText(f.face)} of ${SIDES[f.side]}`).join(", ");
@@ -496,7 +501,8 @@ function firstWrapperText(bodies) {
     wrapper. */
 export function sizeText(bodies, sizes) {
   const one = (n, side) =>
-    `${bodies.length > 1 ? `${SIDES[side]} ` : ""}${digits(n)}${bodies[side].regionCount ? "" : " (no wrapper)"}`;
+    (bodies.length > 1 ? `${SIDES[side]} ` : "") + digits(n) +
+    (bodies[side].regionCount ? "" : " (no wrapper)");
   return `${sizes.map(one).join(" + ")} faces`;
 }
 
@@ -538,5 +544,6 @@ export function eventSentence(events, wrappers, i) {
   const about = `${eventPlace(events, i)}, ${events.kindOf(i).name}: ${eventText(events, i)}${result}.`;
   if (!wrappers || events.engine) return about;
   if (events.passes) return `${about} Front: ${digits(wrappers.sizes[0])} faces.`;
-  return `${about} ${wrappers.sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizeText(events.bodies, wrappers.sizes)}.`;
+  const { sizes } = wrappers;
+  return `${about} ${sizes.length > 1 ? "Wrappers" : "Wrapper"}: ${sizeText(events.bodies, sizes)}.`;
 }

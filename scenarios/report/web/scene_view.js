@@ -2,6 +2,7 @@ import { byId, oncePerFrame } from "./dom.js";
 import { BodyView, Colours, COUNTERS, countsSoFar, sumsOfGroups } from "./scene_bodies.js";
 import { SceneCamera } from "./scene_camera.js";
 import { ContactCurves, Legend, Marks, MeasuredMarks, WhyMarks } from "./scene_marks.js";
+import { lensOf, setHoles } from "./scene_lines.js";
 import { NONE, unpack } from "./scene_run.js";
 
 // ---- clicks in the view: picks the face
@@ -31,13 +32,14 @@ class Picker {
     });
   }
 
-  /** Returns the corner of a face next to a point of the screen, at most a third of an edge away; NONE: none. */
+  /** Returns a face's corner next to a point of the screen, at most a third of an edge away; NONE: none. */
   vertexNear({ side, face }, x, y) {
     const { view } = this, body = view.bodies[side], box = view.canvas.getBoundingClientRect(),
       most = 9; // pixels
     const corners = [...body.face(face)].map((vertex) => {
       const at = view.views[side].toWorld(view.views[side].point(vertex)).project(view.camera.camera);
-      return { vertex, x: box.left + ((1 + at.x) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
+      const [right, down] = [(1 + at.x) / 2, (1 - at.y) / 2];
+      return { vertex, x: box.left + right * box.width, y: box.top + down * box.height };
     });
     const edges = corners.map((p, i) => Math.hypot(p.x - corners.at(i - 1).x, p.y - corners.at(i - 1).y));
     const reach = Math.min(most, Math.min(...edges) / 3);
@@ -70,9 +72,9 @@ export class BodiesCanvas {
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.size = new THREE.Vector2(1, 1);
-    /** For the shaders of lines: size of the picture in pixels; depth of the front of the bodies, and from there to their
-        back; size of a pixel in the world. */
-    this.lens = { size: this.size, depths: new THREE.Vector2(0, 1), pixel: { value: 1 } };
+    /** For the shaders of lines: size of the picture in pixels; depth of the front of the bodies, and from
+        there to their back; size of a pixel in the world; holes in wrappers. */
+    this.lens = lensOf(this.size);
     this.stage = new THREE.Scene();
     this.camera = new SceneCamera(this.canvas, scene, () => this.redraw());
     this.stage.add(new THREE.AmbientLight(0xffffff, 0.54), this.camera.perspective, this.camera.flat);
@@ -129,7 +131,21 @@ export class BodiesCanvas {
     this.redraw();
   }
 
-  /** Returns the nearest face of several FaceMesh under a point of the screen: {side, face, simplex}, or null. */
+  /** Returns true if a hit lid is cut away in front of a contact; see HOLES. */
+  isCut({ object, point }) {
+    const { lens } = this, { camera, orthographic } = this.camera;
+    if (!this.views.some((v) => v.lids.mesh === object)) return false;
+    return lens.holes.value.slice(0, lens.holeCount.value).some(({ x, y, z, w }) => {
+      const centre = new THREE.Vector3(x, y, z),
+        ahead = orthographic ? camera.getWorldDirection(new THREE.Vector3())
+            : centre.clone().sub(camera.position).normalize(),
+        [depth, until] = [point, centre].map((p) => p.clone().sub(camera.position).dot(ahead)),
+        aside = point.clone().sub(centre).addScaledVector(ahead, until - depth);
+      return depth < until + w && aside.length() * (orthographic ? 1 : until / depth) < w;
+    });
+  }
+
+  /** Returns the nearest face of FaceMeshes at a point of the screen: {side, face, simplex}, or null. */
   nearest(x, y, among) {
     const box = this.canvas.getBoundingClientRect();
     const at = new THREE.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height);
@@ -138,7 +154,8 @@ export class BodiesCanvas {
     const hits = ray.intersectObjects(
       among.filter((faces) => faces.triangles > 0).map((faces) => faces.mesh),
     );
-    const hit = hits.find(({ point }) => point.clone().project(this.camera.camera).z >= -1); // not sliced away
+    const isSliced = ({ point }) => point.clone().project(this.camera.camera).z < -1,
+      hit = hits.find((h) => !isSliced(h) && !this.isCut(h));
     if (!hit) return null;
     const faces = hit.object.userData.faces;
     return { side: faces.body.side, ...faces.at(hit) };
@@ -146,6 +163,7 @@ export class BodiesCanvas {
 }
 
 // ---- the 3D view: draws the selection, and selects by clicks
+const LEAST_HOLE = 0.05, HOLE_MARGIN = 1.2; // of the radius of the bodies; of that of the contact
 export class SceneView extends BodiesCanvas {
   constructor(scene, selection, wrappers, why) {
     super(scene, selection.events.bodies);
@@ -156,6 +174,7 @@ export class SceneView extends BodiesCanvas {
       ghost: false,
       explode: 0,
       slice: 0,
+      open: true, // wrappers, in front of contacts
       isolate: null,
       lids: !scene.engine, // another engine compares the bodies themselves
       boxes: -1,
@@ -197,6 +216,7 @@ export class SceneView extends BodiesCanvas {
     this.whyMarks.draw();
     this.measured.draw();
     this.curves.draw();
+    this.open();
     this.legend.write();
     this.render();
     this.circle();
@@ -208,6 +228,18 @@ export class SceneView extends BodiesCanvas {
     const { camera } = this, ends = this.extremes();
     const isOut = (p) => [p.x, p.y].some((x) => Math.abs(x) > 1);
     if (camera.fitted && ends.some((p) => isOut(p.clone().project(camera.camera)))) camera.fit(ends);
+  }
+
+  /** Cuts the wrappers open in front of the step's contacts. */
+  open() {
+    const { now, lens, camera } = this, least = LEAST_HOLE * this.reach().radius,
+      isOpen = now.open && now.by === "kind" && !camera.plane;
+    setHoles(lens, (isOpen ? this.curves.now : []).map((curve) => {
+      const points = curve.map((p) => new THREE.Vector3(...p)),
+        { centre } = ballOf(new THREE.Box3().setFromPoints(points));
+      return { centre,
+          radius: points.reduce((most, p) => Math.max(most, HOLE_MARGIN * p.distanceTo(centre)), least) };
+    }));
   }
 
   /** Draws a ring around the faces that the event compares, if they are too small to be noticed. */
@@ -285,9 +317,7 @@ export class SceneView extends BodiesCanvas {
         this.views.forEach((view, side) => {
           view.paint(mode, veil, by === "kind" ? 1 : 0);
           view.showCounted(
-            counter
-              ? [...counts[side].keys()].filter((f) => counts[side][f] > 0 && this.bodies[side].isReal(f))
-              : [],
+            counter ? view.realFaces.filter((f) => counts[side][f] > 0) : [],
             (f) => mode.of(side, f),
           );
         });
@@ -306,7 +336,8 @@ export class SceneView extends BodiesCanvas {
   countsOf(by, per, scope) {
     const all =
       scope === "run" ? this.bodies.map((b) => b.counts) : countsSoFar(this.events, this.selection.event);
-    return this.bodies.map((b, side) => (per === "face" ? all[side][by] : sumsOfGroups(b, per, all[side][by])));
+    return this.bodies
+        .map((b, side) => (per === "face" ? all[side][by] : sumsOfGroups(b, per, all[side][by])));
   }
 
   // -- highlights
@@ -325,7 +356,7 @@ export class SceneView extends BodiesCanvas {
     this.marks.set(
       "refined",
       refined.length ? (events.passes ? `built ${refined.length} ${lastly} ${this.now.by}` : i) : -1,
-      refined.flatMap((r) => [...this.bodies[r.side].lids(r.region)].map((face) => ({ side: r.side, face }))),
+      refined.flatMap((r) => this.bodies[r.side].sided(this.bodies[r.side].lids(r.region))),
       {
         colour: colours.refining, opacity: events.passes && this.now.by === "region" ? 0.25 : 0.5,
         width: events.passes ? 4 : 2, through: !events.passes,
@@ -339,14 +370,16 @@ export class SceneView extends BodiesCanvas {
     const nodes = events.about(i, "node");
     this.marks.setBoxes("nodes", nodes.length ? i : -1, nodes, colours.underTest);
     const p = this.selection.picked;
-    if (events.attempts) this.marks.setPoint("vertex", p && p.vertex !== NONE ? { side: p.side, vertex: p.vertex } : null, colours.selected);
+    if (events.attempts) this.marks.setPoint("vertex", p && p.vertex !== NONE ? p : null, colours.selected);
     const picked = this.pickedFaces();
-    this.marks.set("picked", p ? `${p.side} ${p.face} ${p.region} ${events.attempts ? picked.map((f) => f.face) : ""}` : "", picked, {
+    const shown = events.attempts ? picked.map((f) => f.face) : [],
+      pickedKey = p ? [p.side, p.face, p.region, ...shown].join(" ") : "";
+    this.marks.set("picked", pickedKey, picked, {
       colour: colours.selected, opacity: 0.65, width: 2.5, over: p && p.face !== NONE,
     });
   }
 
-  /** Shows the attempt of the event: its patch on the front with the start vertex, or the lids that cover it. */
+  /** Shows the event's attempt: its patch on the front with the start vertex, or the lids that cover it. */
   markAttempt() {
     const { events, colours } = this, i = this.selection.event, attempt = events.attempts.ofEvent.get(i),
       covers = attempt && events.kind[i] === events.REGION,
@@ -354,14 +387,16 @@ export class SceneView extends BodiesCanvas {
     this.marks.set("attempt", attempt ? `${i} ${faces.length}` : "", faces, {
       colour: covers ? colours.refining : colours.underTest, opacity: 0.45, width: 3, over: true,
     });
-    this.marks.setPoint("start", attempt && !covers && !attempt.whole ? { side: 0, vertex: attempt.vertex } : null, colours.underTest);
+    const start = attempt && !covers && !attempt.whole ? { side: 0, vertex: attempt.vertex } : null;
+    this.marks.setPoint("start", start, colours.underTest);
   }
   /** Returns the faces that show an attempt after the current event. */
   attemptFaces(attempt) {
     const { events, bodies, wrappers } = this;
     if (!attempt) return [];
-    if (events.kind[this.selection.event] !== events.REGION) return events.attempts.facesOf(attempt, wrappers);
-    return attempt.regions.flatMap(({ region }) => [...bodies[0].lids(region)].map((face) => ({ side: 0, face })));
+    if (events.kind[this.selection.event] !== events.REGION)
+      return events.attempts.facesOf(attempt, wrappers);
+    return attempt.regions.flatMap(({ region }) => bodies[0].sided(bodies[0].lids(region)));
   }
 
   /** Returns the two faces that were chosen, or else those of the event: [{side, face}]. */
@@ -376,19 +411,18 @@ export class SceneView extends BodiesCanvas {
   /** Returns the faces of pairs of simplices, each once: [{side, face}]. */
   facesOfPairs(pairs) {
     return this.bodies.flatMap((body, side) =>
-      [...new Set(pairs.map((p) => body.faceOfSimplex(p.simplices[side])))].map((face) => ({ side, face })),
+      body.sided(new Set(pairs.map((p) => body.faceOfSimplex(p.simplices[side])))),
     );
   }
 
   pickedFaces() {
-    const p = this.selection.picked;
+    const p = this.selection.picked, { attempts } = this.events, body = p && this.bodies[p.side];
     if (!p || this.now.isolate || p.vertex !== NONE) return [];
+    if (p.face !== NONE) return body.sided([p.face]);
     // In a construction: its faces on the front now.
-    if (this.events.attempts && p.face === NONE && !this.wrappers.included(p.side, p.region, false))
-      return this.events.attempts.ofEvent.has(this.selection.event) ? []
-        : [...this.bodies[p.side].floor(p.region)].map((face) => ({ side: p.side, face })).filter((f) => this.wrappers.onBoundary(f.side, f.face));
-    return p.face !== NONE ? [{ side: p.side, face: p.face }]
-      : [...this.bodies[p.side].lids(p.region)].map((face) => ({ side: p.side, face }));
+    if (!attempts || this.wrappers.included(p.side, p.region, false)) return body.sided(body.lids(p.region));
+    return attempts.ofEvent.has(this.selection.event) ? []
+      : body.sided(body.floor(p.region)).filter((f) => this.wrappers.onBoundary(f.side, f.face));
   }
 
   // -- framing
@@ -411,7 +445,7 @@ export class SceneView extends BodiesCanvas {
     const { picked, event } = this.selection, compared = this.comparedFaces();
     const { attempts } = this.events, tried = attempts ? this.attemptFaces(attempts.ofEvent.get(event)) : [];
     const faces = picked ? picked.face !== NONE ? [picked] : picked.vertex !== NONE
-          ? [...attempts.around(picked.vertex).map((face) => ({ side: picked.side, face })), ...tried]
+          ? [...this.bodies[picked.side].sided(attempts.around(picked.vertex)), ...tried]
           : this.collector(picked) : compared.length ? compared : tried.length ? tried
           : this.events.regions(event).flatMap((r) => this.collector(r));
     this.frame(faces);
@@ -421,14 +455,13 @@ export class SceneView extends BodiesCanvas {
   frame(faces) {
     if (!faces.length) return this.frameAll();
     const ball = this.ballOfFaces(faces);
-    this.camera.lookAt(ball.centre, Math.max(ball.radius * (this.now.isolate ? 1.2 : 2.2), 0.02 * this.reach().radius));
+    const margin = this.now.isolate ? 1.2 : 2.2;
+    this.camera.lookAt(ball.centre, Math.max(margin * ball.radius, 0.02 * this.reach().radius));
     this.redraw();
   }
 
   collector({ side, region }) {
-    return [...this.bodies[side].lids(region), ...this.bodies[side].floor(region)].map((face) => ({
-      side, face,
-    }));
+    return this.bodies[side].sided([...this.bodies[side].lids(region), ...this.bodies[side].floor(region)]);
   }
 }
 

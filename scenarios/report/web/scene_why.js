@@ -96,7 +96,7 @@ export class WhyPanel {
           return `${where}${exact ? ` ${short(Math.abs(distance))}` : ""}${wrong}`;
         })
         .join("; "),
-      `On which side of the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}, exactly, and at which distance`,
+      `Exact side of the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}, and distance from it`,
     ]);
     if (e.meet === 0)
       rows.push(
@@ -140,7 +140,8 @@ export class WhyPanel {
       );
       return line;
     });
-    byId("why-regions").replaceChildren(...(this.events.engine ? [] : lines)); // another engine has no regions
+    // another engine has no regions
+    byId("why-regions").replaceChildren(...(this.events.engine ? [] : lines));
   }
 
   // -- a step
@@ -157,12 +158,15 @@ export class WhyPanel {
       [
         "pairs of faces",
         e.facePairs > 0
-          ? `${digits(e.facePairs)} with overlapping boxes; planes separate ${digits(e.facePairs - e.left)}, ` +
-            `${digits(e.left)} are compared` : "none: the walk did not come so far",
+          ? `${digits(e.facePairs)} with overlapping boxes; planes separate ` +
+            `${digits(e.facePairs - e.left)}, ${digits(e.left)} are compared`
+          : "none: the walk did not come so far",
       ],
       ...(e.boxes ? [["nearest boxes", this.boxText(e.boxes)]] : []),
       ...(e.plane
-        ? [["plane", `across (${e.plane.normal.map((x) => short(Number(x.toFixed(4)))).join(", ")}), gap \u2265 ${least(e.plane.gap)}`]]
+        ? [["plane",
+          `across (${e.plane.normal.map((x) => short(Number(x.toFixed(4)))).join(", ")}), ` +
+            `gap \u2265 ${least(e.plane.gap)}`]]
         : []),
       ...(e.near ? [["nearest faces", this.nearButton(e.near)]] : []),
     ]);
@@ -171,7 +175,7 @@ export class WhyPanel {
   stepText(e) {
     const inside = e.relation !== "separate";
     if (e.plane)
-      return `Apart: a plane has all of A on one side and all of B on the other, gap \u2265 ${least(e.plane.gap)}.`;
+      return `Apart: a plane has A on one side and B on the other, gap \u2265 ${least(e.plane.gap)}.`;
     const what = inside ? "No faces intersect; one body is inside the other"
       : "Apart, though no plane was found that has one body on each side";
     const last = e.left > 0 ? ", or in faces that planes and tests part" : e.facePairs > 0
@@ -181,7 +185,8 @@ export class WhyPanel {
 
   boxText(boxes) {
     const of = boxes.ofFaces ? "faces in nodes" : "nodes";
-    return `${of} ${digits(boxes.a)} of A and ${digits(boxes.b)} of B, gap ${short(boxes.gap)} along ${boxes.axis}`;
+    const gap = `gap ${short(boxes.gap)} along ${boxes.axis}`;
+    return `${of} ${digits(boxes.a)} of A and ${digits(boxes.b)} of B, ${gap}`;
   }
 
   nearButton(near) {

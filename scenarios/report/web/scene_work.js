@@ -47,7 +47,8 @@ export class WorkIcicle {
         number,
         outcomes.map((o, i) => {
           const at = k * outcomes.length + i;
-          return { ...o, events: columns.events[at], operations: columns.operations[at], micros: columns.micros[at] };
+          return { ...o, events: columns.events[at], operations: columns.operations[at],
+              micros: columns.micros[at] };
         }),
       ]),
     );
@@ -109,7 +110,8 @@ export class WorkIcicle {
         const x = (part.from / shown) * width, w = Math.max(1.5, (part.value / shown) * width - gap);
         const first = this.outcomes[part.parts[0]],
           colour = depth === 2 || (depth === 1 && !first.outcome) ? workSort(first).colour : "";
-        svg.append(this.part(depth === 0 ? { ...part, value: all } : part, all, { x, y: depth * (height + gap), w, height, colour, depth }));
+        svg.append(this.part(depth === 0 ? { ...part, value: all } : part, all,
+            { x, y: depth * (height + gap), w, height, colour, depth }));
       }
     });
     this.box.replaceChildren(svg);
@@ -124,7 +126,7 @@ export class WorkIcicle {
       amount = micros ? `${short(part.value)} \u00b5s` : plural(part.value, "operation");
     const recorded = events ? plural(events, "event") : "no events: record the run with --events nodes";
     const title = `${part.name}: ${amount}, ${share}; ${recorded}`,
-      fits = (words) => 7.2 * words.length + 14 <= w,
+      words = [`${part.name}  ${share}`, part.name].find((text) => 7.2 * text.length + 14 <= w),
       rect = svgElement("rect", { x, y, width: w, height, rx: 3 });
     if (colour) rect.style.fill = colour;
     rect.style.fillOpacity = colour ? 0.5 : 0.25;
@@ -133,7 +135,7 @@ export class WorkIcicle {
       { tabindex: 0, role: "button", "aria-label": title },
       svgElement("title", {}, title),
       rect,
-      svgElement("text", { x: x + 7, y: y + height / 2 }, [`${part.name}  ${share}`, part.name].find(fits) || ""),
+      svgElement("text", { x: x + 7, y: y + height / 2 }, words || ""),
     );
     group.dataset.parts = part.parts.join(" ");
     const phase = depth === 1 ? part.name : this.zoom;
@@ -152,7 +154,8 @@ export class WorkIcicle {
   choose(part) {
     const key = part ? part.parts.join(" ") : "",
       same = this.filter.work && [...this.filter.work.parts].join(" ") === key;
-    this.form.showWork(part && !same ? { name: part.key, phase: part.phase, parts: new Set(part.parts) } : null);
+    this.form.showWork(part && !same ? { name: part.key, phase: part.phase, parts: new Set(part.parts) }
+        : null);
   }
 
   /** Marks the listed part, and the part of the event. */

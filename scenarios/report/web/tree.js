@@ -4,7 +4,7 @@ import { boxEdges, WHITE } from "./scene_lines.js";
 import { Body, grouped, NONE, unpack } from "./scene_run.js";
 import { BodiesCanvas, onClick, webglWorks } from "./scene_view.js";
 
-// ---- the page of a tree: the volume and the triangles of one node, selected in the view, the icicle or a table
+// ---- the page of a tree: volume and triangles of a node, selected in the view, the icicle or a table
 
 /** The nodes of a tree. A node is an index into these arrays, unless it is called an id: the engine's own
     number. */
@@ -53,7 +53,8 @@ function areaOf(polygon) {
   if (polygon.length === 2) return Math.hypot(...from(polygon[1]));
   for (let i = 1; i + 1 < polygon.length; i++) {
     const [u, v] = [from(polygon[i]), from(polygon[i + 1])];
-    for (let k = 0; k < 3; k++) sum[k] += (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]) / 2;
+    for (let k = 0; k < 3; k++)
+      sum[k] += (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]) / 2;
   }
   return Math.hypot(...sum);
 }
@@ -104,7 +105,8 @@ class TreeView extends BodiesCanvas {
   /** Returns the corners of the volume of the selected node. */
   corners() {
     const ends = boxEdges(this.bodies[0].boxes.places, [this.node]);
-    return Array.from({ length: ends.length / 3 }, (_, i) => new THREE.Vector3(...ends.slice(3 * i, 3 * i + 3)));
+    return Array.from({ length: ends.length / 3 },
+        (_, i) => new THREE.Vector3(...ends.slice(3 * i, 3 * i + 3)));
   }
 
   extremes() {
@@ -164,7 +166,8 @@ class TreePage {
 
   selectId(id) {
     const node = this.nodes.indexOf.get(String(id).trim()), known = node !== undefined;
-    byId("node-state").textContent = known ? "" : this.nodes.all ? "no such node below the root" : "not on this page, which has the nodes nearest to the root";
+    byId("node-state").textContent = known ? "" : this.nodes.all ? "no such node below the root"
+        : "not on this page, which has the nodes nearest to the root";
     if (known) this.select(node);
   }
 
@@ -187,7 +190,9 @@ class TreePage {
     put("node-others", faces(this.others));
     put("node-area", rounded(nodes.area[node], 3));
     put("node-epo", rounded(nodes.epo[node], 3) + share);
-    put("view-caption", `node ${nodes.ids[node]}, depth ${nodes.depth[node]}: ${faces(triangles)}, and ${faces(this.others)} of other nodes in its volume`);
+    put("view-caption",
+        `node ${nodes.ids[node]}, depth ${nodes.depth[node]}: ${faces(triangles)}, and ` +
+          `${faces(this.others)} of other nodes in its volume`);
     const link = (other, text) => {
       const title = `Depth ${nodes.depth[other]}, ${faces(nodes.last[other] - nodes.first[other])}`;
       return textButton(text, () => this.select(other), title);
@@ -240,8 +245,10 @@ class TreePage {
       this.selectId(id);
       byId("stage").scrollIntoView({ block: "nearest" });
     };
-    for (const box of document.querySelectorAll("[data-node]")) box.addEventListener("click", follow(box.dataset.node));
-    for (const row of document.querySelectorAll("tr[data-to^=node]")) linkRow(row, follow(row.dataset.to.slice(5)));
+    for (const box of document.querySelectorAll("[data-node]"))
+      box.addEventListener("click", follow(box.dataset.node));
+    for (const row of document.querySelectorAll("tr[data-to^=node]"))
+      linkRow(row, follow(row.dataset.to.slice(5)));
     byId("node").onchange = () => this.selectId(byId("node").value);
     window.addEventListener("hashchange", () => this.selectId(location.hash.replace(/^#node=/, "")));
     if (!this.view) return;

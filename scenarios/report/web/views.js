@@ -13,7 +13,8 @@ for (const row of document.querySelectorAll('tr[data-to^="regions "]')) {
   const follow = () => {
     for (const other of document.querySelectorAll("tr[aria-current]")) other.removeAttribute("aria-current");
     row.setAttribute("aria-current", "true");
-    numbers.forEach((n, i) => views[i].contentWindow.postMessage({ lrbscope: { region: n === "-" ? null : Number(n) } }, "*"));
+    numbers.forEach((n, i) =>
+        views[i].contentWindow.postMessage({ lrbscope: { region: n === "-" ? null : Number(n) } }, "*"));
     views[0].scrollIntoView({ block: "nearest" });
   };
   linkRow(row, follow);

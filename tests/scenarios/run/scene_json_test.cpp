@@ -13,6 +13,7 @@
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/report/assets.hpp"
 #include "tests/support/approach.hpp"
+#include <lrbscope/trace/replay.hpp>
 #include <lrbscope/trace/trace.hpp>
 
 using namespace lrb;
@@ -167,6 +168,27 @@ TEST_CASE("page data of a run names omissions and where to find them") {
   CHECK(thinned.find("trace.json.gz contains all of them") != std::string::npos);
   CHECK(large.find("the limit for a page is 10") != std::string::npos);
   CHECK_FALSE(scene["bodies"][0].contains("geometry"));
+}
+
+TEST_CASE("page data of large bodies lacks pseudo faces that no wrapper shows") {
+  const run::Recording r = rocks_that_meet();
+  run::SceneLimits limits;
+  limits.with_all_lids = 10;
+  const json scene = json::parse(run::scene_json(run_of(r), {"trace.json", ""}, limits));
+  for (const Side side : {Side::a, Side::b}) {
+    const LrbRep& rep = r.bodies[static_cast<std::size_t>(side)].rep;
+    const std::vector<std::uint32_t> shown = run::shown_pseudo_faces(rep, side, r.trace);
+    CHECK(shown.size() < rep.face_count() - rep.real_face_count());
+    CHECK(scene["bodies"][static_cast<std::size_t>(side)]["geometry"]["shown"] == report::packed(shown));
+    std::set<std::uint32_t> needed;
+    trace::Cursor cursor(r.trace, r.bodies[0].rep, r.bodies[1].rep);
+    for (trace::EventId e = 0; e < r.trace.events.size(); ++e) {
+      cursor.seek(e);
+      for (const FaceId f : cursor.wrapper(side).boundary())
+        if (!rep.is_real(f)) needed.insert(f.value());
+    }
+    CHECK(std::includes(shown.begin(), shown.end(), needed.begin(), needed.end()));
+  }
 }
 
 TEST_CASE("page data of a run has the outcome of each event") {

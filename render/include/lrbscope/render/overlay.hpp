@@ -72,7 +72,7 @@ struct LegendItem {
   bool is_line() const { return mark != Mark::solid && mark != Mark::translucent && mark != Mark::point; }
 };
 
-/// Meaning of the viridis colours in this picture.
+/// Meaning of the colours of values in this picture.
 struct ScaleBar {
   std::string text;          ///< quantity and unit
   double low = 0, high = 1;  ///< values at the two ends

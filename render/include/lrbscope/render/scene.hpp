@@ -65,6 +65,8 @@ struct Options {
   /// The mesh's boundary loops: all open edges are drawn, and loops get their numbers. Empty: only the first
   /// open edges are drawn.
   std::span<const BoundaryLoop> loops;
+  /// The segments in which all faces intersect; empty: those of the first pairs are drawn.
+  std::span<const std::array<Eigen::Vector3d, 2>> crossings = {};
   Eigen::AlignedBox3d near;  ///< only elements in this box are marked with their numbers; empty: all
   double width = 640,
          height = 480;  ///< of the picture, pixels: labels that would overlap at this size are omitted
@@ -98,9 +100,9 @@ struct SceneBody {
 
 enum class ColourBy : std::uint8_t {
   kind,    ///< body colours; real and pseudo faces differ
-  layer,   ///< pseudo faces by the layer of the region behind them, viridis
+  layer,   ///< pseudo faces by the layer of the region behind them
   region,  ///< pseudo faces by the region behind them, one category each
-  value,   ///< faces by SceneBody::face_values, viridis: face tests, refinements, ...
+  value,   ///< faces by SceneBody::face_values: face tests, refinements, ...
 };
 
 /// The elements of the current event.
@@ -116,7 +118,7 @@ struct SceneHighlight {
 struct SceneOptions {
   ColourBy colour_by = ColourBy::kind;
   std::string value_name = "face tests";             ///< label of the scale bar of ColourBy::value
-  std::optional<std::array<double, 2>> value_range;  ///< nullopt: from 0 to the maximum value of the scene
+  std::optional<std::array<double, 2>> value_range;  ///< nullopt: from 0; outliers are clamped
   std::array<std::vector<RegionId>, 2>
       isolate;             ///< regions of A and B; if not empty, only these are shown, the rest as ghosts
   bool ghost_rest = true;  ///< false: the rest is omitted

@@ -61,7 +61,8 @@ namespace lrb::render::palette {
 
 // The colours of all pictures; render/page_palette.hpp has those of pages. Categories are Okabe and Ito's
 // palette, distinguishable with any common colour vision (M. Okabe, K. Ito, "Color Universal Design", 2008);
-// scalars are viridis. Colours that must be distinguished also differ in brightness, for greyscale print.
+// scalars go from pale to dark. Colours that must be distinguished also differ in brightness, for greyscale
+// print.
 
 inline constexpr Rgba kOrange{230, 159, 0};
 inline constexpr Rgba kSkyBlue{86, 180, 233};
@@ -149,9 +150,8 @@ constexpr Rgba event(EventKind kind) {
   return kInk;
 }
 
-/// Maps t in [0, 1] to viridis, from dark blue to yellow with increasing brightness. Clamps t; NaN counts as
-/// 0.
-Rgba viridis(double t);
+/// Maps t in [0, 1] to a scale of purples that starts almost white and ends dark. Clamps t; NaN counts as 0.
+Rgba heat(double t);
 
 /// Returns a colour for each of many categories: hues advance by the golden angle, brightness in three steps,
 /// so that consecutive numbers get distinct colours.
@@ -176,7 +176,7 @@ struct Style {
   std::array<double, 2> lid_pale;     ///< share by which pseudo faces fade towards the paper
   std::array<double, 2> edge_share;   ///< mixing share of edge_ink for lines along the body's wrapper
   float weight;  ///< factor of the widths of lines and points: paper resolves finer ones than a screen
-  bool falling;  ///< colours of values get darker with the value, so that small ones are pale on paper
+  bool rising;   ///< colours of values get brighter with the value, on a dark background; else darker
 
   /// Returns the colour of lines along primitives of colour `c`: outlines, and edges of translucent faces.
   /// (Edges on solid faces are palette::edge_of() in every style, because they are not on paper.)
@@ -194,8 +194,8 @@ struct Style {
   }
   /// Returns the colour of a body.
   constexpr Rgba body(Side side) const { return bodies[static_cast<std::size_t>(side)]; }
-  /// Returns the colour of a value at place t, in [0, 1], of a scale: viridis, reversed if `falling`.
-  Rgba value(double t) const { return palette::viridis(falling ? 1 - t : t); }
+  /// Returns the colour of a value at place t, in [0, 1], of a scale, of which the low end is near the paper.
+  Rgba value(double t) const { return palette::heat(rising ? 1 - t : t); }
   /// Returns this style's colour for one of the palette's kinds; any other colour unchanged.
   Rgba of(Rgba kind) const;
 };
