@@ -3,6 +3,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -37,49 +38,49 @@ enum class About : std::uint8_t { face, two_faces, component_of_face, vertex, tw
 struct FaultRow {
   MeshFault fault;
   About about;
-  const char *one, *many, *one_2d, *many_2d;
   Rgba colour;
   Mark mark;
+  std::string_view name, name_2d = name;  ///< "edge(s)", "vert(ex/ices)"
 };
-constexpr const char *kFlipped = "pair of inconsistently oriented neighbours",
-                     *kFlippedMany = "pairs of inconsistently oriented neighbours",
-                     *kInsideOut = "inside-out component", *kInsideOutMany = "inside-out components",
-                     *kCoincident = "pair of coincident vertices",
-                     *kCoincidentMany = "pairs of coincident vertices";
 constexpr FaultRow kFaults[] = {
-    {MeshFault::open_edge, About::edge, "open edge", "open edges", "loose end", "loose ends",
-     palette::kVermillion, Mark::line},
-    {MeshFault::t_junction, About::vertex, "T-junction", "T-junctions", "", "", palette::kBlue, Mark::point},
-    {MeshFault::near_vertex, About::two_vertices, "pair of near vertices", "pairs of near vertices", "", "",
-     palette::kBlue, Mark::point},
-    {MeshFault::non_manifold_edge, About::edge, "edge with more than two faces",
-     "edges with more than two faces", "branching vertex", "branching vertices", palette::kPurple,
-     Mark::line},
-    {MeshFault::non_manifold_vertex, About::vertex, "vertex with several fans", "vertices with several fans",
-     "", "", palette::kPurple, Mark::point},
-    {MeshFault::flipped_face, About::two_faces, kFlipped, kFlippedMany, kFlipped, kFlippedMany,
-     palette::kBlue, Mark::solid},
-    {MeshFault::duplicate_face, About::two_faces, "duplicate face", "duplicate faces", "duplicate segment",
-     "duplicate segments", palette::kGreen, Mark::solid},
-    {MeshFault::self_intersection, About::two_faces, "intersecting pair of faces",
-     "intersecting pairs of faces", "intersecting pair of segments", "intersecting pairs of segments",
-     palette::kOrange, Mark::solid},
-    {MeshFault::non_planar_face, About::face, "non-planar polygon", "non-planar polygons", "", "",
-     palette::kYellow, Mark::solid},
-    {MeshFault::non_convex_face, About::face, "concave polygon", "concave polygons", "", "", palette::kYellow,
-     Mark::solid},
-    {MeshFault::folded_face, About::face, "crossed polygon", "crossed polygons", "", "", palette::kYellow,
-     Mark::solid},
-    {MeshFault::repeated_corner, About::face, "face with a corner twice", "faces with a corner twice", "", "",
-     palette::kYellow, Mark::solid},
-    {MeshFault::zero_area_face, About::face, "face without area", "faces without area",
-     "segment without length", "segments without length", palette::kYellow, Mark::line},
-    {MeshFault::inside_out, About::component_of_face, kInsideOut, kInsideOutMany, kInsideOut, kInsideOutMany,
-     palette::kSkyBlue, Mark::solid},
-    {MeshFault::duplicate_vertex, About::two_vertices, kCoincident, kCoincidentMany, kCoincident,
-     kCoincidentMany, palette::kGreen, Mark::point},
-    {MeshFault::unused_vertex, About::vertex, "unused vertex", "unused vertices", "unused vertex",
-     "unused vertices", palette::kInk, Mark::point}};
+    {MeshFault::open_edge, About::edge, palette::kVermillion, Mark::line, "open edge(s)", "loose end(s)"},
+    {MeshFault::t_junction, About::vertex, palette::kBlue, Mark::point, "T-junction(s)"},
+    {MeshFault::near_vertex, About::two_vertices, palette::kBlue, Mark::point, "pair(s) of near vertices"},
+    {MeshFault::non_manifold_edge, About::edge, palette::kPurple, Mark::line,
+     "edge(s) with more than two faces", "branching vert(ex/ices)"},
+    {MeshFault::non_manifold_vertex, About::vertex, palette::kPurple, Mark::point,
+     "vert(ex/ices) with several fans"},
+    {MeshFault::flipped_face, About::two_faces, palette::kBlue, Mark::solid,
+     "pair(s) of inconsistently oriented neighbours"},
+    {MeshFault::duplicate_face, About::two_faces, palette::kGreen, Mark::solid, "duplicate face(s)",
+     "duplicate segment(s)"},
+    {MeshFault::self_intersection, About::two_faces, palette::kOrange, Mark::solid,
+     "intersecting pair(s) of faces", "intersecting pair(s) of segments"},
+    {MeshFault::reversed_face, About::face, palette::kBlue, Mark::solid, "reversed face(s)",
+     "reversed segment(s)"},
+    {MeshFault::sliver, About::face, palette::kYellow, Mark::line, "sliver(s)"},
+    {MeshFault::non_planar_face, About::face, palette::kYellow, Mark::solid, "non-planar polygon(s)"},
+    {MeshFault::non_convex_face, About::face, palette::kYellow, Mark::solid, "concave polygon(s)"},
+    {MeshFault::folded_face, About::face, palette::kYellow, Mark::solid, "crossed polygon(s)"},
+    {MeshFault::repeated_corner, About::face, palette::kYellow, Mark::solid, "face(s) with a corner twice"},
+    {MeshFault::zero_area_face, About::face, palette::kYellow, Mark::line, "face(s) without area",
+     "segment(s) without length"},
+    {MeshFault::inside_out, About::component_of_face, palette::kSkyBlue, Mark::solid,
+     "inside-out component(s)"},
+    {MeshFault::duplicate_vertex, About::two_vertices, palette::kGreen, Mark::point,
+     "pair(s) of coincident vertices"},
+    {MeshFault::unused_vertex, About::vertex, palette::kInk, Mark::point, "unused vert(ex/ices)"}};
+
+/// Returns the name of one or several elements.
+std::string name_of(const FaultRow& row, int dim, bool one) {
+  const std::string_view name = dim == 2 ? row.name_2d : row.name;
+  const std::size_t open = name.find('('), close = name.find(')'), slash = std::min(name.find('/'), close);
+  const std::string_view first = name.substr(open + 1, slash - open - 1);  // "s", "ex"
+  const std::string_view ending = slash < close ? (one ? first : name.substr(slash + 1, close - slash - 1))
+                                  : one         ? std::string_view()
+                                                : first;
+  return std::string(name.substr(0, open)).append(ending).append(name.substr(close + 1));
+}
 
 const FaultRow& row_of(MeshFault kind) {
   return *std::find_if(std::begin(kFaults), std::end(kFaults) - 1,
@@ -229,18 +230,12 @@ LegendItem key(MeshFault kind, int dim) {
   const FaultRow& style = row_of(kind);
   const bool point = dim == 2 && style.about == About::edge;
   const bool line = dim == 2 && style.mark == Mark::solid;
-  return {point  ? Mark::point
-          : line ? Mark::line
-                 : style.mark,
-          style.colour, dim == 2 ? style.one_2d : style.one};
+  return {point ? Mark::point : line ? Mark::line : style.mark, style.colour, name_of(style, dim, true)};
 }
 
 std::string caption(MeshFault kind, const MeshFinding& finding, int dim,
                     std::span<const BoundaryLoop> loops) {
-  const FaultRow& style = row_of(kind);
-  const bool one = finding.count == 1;
-  std::string out = group_digits(finding.count) + " " +
-                    (dim == 2 ? (one ? style.one_2d : style.many_2d) : (one ? style.one : style.many));
+  std::string out = group_digits(finding.count) + " " + name_of(row_of(kind), dim, finding.count == 1);
   if (kind == MeshFault::open_edge && !loops.empty()) return out + loops_text(loops);
   out += ": ";
   for (std::size_t i = 0; i < finding.first.size(); ++i)

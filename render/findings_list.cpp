@@ -182,16 +182,11 @@ class FindingsListBuilder {
     for (const FaceId f : parts_of(mesh_, kind, e).faces) give(f, colour(kind));
   }
 
-  /// Returns, of two neighbouring faces with opposite orientations, the one that disagrees with more
-  /// neighbours.
+  /// Returns, of two neighbouring faces with opposite orientations, the one that is known to be reversed, or
+  /// the second.
   FaceId turned_of(const Element& e) const {
-    std::map<FaceId, int> times;
-    for (const Element& other : report_[MeshFault::flipped_face].first) {
-      ++times[FaceId(other[0])];
-      ++times[FaceId(other[1])];
-    }
-    const FaceId first(e[0]), second(e[1]);
-    return times[first] > times[second] ? first : second;
+    const auto& reversed = report_[MeshFault::reversed_face].first;
+    return FaceId(std::count(reversed.begin(), reversed.end(), Element{e[0], kNull}) > 0 ? e[0] : e[1]);
   }
 
   bool seen_from_back(FaceId f) const {
@@ -269,7 +264,7 @@ class FindingsListBuilder {
     const Parts parts = parts_of(mesh_, kind, e);
     if (parts.edge) line({mesh_.vertices[e[0]], mesh_.vertices[e[1]]}, colour(kind), 5, true);
     if (!parts.edge && !parts.vertices.empty()) dot(mesh_.vertices[e[0]], colour(kind), 6);
-    if (kind == MeshFault::zero_area_face) {
+    if (kind == MeshFault::zero_area_face || kind == MeshFault::sliver) {
       std::vector<Vector3d> x = corners(mesh_, FaceId(e[0]));
       const bool one_place = std::all_of(x.begin(), x.end(), [&](const Vector3d& p) { return p == x[0]; });
       if (one_place) return dot(x[0], colour(kind), 6);

@@ -89,7 +89,7 @@ int run_close(const CloseOptions& o, const Globals& globals) {
   if (!mesh.report().queryable())
     throw InputError(mesh.mesh().name + ": has faults that must be fixed first; lrbscope inspect lists them");
   if (const MeshReport& report = mesh.report(); report.sheets > 0 && report.sheets == report.open_components)
-    throw InputError(report.line(MeshFault::open_edge, mesh.mesh()));
+    throw InputError(mesh.mesh().name + ": " + obstacles_to_build(mesh));
   check_mesh_name(o.out, mesh.mesh().dim);
   const ClosedHoles result = close_holes(mesh);
   const MeshReport after = check(result.mesh).report();

@@ -123,6 +123,7 @@ struct InspectOptions {
   bool regions = false, tried = false, self_intersections = false, levels = false;
   std::vector<double> shares{std::begin(bodies::kLevelShares), std::end(bodies::kLevelShares)};
   bodies::RegionOrder sort = bodies::RegionOrder::waste;
+  std::vector<std::string> fail_on;  ///< names of MeshFault
   unsigned threads = 0;
 };
 
@@ -386,12 +387,13 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
+  bool failed = false;
   if (bodies::is_lrb_file(o.file)) {
-    if (!o.drawing.empty())
-      throw InputError(
-          printable_name(o.file) +
-          ": expected a mesh for --draw, found an LRB-rep, which has no findings; give its mesh, or use "
-          "--render");
+    if (!o.drawing.empty() || !o.fail_on.empty())
+      throw InputError(printable_name(o.file) + ": expected a mesh for " +
+                       (o.drawing.empty() ? "--fail-on" : "--draw") +
+                       ", found an LRB-rep, which has no findings; give its mesh" +
+                       (o.drawing.empty() ? "" : ", or use --render"));
     rep = std::make_unique<LrbRep>(load_lrb(o.file));
     j["file"] = o.file;
     j["kind"] = "LRB-rep";
@@ -405,6 +407,12 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
     const std::vector<BoundaryLoop> loops = find_boundary_loops(mesh.mesh(), mesh.use());
     j = mesh_json(mesh, loops);
     const MeshReport shown = mesh.report().shortened();
+    for (std::size_t i = 0; i < kMeshFaultCount; ++i) {
+      const std::string kind(name_of(static_cast<MeshFault>(i)));
+      if (shown.findings[i].count == 0 || std::ranges::count(o.fail_on, kind) == 0) continue;
+      notes.push_back(mesh.mesh().name + ": fails on " + kind);
+      failed = true;
+    }
     if (!o.drawing.empty()) {
       const bool cross = shown[MeshFault::self_intersection].count > 0;
       draw_findings({mesh.mesh(), shown, loops,
@@ -440,7 +448,7 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   if (o.regions) report_regions(*rep, o, look, picture, j);
   note(globals, notes);
   print(o.json ? one_line(j) : as_text(j));
-  return valid ? kOk : kMismatch;
+  return valid && !failed ? kOk : kMismatch;
 }
 
 }  // namespace
@@ -451,6 +459,13 @@ Command add_inspect(App& root, const Globals& globals) {
   app->add_option("FILE", o->file, "Mesh or .lrb file")->required();
   app->add_flag("--validate", o->validate,
                 "Validate the LRB-rep (a mesh is built first); exit code 1 if it is invalid");
+  std::vector<std::string> kinds;
+  for (std::size_t i = 0; i < kMeshFaultCount; ++i) kinds.emplace_back(name_of(static_cast<MeshFault>(i)));
+  app->add_option("--fail-on", o->fail_on, "KIND,...",
+                  "Exit code 1 if the mesh has findings of these kinds, comma-separated: those of --json")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->one_of(kinds);
   app->add_flag(
       "--render", o->render,
       "Draw the body, its layers and its outermost wrapper; with --regions, also a map of wasted refinement "
@@ -473,14 +488,14 @@ Command add_inspect(App& root, const Globals& globals) {
                     "Only list the pairs of faces that intersect, one JSON line each, with kind, segments "
                     "and curve; exit code 1 if there are any");
   for (Option* other : {json, regions, app->get_option("--validate"), app->get_option("--render"),
-                        app->get_option("--output")})
+                        app->get_option("--output"), app->get_option("--fail-on")})
     pairs->excludes(other);
   auto* levels =
       app->add_flag("--levels", o->levels,
                     "Only list the levels of detail: how many faces the body (a mesh is built first) needs "
                     "at each of several tolerances, with proven deviations");
   for (Option* other : {pairs, regions, app->get_option("--validate"), app->get_option("--render"),
-                        app->get_option("--draw"), app->get_option("--output")})
+                        app->get_option("--draw"), app->get_option("--output"), app->get_option("--fail-on")})
     levels->excludes(other);
   app->add_option("--at", o->shares, "SHARE...",
                   "With --levels: tolerances, as fractions of the longest side of the body's box")

@@ -20,10 +20,10 @@ inline constexpr unsigned kMaxSplits = 6;
 /// Shares by which convex sets are shrunk until they are proven to be inside a body. Larger: looser lower
 /// bounds on depths.
 inline constexpr double kShrinks[] = {0x1p-42, 0x1p-36, 0x1p-32, 0x1p-28, 0x1p-24, 0x1p-21, 0x1p-18};
-/// A triangle whose doubled area is less than kSliver times its longest edge's square is no evidence against
-/// convexity; neither is a corner less than kHollow in front of a face. Convexity is proven separately, so
-/// these only save work.
-inline constexpr double kSliver = 0x1p-20, kHollow = 0x1p-28;
+/// A triangle whose doubled area is less than kThinTriangle times its longest edge's square is no evidence
+/// against convexity; neither is a corner less than kHollow in front of a face. Convexity is proven
+/// separately, so these only save work.
+inline constexpr double kThinTriangle = 0x1p-20, kHollow = 0x1p-28;
 /// A body is tested for convexity only up to this number of triangles that need another triangle's plane, and
 /// this product of the numbers of corners and triangles. Larger: seconds.
 inline constexpr unsigned kMaxHardTriangles = 1000;

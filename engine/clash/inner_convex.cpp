@@ -129,7 +129,7 @@ bool is_hollow(const UnitBody& body, const std::array<std::uint32_t, 3>& t) {
   const double area = (b - a).cross(c - a).norm();
   const double longest = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
   // The normal of a sliver is unreliable, so it is no evidence.
-  if (!(area > kSliver * longest)) return false;
+  if (!(area > kThinTriangle * longest)) return false;
   const Vector3d n = normal_of(body, t);
   const double height = n.dot(a) + kHollow;
   // A vertex clearly in front of a face contradicts convexity.

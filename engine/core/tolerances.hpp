@@ -15,6 +15,10 @@ inline constexpr double kFrameCornerWeight = 1e-12;
 /// them are not separated from the gaps.
 inline constexpr double kLengthCost = 1e-5;
 
+/// Height of a triangle, relative to its longest edge, below which `inspect` names it as a sliver. Larger:
+/// also long faces of cylinders.
+inline constexpr double kSliver = 1e-4;
+
 /// Cost added to a node for each simplex beneath it when binary nodes are collapsed into wide ones. It
 /// matters only for boxes smaller than about 1e-4 of the body, or without surface, where it minimises the
 /// mean height of the tree. Larger: it also affects larger boxes.

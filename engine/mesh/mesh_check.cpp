@@ -8,6 +8,8 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "engine/core/geometry.hpp"
+#include "engine/core/tolerances.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/nesting.hpp"
 #include "engine/mesh/polygon_shape.hpp"
@@ -91,6 +93,18 @@ FaceUse check_face(const Mesh& mesh, FaceId f, const std::vector<bool>& finite,
   const FaceUse use = mesh.dim == 2 ? check_segment(mesh, f, report) : check_polygon(mesh, f, report);
   // A face with a repeated corner never counts as convex: most have degenerate triangles.
   return twice == kNull ? use : std::min(use, FaceUse::area);
+}
+
+/// Notes the triangles with area whose height is tiny in relation to their longest edge.
+void note_slivers(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report) {
+  for (FaceId f = 0; f < use.size(); ++f) {
+    const auto c = mesh.face(f);
+    if (use[f] < FaceUse::area || c.size() != 3) continue;
+    const auto &x = mesh.vertices[c[0]], &y = mesh.vertices[c[1]], &z = mesh.vertices[c[2]];
+    const double longest = std::max({stable_norm3(y - x), stable_norm3(z - y), stable_norm3(x - z)});
+    // Twice the area of a triangle with a longest edge of 1 is its height.
+    if (norm3(((y - x) / longest).cross((z - x) / longest)) < kSliver) note(report, MeshFault::sliver, f);
+  }
 }
 
 /// Faces ordered by their sorted corners: equal faces become neighbours, in the order of their numbers.
@@ -180,11 +194,12 @@ void check_duplicates(const Mesh& mesh, const std::vector<FaceUse>& use, MeshRep
   }
 }
 
-/// Notes the pairs of faces that intersect, and calls found(f) for each of these faces. Thousands of copies
-/// of a triangle have millions of pairs: only the first of them is compared with other faces, and the pairs
-/// of the others are counted.
+/// Notes slivers and the pairs of faces that intersect, and calls found(f) for each of these faces. Thousands
+/// of copies of a triangle have millions of pairs: only the first of them is compared with other faces, and
+/// the pairs of the others are counted.
 template <class Found>
 void note_intersections(const Mesh& mesh, std::vector<FaceUse> use, MeshReport& report, const Found& found) {
+  note_slivers(mesh, use, report);
   std::unordered_map<FaceId, std::vector<FaceId>> copies_of;  // ascending, with the first one
   if (report[MeshFault::duplicate_face].count > 0) {
     const CornerSets sets(mesh, use);
@@ -288,44 +303,6 @@ void turn(Mesh& mesh, FaceId f) {
   if (last - first == 4) std::rotate(first, first + 2, last);
 }
 
-/// Returns true if the directed edges (2D: ends of segments) cancel: the boundary of the sum of the faces is
-/// empty.
-bool is_cycle(const Mesh& mesh, const std::vector<FaceUse>& use) {
-  if (std::find(use.begin(), use.end(), FaceUse::nothing) != use.end()) return false;
-  // The sides by their smaller vertex: the larger one, and +1 for sides that run to it, else -1.
-  struct Side {
-    VertexId to{};
-    std::int32_t sign = 0;
-  };
-  VertexBuckets<Side> sides(mesh.vertices.size(), [&](const auto& visit) {
-    for (FaceId f = 0; f < mesh.face_count(); ++f) {
-      const auto c = mesh.face(f);
-      // 2D: the boundary of a segment is its start minus its end.
-      if (mesh.dim == 2) {
-        visit(c[0], Side{c[0], 1});
-        visit(c[1], Side{c[1], -1});
-      }
-      for (std::size_t i = 0; mesh.dim == 3 && i < c.size(); ++i) {
-        const VertexId v = c[i], w = c[i + 1 < c.size() ? i + 1 : 0];
-        if (v != w) visit(std::min(v, w), Side{std::max(v, w), v < w ? 1 : -1});
-      }
-    }
-  });
-  bool cancel = !sides.items().empty();
-  sides.for_each_group([&](VertexId, std::span<Side> group) {
-    std::sort(group.begin(), group.end(), [](const Side& s, const Side& t) { return s.to < t.to; });
-    // Runs of equal edges: each must sum to zero.
-    std::int64_t sum = 0;
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      sum += group[i].sign;
-      if (i + 1 < group.size() && group[i + 1].to == group[i].to) continue;
-      cancel &= sum == 0;
-      sum = 0;
-    }
-  });
-  return cancel;
-}
-
 /// Returns for each component whether it is a sheet: it has an open edge and is planar. Exact.
 std::vector<bool> find_sheets(const Mesh& mesh, const MeshFindings& found) {
   // Only components with an open edge can be sheets.
@@ -364,10 +341,10 @@ MeshFindings examine(const Mesh& mesh, std::size_t kept) {
   check_vertices(mesh, report);
   // Adjacency of faces: components, closedness, genus.
   found.topology = analyse_topology(mesh, found.use, report);
-  check_seams(mesh, found.use, report);
+  check_seams(mesh, found.use, found.topology.open_edges, report);
   report.components = found.topology.components;
   report.closed = found.topology.closed;
-  report.bounds_solid = report.closed || is_cycle(mesh, found.use);
+  report.bounds_solid = report.closed || found.topology.cycle;
   report.genus = found.topology.genus;
   // Orientation of closed components by nesting depth; each is identified by its first face.
   found.inside_out = wrongly_facing_components(mesh, found.use, found.topology);
@@ -441,6 +418,7 @@ constexpr std::array<Help, kMeshFaultCount> kHelp = {{
     {MeshFault::repeated_corner, ElementKind::face_and_vertex, "remove the corner or the face",
      "a segment uses a vertex twice"},
     {MeshFault::zero_area_face, ElementKind::face, "collapse or remove it", "a segment has no length"},
+    {MeshFault::sliver, ElementKind::face, "collapse its shortest edge, or flip its longest one"},
     {MeshFault::non_planar_face, ElementKind::face, "triangulate it to choose its triangles"},
     {MeshFault::non_convex_face, ElementKind::face, "triangulate it to choose its triangles"},
     {MeshFault::folded_face, ElementKind::face,
@@ -458,6 +436,8 @@ constexpr std::array<Help, kMeshFaultCount> kHelp = {{
     {MeshFault::flipped_face, ElementKind::two_faces,
      "reverse one of them: list its corners in the opposite order",
      "two adjacent segments are inconsistently oriented"},
+    {MeshFault::reversed_face, ElementKind::face, "list its corners in the opposite order",
+     "a segment is reversed against the rest of its outline", "exchange its ends"},
     {MeshFault::non_manifold_vertex, ElementKind::vertex, "duplicate the vertex, one copy per fan"},
     {MeshFault::inside_out, ElementKind::component, "it can be flipped without loss"},
     {MeshFault::self_intersection, ElementKind::two_faces, "inside and outside are then decided by parity",
@@ -507,7 +487,7 @@ std::string_view noun(ElementKind kind, int dim) {
 /// Returns the advice on open edges, which depends on whether there is a hole at all.
 std::string advice_on_openings(const MeshReport& report) {
   if (report[MeshFault::t_junction].count + report[MeshFault::near_vertex].count > 0)
-    return "fix the T-junctions or merge the vertices named below, which leave slits";
+    return "fix the T-junctions and near vertices, which leave slits";
   const std::uint32_t sheets = report.sheets, open = report.open_components;
   // Only sheets: closing them would create a body without volume.
   if (sheets > 0 && sheets == open)

@@ -11,18 +11,12 @@
 #include "engine/mesh/nearest_on_simplex.hpp"
 #include "engine/mesh/vertex_groups.hpp"
 #include <lrbscope/mesh_check.hpp>
-#include <lrbscope/mesh_repair.hpp>
 
 namespace lrb {
 namespace {
 
 constexpr double kSeam = 1e-6;          // the width of a seam, relative to the diagonal of the body's box
 constexpr double kMaxDiagonal = 1e150;  // squares of longer ones overflow
-
-struct OpenEdge {
-  VertexId from, to;
-  FaceId face;
-};
 
 /// Pairs of vertices.
 using OpenKeys = std::unordered_set<std::uint64_t>;
@@ -53,9 +47,9 @@ void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges,
         Box(x, x), [&](const Box&) { return !found; },
         [&](std::uint32_t i) {
           const OpenEdge& e = edges[i];
-          const auto face = mesh.face(e.face);
-          if (found || std::find(face.begin(), face.end(), v) != face.end()) return;
-          found = is_on(x, mesh.vertices[e.from], mesh.vertices[e.to], width);
+          if (found || !is_on(x, mesh.vertices[e.from], mesh.vertices[e.to], width)) return;
+          // Last, because a face can have very many corners: is the vertex one of them?
+          found = std::ranges::count(mesh.face(e.face), v) == 0;
           if (found) note(report, MeshFault::t_junction, v, e.face);
         });
   }
@@ -85,23 +79,15 @@ void find_near_vertices(const Mesh& mesh, const OpenKeys& open, std::vector<Vert
 
 }  // namespace
 
-void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report) {
-  if (mesh.dim == 2 || report[MeshFault::open_edge].count == 0) return;
+void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, std::vector<OpenEdge> edges,
+                 MeshReport& report) {
+  std::erase_if(edges, [&](const OpenEdge& e) { return use[e.face] < FaceUse::points; });
+  if (edges.empty()) return;
   OpenKeys open;
-  for (const BoundaryLoop& loop : find_boundary_loops(mesh, use))
-    for (std::size_t i = 0; i < loop.edges(); ++i)
-      open.insert(seam_key(loop.vertices[i], loop.vertices[(i + 1) % loop.vertices.size()]));
-  std::vector<OpenEdge> edges;
   std::vector<VertexId> corners;
-  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-    if (use[f] < FaceUse::points) continue;
-    const auto face = mesh.face(FaceId(f));
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      const VertexId from = face[i], to = face[(i + 1) % face.size()];
-      if (!open.contains(seam_key(from, to))) continue;
-      edges.push_back({from, to, FaceId(f)});
-      corners.insert(corners.end(), {from, to});
-    }
+  for (const OpenEdge& e : edges) {
+    open.insert(seam_key(e.from, e.to));
+    corners.insert(corners.end(), {e.from, e.to});
   }
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());

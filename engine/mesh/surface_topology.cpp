@@ -6,9 +6,11 @@
 //    vertices.
 // 3. Classify each edge: closed manifold edges have two sides in opposite directions.
 // 4. Classify each vertex: manifold vertices have one fan.
-// 5. Genus by Euler's formula, if the surface is closed and manifold.
+// 5. If faces are flipped, name those that disagree with the majority of their surface.
+// 6. Genus by Euler's formula, if the surface is closed and manifold.
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "engine/mesh/vertex_groups.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
@@ -48,8 +50,12 @@ class Analysis {
     all_usable_ = true;
     for (FaceId f = 0; f < mesh.face_count(); ++f) {
       all_usable_ &= use[f] != FaceUse::nothing;
-      if (use[f] != FaceUse::nothing && has_different_corners(mesh.face(f), mesh.dim)) add_face(f);
+      if (use[f] == FaceUse::nothing) continue;
+      const bool is_added = has_different_corners(mesh.face(f), mesh.dim);
+      if (is_added) add_face(f);
+      out_.cycle |= is_added || mesh.dim == 2 || has_different_corners(mesh.face(f), 2);  // has sides
     }
+    out_.cycle &= all_usable_;
     sort_sides();
   }
 
@@ -58,7 +64,12 @@ class Analysis {
     for_each_edge([&](std::span<const SideUse> edge) { join(edge); });
     number_components();
     for_each_edge([&](std::span<const SideUse> edge) { judge(edge); });
+    std::sort(open_.begin(), open_.end());
+    for (const auto& [corner, face] : open_)
+      out_.open_edges.push_back(
+          {mesh_.face_vertices[corner], mesh_.face_vertices[next_corner(corner, face)], face});
     const bool manifold = judge_fans();
+    if (report_[MeshFault::flipped_face].count > 0) find_reversed();
     out_.closed = all_usable_ && out_.components > 0 &&
                   std::find(out_.component_closed.begin(), out_.component_closed.end(), false) ==
                       out_.component_closed.end();
@@ -112,9 +123,10 @@ class Analysis {
   }
 
   /// Returns the next corner of the same face.
-  std::uint32_t next_corner(const SideUse& s) const {
-    return s.corner + 1 == mesh_.face_offsets[s.face + 1] ? mesh_.face_offsets[s.face] : s.corner + 1;
+  std::uint32_t next_corner(std::uint32_t corner, FaceId face) const {
+    return corner + 1 == mesh_.face_offsets[face + 1] ? mesh_.face_offsets[face] : corner + 1;
   }
+  std::uint32_t next_corner(const SideUse& s) const { return next_corner(s.corner, s.face); }
 
   void join(std::span<const SideUse> edge) {
     ++edges_;
@@ -151,13 +163,39 @@ class Analysis {
     const bool opposite = edge.size() == 2 && edge[0].forward != edge[1].forward;
     if (opposite) return;
     out_.component_closed[out_.component_of_face[edge[0].face]] = false;
+    const auto ahead = std::count_if(edge.begin(), edge.end(), [](const SideUse& s) { return s.forward; });
+    out_.cycle &= 2 * static_cast<std::size_t>(ahead) == edge.size();
     // Two sides in the same direction: one face is flipped.
     if (edge.size() == 2) return note(report_, MeshFault::flipped_face, edge[0].face, edge[1].face);
-    if (edge.size() == 1) out_.component_open[out_.component_of_face[edge[0].face]] = true;
+    if (edge.size() == 1) {
+      out_.component_open[out_.component_of_face[edge[0].face]] = true;
+      if (mesh_.dim == 3) open_.emplace_back(edge[0].corner, edge[0].face);
+    }
     const MeshFault fault = edge.size() == 1 ? MeshFault::open_edge : MeshFault::non_manifold_edge;
     // The key is the edge: the upper and lower 32 bits are its vertices.
     if (mesh_.dim == 2) return note(report_, fault, static_cast<VertexId>(edge[0].key));
     note(report_, fault, static_cast<VertexId>(edge[0].key >> 32), static_cast<VertexId>(edge[0].key));
+  }
+
+  /// Each face f has a reverse side F + f. Edges of two faces unite the sides that are consistent. A surface
+  /// of which no face is united with its reverse has two orientations: the sets of f and of F + f.
+  void find_reversed() {
+    const auto n = static_cast<std::uint32_t>(mesh_.face_count());
+    DisjointSets sides(2 * std::size_t{n});
+    for_each_edge([&](std::span<const SideUse> edge) {
+      if (edge.size() != 2) return;
+      const std::uint32_t f = edge[0].face, g = edge[1].face;
+      const bool flipped = edge[0].forward == edge[1].forward;
+      sides.join(f, flipped ? n + g : g);
+      sides.join(n + f, flipped ? g : n + g);
+    });
+    // The smaller set of each surface is the faces to be reversed.
+    std::vector<std::uint32_t> size(2 * std::size_t{n}, 0);
+    for (std::uint32_t f = 0; f < n; ++f) ++size[sides.leader(f)];
+    for (std::uint32_t f = 0; f < n; ++f) {
+      const std::uint32_t side = sides.leader(f), other = sides.leader(n + f);
+      if (side != other && size[side] < size[other]) note(report_, MeshFault::reversed_face, f);
+    }
   }
 
   /// Returns true if every vertex has at most one fan. (In 2D vertices take the role of edges and are
@@ -185,7 +223,8 @@ class Analysis {
   MeshReport& report_;
   SurfaceTopology out_;
   std::vector<SideUse> sides_;
-  DisjointSets faces_;               ///< united over edges
+  std::vector<std::pair<std::uint32_t, FaceId>> open_;  ///< corners at which open edges start
+  DisjointSets faces_;                                  ///< united over edges
   DisjointSets corners_;             ///< corners of all faces, united around their vertex: each set is a fan
   std::vector<std::uint32_t> fans_;  ///< (|V|) number of fans at a vertex: corners minus unions
   bool all_usable_ = false;

@@ -106,11 +106,10 @@ std::array<LoadedBody, 2> load_two(const std::string& a, const std::string& b, c
     return {std::move(first), load(b)};
   };
   std::array<LoadedBody, 2> both = load_both();
-  // A cache that cannot be used gives the same note for both.
-  if (a != b)
-    std::erase_if(both[1].notes, [&](const std::string& note) {
-      return std::find(both[0].notes.begin(), both[0].notes.end(), note) != both[0].notes.end();
-    });
+  // A cache that cannot be used gives the same note for both, as do two bodies of one file.
+  std::erase_if(both[1].notes, [&](const std::string& note) {
+    return std::find(both[0].notes.begin(), both[0].notes.end(), note) != both[0].notes.end();
+  });
   return both;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include <doctest/doctest.h>
 
@@ -127,7 +128,12 @@ TEST_CASE("each fault is found alone, with its elements, and decides what the me
             true,
             {{4, 1}}},
            {needle(0.3125), {{zero_area_face, 1}, {open_edge, 3}}, false, false, true},
-           {needle(std::nextafter(0.3125, 1)), {{open_edge, 3}}, false, false, true},
+           {needle(std::nextafter(0.3125, 1)),
+            {{sliver, 1}, {open_edge, 3}},
+            false,
+            false,
+            true,
+            {{0, kNull}}},
            {mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{0, 1, 2, 3}}),
             {{zero_area_face, 1}, {open_edge, 4}},
             false,
@@ -156,6 +162,14 @@ TEST_CASE("each fault is found alone, with its elements, and decides what the me
            {mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1 + 1e-9, 0, 0}, {0, 1 + 1e-9, 0}},
                     {{0, 1, 2}, {4, 3, 5}}),
             {{open_edge, 6}, {near_vertex, 2}},
+            false,
+            false,
+            true},
+           // Slivers at every size; none is one with a height of more than 1e-4.
+           {scaled(
+                mesh_of({{0, 0, 0}, {1, 0, 0}, {0.5, 0.9e-4, 0}, {0.5, 0, 1.1e-4}}, {{0, 1, 2}, {1, 0, 3}}),
+                1e-200),
+            {{sliver, 1}, {open_edge, 4}},
             false,
             false,
             true},
@@ -261,7 +275,8 @@ TEST_CASE("two cubes that share an edge, or a vertex") {
 
 TEST_CASE("faces flipped against their neighbours") {
   const MeshReport report = check_mesh(with_flipped(icosphere(1), {FaceId(17)}));
-  check_faults(report, {{MeshFault::flipped_face, 3}});
+  check_faults(report, {{MeshFault::flipped_face, 3}, {MeshFault::reversed_face, 1}});
+  CHECK(report[MeshFault::reversed_face].first == Elements{{17, kNull}});
   CHECK_FALSE(report.closed);
   CHECK_FALSE(report.buildable());
   for (const auto& pair : report[MeshFault::flipped_face].first) CHECK((pair[0] == 17 || pair[1] == 17));
@@ -284,7 +299,17 @@ TEST_CASE("faces flipped against their neighbours") {
 
   Mesh flat = circle(5);
   std::swap(flat.face_vertices[4], flat.face_vertices[5]);
-  check_faults(check_mesh(flat), {{MeshFault::flipped_face, 2}});
+  check_faults(check_mesh(flat), {{MeshFault::flipped_face, 2}, {MeshFault::reversed_face, 1}});
+  // For each surface the smaller part; of two halves, neither.
+  const auto reversed = [](const std::set<FaceId>& faces) {
+    return check_mesh(
+               with_flipped(several({box(), translated(box(), {3, 0, 0})}), faces))[MeshFault::reversed_face]
+        .first;
+  };
+  CHECK(reversed({FaceId(1), FaceId(12), FaceId(13), FaceId(14), FaceId(15), FaceId(16), FaceId(17),
+                  FaceId(18)}) ==
+        Elements{{1, kNull}, {19, kNull}, {20, kNull}, {21, kNull}, {22, kNull}, {23, kNull}});
+  CHECK(reversed({FaceId(0), FaceId(1), FaceId(2), FaceId(3), FaceId(4), FaceId(5)}).empty());
 }
 
 }  // namespace lrb::test

@@ -81,6 +81,15 @@ def test_files(ball, tmp_path, ending):
     assert Body.load(path, regions=False).real_face_count == ball.real_face_count
 
 
+def test_t_junctions_are_named(tmp_path):
+    vertices = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.5, 1e-8, 0)]
+    faces = [(0, 2, 1), (0, 4, 3), (4, 1, 3), (1, 2, 3), (2, 0, 3)]
+    lines = ["v %.17g %.17g %.17g\n" % v for v in vertices] + ["f %d %d %d\n" % (a + 1, b + 1, c + 1) for a, b, c in faces]
+    (tmp_path / "t.obj").write_text("".join(lines))
+    for body in (Body(vertices, faces), Body.load(tmp_path / "t.obj")):
+        assert "(T-junction) (1 time): vertex 4 (face 0)" in body.notes[0]
+
+
 def test_files_that_are_not_there(tmp_path):
     with pytest.raises(InputError, match="nowhere.obj"):
         Body.load(tmp_path / "nowhere.obj")

@@ -21,15 +21,17 @@ namespace lrb {
   MESH_FAULT(index_out_of_range, "a face has a vertex index out of range", false, false)                  \
   MESH_FAULT(repeated_corner, "a face uses a vertex twice", false, true)                                  \
   MESH_FAULT(zero_area_face, "a face has no area", false, true)                                           \
+  MESH_FAULT(sliver, "a triangle is a sliver", true, true)                                                \
   MESH_FAULT(non_planar_face, "a polygon is not planar", true, true)                                      \
   MESH_FAULT(non_convex_face, "a polygon is not convex", true, true)                                      \
   MESH_FAULT(folded_face, "a polygon crosses itself or is far from planar", true, true)                   \
   MESH_FAULT(duplicate_face, "two faces have the same corners", false, true)                              \
   MESH_FAULT(open_edge, "an edge has only one face", false, true)                                         \
-  MESH_FAULT(t_junction, "a vertex lies on an open edge of a face (T-junction)", true, true)              \
-  MESH_FAULT(near_vertex, "two vertices of open edges nearly coincide", true, true)                       \
+  MESH_FAULT(t_junction, "a vertex lies on an open edge of a face (T-junction)", false, true)             \
+  MESH_FAULT(near_vertex, "two vertices of open edges nearly coincide", false, true)                      \
   MESH_FAULT(non_manifold_edge, "an edge has more than two faces", false, true)                           \
   MESH_FAULT(flipped_face, "two adjacent faces are inconsistently oriented", false, true)                 \
+  MESH_FAULT(reversed_face, "a face is reversed against the rest of its surface", false, true)            \
   MESH_FAULT(non_manifold_vertex, "a vertex joins two separate fans of faces", true, true)                \
   MESH_FAULT(inside_out, "a component is inside out", false, true)                                        \
   MESH_FAULT(self_intersection, "two faces intersect outside their shared edges and corners", true, true) \
@@ -87,9 +89,9 @@ struct MeshReport {
 };
 
 /// Runs all checks. (To continue with the mesh, use CheckedMesh.) Self-intersections are found exactly with a
-/// box tree, only if requested, because they take longest. Faces without area are reported as zero_area_face
-/// only; contacts with them are not self-intersections. In 2D, vertices take the role of edges: each must end
-/// one segment and start one.
+/// box tree, and slivers (triangles with a height below 1e-4 of their longest edge), only if requested,
+/// because they take longest. Faces without area are reported as zero_area_face only; contacts with them are
+/// not self-intersections. In 2D, vertices take the role of edges: each must end one segment and start one.
 MeshReport check_mesh(const Mesh& mesh, bool self_intersections = true);
 
 /// Orients every closed component so that the solid is behind its faces. A component nested directly inside
@@ -130,25 +132,36 @@ void sort_elements(MeshReport& report);
 
 // Adjacency of faces, and the properties derived from it: components, closedness, genus.
 
+/// An open edge, in the direction of its face.
+struct OpenEdge {
+  VertexId from, to;
+  FaceId face;
+};
+
 struct SurfaceTopology {
   std::uint32_t components = 0;
   std::vector<std::uint32_t> component_of_face;  ///< (|F|) numbered by first face; kNull: face is not usable
   std::vector<bool> component_closed;            ///< every edge has exactly two faces, in opposite directions
   std::vector<bool> component_open;              ///< some edge has a face on one side only
+  std::vector<OpenEdge> open_edges;              ///< 3D: by face, then corner
   bool closed = false;                           ///< all faces are usable and all components are closed
+  /// Every edge is traversed equally often in both directions: the boundary of the sum of the faces is empty.
+  bool cycle = false;
   int genus = -1;  ///< sum over the components; -1 unless closed and every vertex has one fan. 2D: 0
 };
 
 /// Analyses the surface. Adjacent faces share an edge (3D), or a vertex at which one segment ends and the
 /// other starts (2D). Reports open and non-manifold edges, flipped faces and non-manifold vertices (2D:
-/// vertices in the role of edges). Skips faces with fewer than three (2D: two) distinct corners, whose edges
+/// vertices in the role of edges); and if a surface can be oriented by reversing less than half of its faces,
+/// these. Skips faces with fewer than three (2D: two) distinct corners, whose edges
 /// cancel each other.
 SurfaceTopology analyse_topology(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
 
-/// Reports the likely causes of open edges: vertices on the open edge of another face, and vertices that
-/// nearly coincide, within 1e-6 of the diagonal of the open edges' box. At most one of each for a vertex. 3D
-/// only.
-void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport& report);
+/// Reports the likely causes of these open edges: vertices on the open edge of another face, and vertices
+/// that nearly coincide, within 1e-6 of the diagonal of the open edges' box. At most one of each for a
+/// vertex. 3D only.
+void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, std::vector<OpenEdge> edges,
+                 MeshReport& report);
 
 // A mesh with the results of its checks, so that no check runs twice.
 
@@ -179,7 +192,8 @@ class CheckedMesh {
   /// returns their number.
   std::uint32_t turn_outward();
 
-  /// Finds pairs of faces that intersect beyond their shared corners and edges, and adds them to the report.
+  /// Finds pairs of faces that intersect beyond their shared corners and edges, and slivers, and adds them to
+  /// the report.
   /// Takes longer than all other checks together. Has no effect if called before.
   void find_self_intersections();
   /// Returns the faces in such pairs, ascending. If find_self_intersections() was not called, searches for
