@@ -92,22 +92,6 @@ class Walker {
   std::size_t at_ = 0;
 };
 
-/// Returns nlohmann's message without its exception name, number and position.
-std::string plain_reason(const std::string& what) {
-  const std::size_t colon = what.find(": ");
-  std::string reason = colon == std::string::npos ? what : what.substr(colon + 2);
-  for (const char* mark : {"syntax error while parsing ", "parsing "}) {
-    const std::size_t at = reason.find(mark);
-    if (at == 0) reason.erase(0, std::string_view(mark).size());
-  }
-  const std::size_t last_read = reason.find("; last token: ");
-  if (last_read != std::string::npos) {  // keeps "expected ...", if present
-    const std::size_t expected = reason.find("; expected ", last_read);
-    reason = reason.substr(0, last_read) + (expected == std::string::npos ? "" : reason.substr(expected));
-  }
-  return printable_name(reason);  // on one line, even if it quotes other text
-}
-
 /// An iterator over a text. The parser reads through a copy of it; `seen` tracks the copy's position.
 class Reading {
  public:
@@ -194,6 +178,22 @@ TextPosition position_in(const std::string& text, std::size_t offset) {
   TextPosition p;
   advance(p, text, 0, offset);
   return p;
+}
+
+std::string plain_reason(const std::string& what) {
+  std::string reason = what;
+  if (reason.starts_with("[json.")) reason.erase(0, reason.find(' ') + 1);
+  if (reason.starts_with("parse error at ")) reason.erase(0, reason.find(": ") + 2);
+  for (const char* mark : {"syntax error while parsing ", "parsing "}) {
+    const std::size_t at = reason.find(mark);
+    if (at == 0) reason.erase(0, std::string_view(mark).size());
+  }
+  const std::size_t last_read = reason.find("; last token: ");
+  if (last_read != std::string::npos) {  // keeps "expected ...", if present
+    const std::size_t expected = reason.find("; expected ", last_read);
+    reason = reason.substr(0, last_read) + (expected == std::string::npos ? "" : reason.substr(expected));
+  }
+  return printable_name(reason);  // on one line, even if it quotes other text
 }
 
 std::string pointer_part(const std::string& key) {

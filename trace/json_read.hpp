@@ -62,6 +62,9 @@ class JsonText {
   std::unique_ptr<JsonIndex> index_;
 };
 
+/// Returns a message of nlohmann's without the exception's name, number and position.
+std::string plain_reason(const std::string& what);
+
 /// Returns a member's name or an index as a component of a JSON pointer.
 std::string pointer_part(const std::string& key);
 

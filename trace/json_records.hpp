@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "trace/json_read.hpp"
 #include <lrbscope/core/fields.hpp>
 #include <lrbscope/enum_names.hpp>
 #include <lrbscope/error.hpp>
@@ -74,7 +75,7 @@ Record record_from_json(const nlohmann::json& value) {
     try {
       record.*field.member = JsonOf<Value>::read(value.at(key));
     } catch (const nlohmann::json::exception& e) {
-      throw InputError(std::string(key) + ": " + e.what());
+      throw InputError(std::string(key) + ": " + plain_reason(e.what()));
     }
   });
   return record;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trace/event_fields.hpp"
+#include "trace/json_read.hpp"
 #include "trace/trace_json_parts.hpp"
 #include "trace/trace_node.hpp"
 #include <lrbscope/error.hpp>
@@ -93,10 +94,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
     constexpr int kNumberTooLarge = 406;
     if (error.id == kNumberTooLarge)
       throw InputError(name_ + ": a number is too large for a double; the trace is damaged; record it again");
-    std::string what =
-        error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
-    const std::size_t colon = what.find(": ");
-    if (colon != std::string::npos) what.erase(0, colon + 2);
+    std::string what = io::plain_reason(error.what());
     constexpr std::size_t kShown = 160;  // the parser quotes an unfinished string completely
     if (what.size() > kShown) what = what.substr(0, kShown) + "...";
     throw InputError(name_ + ": " + line_and_column(text_, offset) + ": not valid JSON: " + what +

@@ -220,8 +220,8 @@ DataSet read_data_set(const std::string& path) {
     for (const json& q : value.at("questions")) set.questions.push_back(question_from(q, set.quantity));
     return set;
   } catch (const json::exception& e) {
-    throw InputError(printable_name(path) + ": not a data set of lrbscope bench or chart (" + e.what() +
-                     "); remove it to create it again");
+    throw InputError(printable_name(path) + ": not a data set of lrbscope bench or chart (" +
+                     io::plain_reason(e.what()) + "); remove it to create it again");
   }
 }
 

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/bodies/generators.hpp"
+#include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh_check.hpp>
@@ -173,7 +174,7 @@ void read_times(const std::string& text, const std::string& file, std::vector<Co
       if (found == by_key.end()) reject(number, "a time for a step without a record");
       for (std::size_t i = 0; i < ns.size(); ++i) found->second->counts[i].nanoseconds = ns[i];
     } catch (const nlohmann::json::exception& e) {
-      reject(number, "not the time of a step: " + printable_name(e.what()));
+      reject(number, "not the time of a step: " + io::plain_reason(e.what()));
     }
     begin = end + 1;
   }

@@ -80,19 +80,20 @@ nlohmann::ordered_json experiment(const ShardFile& s) {
 }
 
 ShardFile read(const std::string& path) {
-  const auto reject = [&](const char* why) {
-    throw InputError(printable_name(path) + ": not written by `lrbscope paper --shard`: " +
-                     printable_name(why) + "; give the records.jsonl files of its shards' output folders");
+  const auto reject = [&](const std::string& why) {
+    throw InputError(printable_name(path) + ": not written by `lrbscope paper --shard`: " + why +
+                     "; give the records.jsonl files of its shards' output folders");
   };
-  const auto j = nlohmann::json::parse(io::read_text(path), nullptr, false);
+  const std::string text = io::read_text(path);
   ShardFile s;
   try {
+    const auto j = nlohmann::json::parse(text);
     s.shard = {j.at("shard").get<std::uint32_t>(), j.at("shards").get<std::uint32_t>()};
     s.protocol = io::record_from_json<PaperProtocol>(j);
     s.resolutions = io::record_from_json<resolutions::ResolutionOptions>(j);
     s.lean = j.value("lean", false);
   } catch (const nlohmann::json::exception& e) {
-    reject(e.what());
+    reject(io::plain_reason(e.what()));
   } catch (const InputError& e) {
     reject(e.what());
   }
@@ -237,7 +238,7 @@ std::vector<ContactStep> read_json_lines(const std::string& text, const std::str
                                             text.begin() + static_cast<std::ptrdiff_t>(end))));
     } catch (const std::exception& e) {
       throw InputError(printable_name(file) + ":" + std::to_string(line) +
-                       ": not a record of `lrbscope paper`: " + printable_name(e.what()) +
+                       ": not a record of `lrbscope paper`: " + io::plain_reason(e.what()) +
                        "; give the records.jsonl files written by its shards");
     }
     begin = end + 1;
