@@ -108,6 +108,9 @@ TEST_CASE("clash: boxes that overlap by a known amount") {
     check_holds(r.along, 1 - c.at.z(), 1e-10);
     check_translation(closed(a), Pose{}, closed(a), Pose::translation(c.at), r);
   }
+  // A plate within the other body: at most its own volume.
+  const double top = 0.5 + 1e-11;
+  check_holds(ask(a, shapes::box({0.25, 0.25, 0.5}, {0.75, 0.75, top})).volume, 0.25 * (top - 0.5), 5e-12);
 }
 
 TEST_CASE("clash: touching, separate, and within a clearance") {
