@@ -35,6 +35,7 @@ class TriangleReach {
   explicit TriangleReach(const CheckedTriangle& t);
   /// Returns false only if the triangle is proven to be outside the box.
   bool may_meet(const Eigen::AlignedBox3d& other) const;
+  double slack() const { return slack_; }
 
  private:
   Eigen::AlignedBox3d box_;

@@ -28,13 +28,12 @@ constexpr std::size_t kMaxSlots = 4096;
 constexpr double kMaxTurned = 0.5;
 constexpr FarNodes kNone = {~0U, ~0U, {0, 0, 0}, 0, 0};
 
-/// Returns the Frobenius norm of the change of a map, rounded up.
+/// Returns the Frobenius norm of the change of a map. kFloatUp covers its rounding, and that of sums.
 double change(const double (&from)[3][4], const double (&to)[3][4]) {
   double square = 0;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) square += std::pow(to[column][row] - from[column][row], 2);
-  constexpr double kUp = 1 + 0x1p-40;
-  return std::sqrt(square) * kUp;
+  return std::sqrt(square);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ void run_tree_kernel_for_enclosure(TreeKernel& k);
 #include "engine/tree/tree_kernel.inl"
 #include "tests/support/bodies.hpp"
 #include "tests/support/exact_boxes.hpp"
+#include "tests/support/margins.hpp"
 
 using namespace lrb;
 
@@ -59,29 +60,50 @@ class Seen {
   std::vector<Exact3> on_a_;
 };
 
-/// Differences of two corners of the first simplex of each leaf, on A's axes, and their error bounds.
-void check_edges(const Scene& s, const TreeKernel& k, const TreeNode& na, const TreeNode& nb,
-                 const Between& w, const std::vector<Exact3>& a, const std::vector<Exact3>& b, Share& share) {
-  const LeafBlock* blocks[2] = {&s.a->tree().blocks()[na.first], &s.b->tree().blocks()[nb.first]};
-  for (int side = 0; side < 2; ++side) {
-    VertexId v[3];
-    (side == 0 ? *s.a : *s.b).simplex(blocks[side]->simplex[0], v);
-    float got[2][3];
-    for (int corner = 0; corner < 2; ++corner) {
-      float x[3];
-      for (int j = 0; j < 3; ++j)
-        x[j] = blocks[side]->corner[corner][j][0] * (side == 0 ? k.ratio_a : k.ratio_b);
-      for (int i = 0; i < 3; ++i)
-        got[corner][i] = side == 0 ? x[i] : w.t[i] + w.r[i][0] * x[0] + w.r[i][1] * x[1] + w.r[i][2] * x[2];
-    }
-    const auto& of = side == 0 ? a : b;
+/// Edges of A's (side 0) or B's simplices on the axes of A's nodes. Doubles are exact enough, since the
+/// kernel has floats.
+template <std::size_t kSide, int kFar>
+double share_of_edges(std::span<const double> genes) {
+  static const LrbRep body = test::closed(shapes::bumpy_sphere(1, 3));
+  const auto vector = [](std::span<const double> g) {
+    return Eigen::Vector3d(2 * g[0] - 1, 2 * g[1] - 1, 2 * g[2] - 1);
+  };
+  const Pose a = Pose::rotation(vector(genes), 6 * genes[3]),
+             b = Pose::rotation(vector(genes.subspan(4)), 6 * genes[7],
+                                std::exp2(kFar * genes[8] - 20) * vector(genes.subspan(9)));
+  const TreeKernel k = set_up_kernel(body.tree(), a, body.tree(), b);
+  std::vector<const TreeNode*> leaves;
+  for (const TreeNode& n : body.tree().nodes())
+    if (n.is_leaf) leaves.push_back(&n);
+  const auto pick = [](double gene, std::size_t n) {
+    return static_cast<std::size_t>(gene * static_cast<double>(n));
+  };
+  const TreeNode* const node[] = {leaves[pick(genes[12], leaves.size())],
+                                  leaves[pick(genes[13], leaves.size())]};
+  const Between w = between(k, *node[0], *node[1]);
+  const LeafBlock& block = body.tree().blocks()[node[kSide]->first];
+  const std::size_t lane = pick(genes[14], node[kSide]->count);
+  VertexId v[3];
+  body.simplex(block.simplex[lane], v);
+  double most = 0;
+  for (std::size_t corner = 0; corner < 2; ++corner) {
+    Eigen::Vector3d exact =
+        (body.vertices()[v[corner + 1]] - body.vertices()[v[corner]]) / body.tree().unit();
+    if (kSide == 1) exact = a.r.transpose() * (b.r * exact);
     for (int i = 0; i < 3; ++i) {
-      const float edge = got[1][i] - got[0][i];
-      if (!std::isfinite(edge) || !std::isfinite(w.edge_error[side])) continue;
-      const Exact off = of[v[1]][i] - of[v[0]][i] - Exact(edge), bound(w.edge_error[side]);
-      share.too_small += bound < off || off < Exact(0.0) - bound;
+      float at[2];
+      for (std::size_t end = 0; end < 2; ++end) {
+        const auto& x = block.corner[corner + end];
+        at[end] = kSide == 0
+                      ? x[i][lane]
+                      : w.t[i] + w.r[i][0] * x[0][lane] + w.r[i][1] * x[1][lane] + w.r[i][2] * x[2][lane];
+      }
+      const auto& axis = node[0]->frame[i];
+      most = std::max(most, std::abs(axis[0] * exact[0] + axis[1] * exact[1] + axis[2] * exact[2] -
+                                     double{at[1] - at[0]}));
     }
   }
+  return most / w.edge_error[kSide];
 }
 
 Share check_nodes(const Scene& s) {
@@ -122,8 +144,6 @@ Share check_nodes(const Scene& s) {
       }
       check_axes(a_on_a, b_on_a, boxes_a, turn_b<false>(boxes_b, w), w.error, share);
       check_axes(b_on_b, a_on_b, boxes_b, turn_a<false>(boxes_a, w), w.error, share);
-      if (nodes_a[p].is_leaf && nodes_b[q].is_leaf)
-        check_edges(s, k, nodes_a[p], nodes_b[q], w, on_a[p].a, on_a[p].b, share);
     }
   return share;
 }
@@ -201,6 +221,13 @@ TEST_CASE("boxes and balls contain all simplices below them, at any scale, aspec
     }
   for (const Eigen::Vector3d& by : {Eigen::Vector3d(0, 0, 0), {1, 0, 0}, {0, 0, 1e-15}})  // a point, a line
     check_tree(closed(shapes::translated(test::stretched(shapes::icosphere(1), by), {1, 1, 1})));
+}
+
+TEST_CASE("margins of edges are needed, and suffice") {
+  const test::Margin rows[] = {{"own edges", 15, share_of_edges<0, 0>, 0.08},
+                               {"turned edges", 15, share_of_edges<1, 0>, 0.029},
+                               {"far edges", 15, share_of_edges<1, 40>, 0.35}};
+  test::check_margins(rows);
 }
 
 TEST_CASE("pairs culled by boxes are disjoint in exact arithmetic: random and adversarial poses") {

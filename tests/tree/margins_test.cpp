@@ -3,6 +3,8 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
+#include "engine/construct/embed_check.hpp"
+#include "engine/core/geometry.hpp"
 #include "engine/exact/plane_side.hpp"
 #include "engine/motion/motion_bounds.hpp"
 #include "engine/tree/kernel_setup.hpp"
@@ -106,13 +108,47 @@ double share_of_affine_slack(Genes genes) {
   return static_cast<double>(most / Real(axes.slack));
 }
 
+/// Rounding moves corners of two bodies relative to each other by less than what wrappers add to the slack.
+double share_of_wrapper_slack(Genes genes) {
+  const Vector3d x[2] = {body().vertices()[1], body().vertices()[2]};
+  Pose pose[2];
+  for (std::size_t side = 0; side < 2; ++side)
+    pose[side] =
+        Pose::rotation(vector(genes.subspan(4 * side)), 6 * genes[3 + 4 * side], far(genes.subspan(8)));
+  const ObbTree& tree = body().tree();
+  TreeKernel k = set_up_kernel(tree, pose[0], tree, pose[1]);
+  const double before = k.slack;
+  allow_for_wrappers(k);
+  Real square = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Real off = (Real(pose[0].apply(x[0])[i]) - placed(pose[0], x[0], i)) -
+                     (Real(pose[1].apply(x[1])[i]) - placed(pose[1], x[1], i));
+    square += off * off;
+  }
+  return static_cast<double>(sqrt(square)) / tree.unit() / (k.slack - before);
+}
+
+/// Points in the plane of a triangle, with whole coordinates.
+double share_of_triangle_plane(Genes genes) {
+  const auto whole = [&](Genes g) { return Vector3d((0x1p40 * vector(g)).array().round()); };
+  const Vector3d a = whole(genes), u = whole(genes.subspan(3)), v = u + whole(genes.subspan(6)), b = a + u,
+                 c = a + v;
+  construct::CheckedTriangle triangle;
+  triangle.x = {a.data(), b.data(), c.data()};
+  const Vector3d way = std::round(9 * genes[9] - 4) * u + std::round(9 * genes[10] - 4) * v;
+  const double bound = construct::TriangleReach(triangle).slack() * norm3(way);
+  return bound > 0 ? std::abs(dot3(u.cross(v), way)) / bound : 0;
+}
+
 }  // namespace
 
 TEST_CASE("margins are needed, and suffice") {
-  // The last two are sums of bounds that do not occur at once, with factors for safety.
+  // The last four are sums of bounds that do not occur at once, with factors for safety.
   const test::Margin rows[] = {{"determinant of four points", 12, share_of_determinant, 0.35},
                                {"separation of moving bodies", 23, share_of_separation, 0.05, 3000},
-                               {"affine maps", 28, share_of_affine_slack, 0.01, 6000}};
+                               {"affine maps", 28, share_of_affine_slack, 0.01, 6000},
+                               {"wrappers", 12, share_of_wrapper_slack, 0.004, 6000},
+                               {"plane of a triangle", 11, share_of_triangle_plane, 0.00015, 6000}};
   test::check_margins(rows);
 }
 
