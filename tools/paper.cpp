@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -16,6 +18,9 @@
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
+#ifdef LRB_BUILD_BENCH
+#include "bench/methods/structures.hpp"
+#endif
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/json_write.hpp>
@@ -226,6 +231,92 @@ void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   }
 }
 
+#ifdef LRB_BUILD_BENCH
+
+/// Questions that a structure cannot answer, beside its name among the methods of `bench`.
+struct Silence {
+  const char *method, *about;
+};
+constexpr Silence kSilences[] = {
+    {"spheres", "whether surfaces that are close intersect, and in which faces; adjacency"},
+    {"bsp",
+     "which faces of A; a contact of vertices or edges, which has no volume; adjacency; anything of open bodies"},
+    {"brep-index", "whether one body is inside the other"},
+    {"grids", "whether one body is inside the other"}};
+
+/// Returns the work of the structures that the paper names, for A with the first and the last other object,
+/// at the first contact of a few collisions.
+report::Table structures_table(std::span<const paper::PaperObject> objects, paper::PaperProtocol protocol) {
+  protocol.steps_after = 0;
+  protocol.collisions = std::min(protocol.collisions, 4U);
+  const LrbRep& a = objects.front().rep;
+  const std::array others = {&objects[1], &objects.back()};
+  std::array<std::vector<paper::ContactStep>, 2> steps;
+  std::size_t contacts = 0;
+  Workspace workspace;
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    for (std::uint32_t i = 0; i < protocol.collisions; ++i)
+      for (paper::ContactStep& s :
+           paper::run_collision(a, others[k]->rep, others[k]->name, i, protocol, workspace, true))
+        steps[k].push_back(std::move(s));
+    contacts += steps[k].size();
+  }
+  report::Table t{"The structures that the paper names, at first contact",
+                  {"structure", "comparisons with " + others[0]->name, "with " + others[1]->name,
+                   "contacts found", "bytes per face of " + objects.front().name, "cannot say"}};
+  t.note =
+      "Averages over the first contacts of " + std::to_string(protocol.collisions) +
+      " collisions each, all pairs. Compared are faces, boxes, spheres, cells, or a face and a plane. Bytes are of "
+      "the structure alone; for LRB-reps, with faces and tree. Convex hulls (GJK) and octrees are methods of "
+      "lrbscope bench, if FCL is installed.";
+  /// compare(k, step): the number of comparisons, and whether a contact was found.
+  const auto add = [&](const std::string& title, double bytes, const char* silence, const auto& compare) {
+    double sums[2] = {};
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < others.size(); ++k)
+      for (const paper::ContactStep& s : steps[k]) {
+        const std::pair<std::uint64_t, bool> one = compare(k, s);
+        sums[k] += static_cast<double>(one.first) / static_cast<double>(steps[k].size());
+        found += one.second;
+      }
+    t.rows.push_back({title, paper::whole(sums[0]), paper::whole(sums[1]),
+                      std::to_string(found) + " of " + std::to_string(contacts),
+                      paper::whole(bytes / a.real_face_count()), silence});
+  };
+  for (const std::size_t i : {paper::kPaper, std::size_t{3}})
+    add(i == paper::kPaper ? "LRB-reps, the paper's recursion" : "tree of oriented boxes, complete",
+        static_cast<double>(i == paper::kPaper ? a.memory_bytes()
+                                               : LrbRep::without_regions(a).memory_bytes()),
+        i == paper::kPaper ? "contacts under lids that nothing touches" : "",
+        [&](std::size_t, const paper::ContactStep& s) {
+          const paper::RecursionCount& n = s.counts[i];
+          return std::pair(n.comparisons + n.bound_tests, n.pairs > 0);
+        });
+  for (const methods::MethodEntry& entry : methods::structures_methods()) {
+    const auto* silence = std::find_if(std::begin(kSilences), std::end(kSilences),
+                                       [&](const Silence& s) { return entry.info.name == s.method; });
+    const std::unique_ptr<methods::Method> method = entry.make();
+    method->set(64);  // spheres: down to the leaves
+    try {
+      const auto body_a = method->build(a), first = method->build(others[0]->rep),
+                 last = method->build(others[1]->rep);
+      add(entry.info.title, static_cast<double>(static_cast<const methods::SizedBody&>(*body_a).bytes()),
+          silence->about, [&](std::size_t k, const paper::ContactStep& s) {
+            const methods::MethodBody& x = k == 0 ? *first : *last;
+            const auto tests = method->count_tests(*body_a, s.pose_a, x, s.pose_x);
+            const auto answer = method->query(*body_a, s.pose_a, x, s.pose_x, Mode::all_pairs);
+            return std::pair(answer.face_tests + (tests ? tests->boxes : 0), answer.contact);
+          });
+    } catch (const InputError& e) {
+      t.rows.push_back({entry.info.title, e.what()});
+      t.rows.back().resize(t.columns.size());
+    }
+  }
+  return t;
+}
+
+#endif
+
 /// The counted steps of all parts.
 struct PaperSteps {
   std::vector<paper::ContactStep> objects, settings, series;
@@ -284,9 +375,11 @@ int run_paper(PaperOptions o, const Globals& globals) {
       plan(of_series, 1, faces, true);
     }
 
+  std::vector<report::Table> more;
   const auto write = [&](const paper::SeriesReport* series) {
     return paper::write_paper_report(
-        {objects, steps.objects, steps.settings, experiment, globals.command_line, series, o.tex}, folder);
+        {objects, steps.objects, steps.settings, experiment, globals.command_line, series, o.tex, more},
+        folder);
   };
   if (computes) {
     steps.objects = paper::merged(paper::run_seeds(objects, sweep));
@@ -317,6 +410,11 @@ int run_paper(PaperOptions o, const Globals& globals) {
     print(o.folder + "/records.jsonl\n");
     return kOk;
   }
+  if (experiment.reports(paper::PaperPart::incremental))
+    more.push_back(paper::incremental_table(objects, protocol));
+#ifdef LRB_BUILD_BENCH
+  if (experiment.reports(paper::PaperPart::structures)) more.push_back(structures_table(objects, protocol));
+#endif
   const paper::SeriesReport series_report{a, series, steps.series, sweep.jobs};
   note(globals, write(meshes.empty() ? nullptr : &series_report));
   work.finish();

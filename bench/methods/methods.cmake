@@ -89,8 +89,8 @@ lrb_need("other engines" libode-dev ode_library)
 lrb_add_peer(ode HAS LRB_HAS_ODE LIBRARIES ${ode_library})
 
 # lrbscope's own methods.
-set_property(GLOBAL PROPERTY lrb_own_methods ours plain_double spheres)
-add_library(lrb_own_methods STATIC methods/ours.cpp)
+set_property(GLOBAL PROPERTY lrb_own_methods ours plain_double structures)
+add_library(lrb_own_methods STATIC methods/ours.cpp methods/structures.cpp)
 target_link_libraries(lrb_own_methods PUBLIC lrb::methods)
 
 # lrb_register_methods(TARGET [PEER...]): links a program with the methods of the given engines and, unless it

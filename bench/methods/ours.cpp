@@ -1,13 +1,11 @@
 // lrbscope's own methods: its queries, and the simple methods that they are compared with.
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include <Eigen/Geometry>
 
 #include "bench/methods/method.hpp"
 #include "bench/methods/triangles.hpp"
-#include "engine/mesh/box_tree.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/contact.hpp>
@@ -330,121 +328,6 @@ std::vector<MethodEntry> plain_double_methods() {
        .style = {"brute force", "#6b6b6b", "crossRot"},
        .role = Role::no_peer,  // takes minutes
        .rank = 20})};
-}
-
-// Descends two sphere trees together to a given level: an approximate, interruptible answer (P. M. Hubbard,
-// "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University, 1994: the
-// paper's Hub94). Spheres contain the triangles below them, so no contact is missed. Overlapping spheres at
-// the last level count as contact.
-
-namespace {
-
-struct Sphere {
-  Eigen::Vector3d centre;
-  double radius = 0;
-};
-
-/// Halved by the centroids of the triangles.
-struct SphereBody : MethodBody {
-  explicit SphereBody(const Triangles& t) {
-    std::vector<BoxTree::Box> centroids;
-    for (const auto& c : t.triangles)
-      centroids.emplace_back(Eigen::Vector3d((t.vertices[c[0]] + t.vertices[c[1]] + t.vertices[c[2]]) / 3));
-    tree = BoxTree(centroids, 1);
-    for (const BoxTree::Node& n : tree.nodes())
-      spheres.push_back(around(t, tree.items().subspan(n.first, n.last - n.first)));
-  }
-
-  static Sphere around(const Triangles& t, std::span<const std::uint32_t> some) {
-    Eigen::AlignedBox3d box;
-    for (const std::uint32_t i : some)
-      for (const VertexId v : t.triangles[i]) box.extend(t.vertices[v]);
-    Sphere s;
-    s.centre = box.center();
-    for (const std::uint32_t i : some)
-      for (const VertexId v : t.triangles[i])
-        s.radius = std::max(s.radius, (t.vertices[v] - s.centre).norm());
-    return s;
-  }
-
-  BoxTree tree;
-  std::vector<Sphere> spheres;  ///< around its nodes
-};
-
-class Spheres : public Method {
- public:
-  void set(double level) override { level_ = static_cast<int>(level); }
-
-  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
-    return std::make_unique<SphereBody>(triangles_of(rep));
-  }
-
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    const auto &body_a = static_cast<const SphereBody&>(a), &body_b = static_cast<const SphereBody&>(b);
-    MethodAnswer answer;
-    const Stopwatch watch;
-    // B in A's frame.
-    const Eigen::Matrix3d r = pose_a.r.transpose() * pose_b.r;
-    const Eigen::Vector3d t = pose_a.r.transpose() * (pose_b.t - pose_a.t);
-    struct Item {
-      std::uint32_t a, b;
-      int level;
-    };
-    std::vector<Item> stack = {{0, 0, 0}};
-    while (!stack.empty()) {
-      const Item item = stack.back();
-      stack.pop_back();
-      const Sphere &p = body_a.spheres[item.a], &q = body_b.spheres[item.b];
-      const Eigen::Vector3d way = r * q.centre + t - p.centre;
-      ++answer.face_tests;
-      const double reach = p.radius + q.radius;
-      if (way.squaredNorm() > reach * reach) continue;
-      const std::uint32_t right_a = body_a.tree.nodes()[item.a].right,
-                          right_b = body_b.tree.nodes()[item.b].right;
-      const bool leaf_a = right_a == 0, leaf_b = right_b == 0;
-      if (item.level >= level_ || (leaf_a && leaf_b)) {
-        // On average, the midpoint between the points where the line of centres leaves one sphere and enters
-        // the other.
-        const double length = way.norm();
-        const double at = length > 0 ? (p.radius + length - q.radius) / (2 * length) : 0;
-        answer.points.push_back(pose_a.apply(p.centre + at * way));
-        if (mode == Mode::first_pair) break;
-        continue;
-      }
-      if (!leaf_a && !leaf_b) {
-        for (const std::uint32_t i : {item.a + 1, right_a})
-          for (const std::uint32_t j : {item.b + 1, right_b}) stack.push_back({i, j, item.level + 1});
-      } else if (leaf_b) {
-        for (const std::uint32_t i : {item.a + 1, right_a}) stack.push_back({i, item.b, item.level + 1});
-      } else {
-        for (const std::uint32_t j : {item.b + 1, right_b}) stack.push_back({item.a, j, item.level + 1});
-      }
-    }
-    answer.microseconds = watch.microseconds();
-    answer.contact = !answer.points.empty();
-    return answer;
-  }
-
- private:
-  int level_ = 0;
-};
-
-}  // namespace
-
-std::vector<MethodEntry> spheres_methods() {
-  return {entry_of<Spheres>(
-      {.name = "spheres",
-       .title = "sphere tree, stopped at a level",
-       .remark =
-           "Contact, and points of it: two binary trees of spheres around triangles, descended to a level; spheres "
-           "that still overlap there count as contact. Never misses a contact; many false positives.",
-       .pairs = false,
-       .traits = {Trait::approximate},
-       .parameter = "level",
-       .settings = {2, 4, 6, 8, 10, 12},
-       .style = {"sphere tree, by level", "#1c1e22", "star"},
-       .rank = 80})};
 }
 
 }  // namespace lrb::methods

@@ -52,6 +52,8 @@ class CoherentQuery::Work {
   template <class Probe>
   void query_from_scratch(Probe& probe);
   template <class Probe>
+  void query_kept_wrappers(const Pose& pose_a, const Pose& pose_b, Probe& probe);
+  template <class Probe>
   bool still_crosses(Probe& probe);
   template <class Probe>
   bool make_cache(const CachePolicy::Plan& plan, Probe& probe);
@@ -81,7 +83,8 @@ class CoherentQuery::Work {
   QueryContext context_;
   CollideResult result_;
   Statistics statistics_;
-  bool plain_;  ///< the request can be answered from a cache
+  bool plain_;                    ///< the request can be answered from a cache
+  std::optional<KeptGaps> gaps_;  ///< the request is answered on kept wrappers
   RelativeMotion motion_;
 
   bool at_work_ = false;   ///< a call began and did not return
@@ -106,13 +109,16 @@ CoherentQuery::Work::Work(const LrbRep& a, const LrbRep& b, const CollideRequest
              !request.is_coarse() && !request.separation && !a.tree().empty() && !b.tree().empty()) {
   const FloatMode float_mode;
   if (plain_) motion_ = {a, b};
+  if (request.recursion == Recursion::paper && request.predicates == Predicates::exact &&
+      !request.separation && request.mode == Mode::all_pairs && request.wrapper == WrapperMode::regularised)
+    gaps_.emplace(a, b);
 }
 
 template <class Probe>
 const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose& pose_b, Probe& probe) {
   const FloatMode float_mode;
   // Requests that a cache cannot answer, and empty bodies, are passed on unchanged.
-  if (!plain_) {
+  if (!plain_ && !gaps_) {
     result_ = lrb::collide(a_, pose_a, b_, pose_b, request_, context_, probe);
     ++statistics_.from_scratch;
     return result_;
@@ -122,11 +128,13 @@ const CollideResult& CoherentQuery::Work::collide(const Pose& pose_a, const Pose
     has_cache_ = false;
     motion_.forget();
     result_.pairs.clear();
+    for (QueryBody& body : context_.body) body.wrapper.reset();
+    if (gaps_) gaps_.emplace(a_, b_);
   }
   // The counter of fallbacks is cumulative: the difference is this query's.
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   clear(result_.counters);
-  answer(pose_a, pose_b, probe);
+  gaps_ ? query_kept_wrappers(pose_a, pose_b, probe) : answer(pose_a, pose_b, probe);
   result_.counters.exact_fallbacks = exact::exact_fallbacks() - fallbacks;
   at_work_ = false;
   return result_;
@@ -189,6 +197,42 @@ void CoherentQuery::Work::query_from_scratch(Probe& probe) {
   result_.regions.clear();
   // The steps of collide(): traverse the trees, sort the pairs, decide the relation, describe the contact.
   TreeQuery<Probe>(context_, request_, result_, probe).run();
+  in_phase(probe, Phase::sort, [&] {
+    context_.pair_order.sort(result_);
+    return result_.pairs.size();
+  });
+  decide_relation_watched(context_, result_, probe, [] { return true; });
+  describe(probe);
+  show_opened();
+}
+
+/// Runs the paper's recursion on the wrappers of the last query: they are refined where faces meet, and
+/// coarsened where none did. Pairs of faces whose gap B has not yet crossed are not tested again.
+template <class Probe>
+void CoherentQuery::Work::query_kept_wrappers(const Pose& pose_a, const Pose& pose_b, Probe& probe) {
+  context_.body[0].world.begin(a_, pose_a);
+  context_.body[1].world.begin(b_, pose_b);
+  for (QueryBody& body : context_.body)
+    body.wrapper ? body.query_body() : body.begin_at_pose(request_.wrapper);
+  clear(result_);
+  result_.recursion = request_.recursion;
+  report_kept(probe);
+  gaps_->begin(pose_a, pose_b);
+  context_.gaps = &*gaps_;
+  PaperQuery<Probe>(context_, request_, result_, probe).run();
+  context_.gaps = nullptr;
+  ++(gaps_->saved() > 0 ? statistics_.from_cache : statistics_.from_scratch);
+  statistics_.tests_saved += gaps_->saved();
+  for (const Side side : {Side::a, Side::b}) {
+    Wrapper& wrapper = *context_[side].wrapper;
+    for (const RegionId r : std::vector<RegionId>(wrapper.excluded())) {
+      if (gaps_->is_reached(side, r)) continue;
+      wrapper.coarsen(r);
+      ++statistics_.coarsened;
+      if constexpr (Probe::kEnabled)
+        probe.coarsen(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
+    }
+  }
   in_phase(probe, Phase::sort, [&] {
     context_.pair_order.sort(result_);
     return result_.pairs.size();

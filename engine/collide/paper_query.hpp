@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "engine/collide/boxed_floors.hpp"
+#include "engine/collide/kept_gaps.hpp"
 #include "engine/collide/query_context.hpp"
 
 namespace lrb {
@@ -210,6 +211,7 @@ class PaperQuery {
     QueryBody& body = ctx_[side];
     const RegionId r = body.rep().inner_cell(f).as_region();
     const bool is_new = body.wrapper->included(r);
+    if (ctx_.gaps != nullptr) ctx_.gaps->reach(side, r);
     if (!body.wrapper->refine_face(f)) return false;
     ++result_.counters.refinements;
     if constexpr (Probe::kEnabled)
@@ -220,6 +222,7 @@ class PaperQuery {
   /// Tests two faces as polygons, that is, all pairs of simplices of their fans. Counts as one face test and
   /// one event.
   bool faces_meet(FaceId fa, FaceId fb) {
+    if (ctx_.gaps != nullptr && ctx_.gaps->are_apart(fa, fb)) return false;
     exact::Meet best = exact::Meet::disjoint;
     SimplexPair which{ctx_[Side::a].rep().first_simplex(fa), ctx_[Side::b].rep().first_simplex(fb)};
     for_each_simplex_pair(fa, fb, [&](SimplexId a, SimplexId b) {
@@ -234,6 +237,7 @@ class PaperQuery {
     const bool real = ctx_[Side::a].rep().is_real(fa) && ctx_[Side::b].rep().is_real(fb);
     count_face_test(real, std::max(depth_a, depth_b), result_.counters);
     if constexpr (Probe::kEnabled) probe_.face_test(which.a, which.b, best, depth_a, depth_b);
+    if (ctx_.gaps != nullptr && best == exact::Meet::disjoint) ctx_.gaps->keep(ctx_, fa, fb);
     return best != exact::Meet::disjoint;
   }
 

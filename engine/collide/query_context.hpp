@@ -251,6 +251,8 @@ struct ContactBuffers {
   EnclosedBuffers enclosed[2];           ///< vertices of A and of B
 };
 
+class KeptGaps;
+
 /// The memory that a query reuses from call to call.
 class QueryContext {
  public:
@@ -268,6 +270,7 @@ class QueryContext {
   ContactBuffers contact;
   std::unordered_set<std::uint64_t> visited[3];  ///< paper: region x region (boxes: floor x floor), face x
                                                  ///< region, region x face
+  KeptGaps* gaps = nullptr;                      ///< of a coherent query by the paper's recursion
 
   QueryBody& operator[](Side s) { return body[static_cast<int>(s)]; }
   bool has_threads() const { return workers != nullptr && workers->count() > 1; }

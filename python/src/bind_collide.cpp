@@ -49,7 +49,8 @@ py::dict statistics(QueryHandle& self) {
     const std::lock_guard lock(self.mutex);
     s = self.query.statistics();
   }
-  return dict_of(s, {"from_cache", "caches_made", "swept_caches", "from_scratch", "tests_saved"});
+  return dict_of(s,
+                 {"from_cache", "caches_made", "swept_caches", "from_scratch", "tests_saved", "coarsened"});
 }
 
 constexpr const char* kCoherentText =
@@ -81,7 +82,7 @@ void bind_coherent(py::module_& m) {
   c.def_property_readonly(
       "statistics", &statistics,
       R"(dict of int: queries answered from_cache, caches_made for a query (swept_caches of them for a motion),
-queries from_scratch, tests_saved.)");
+queries from_scratch, tests_saved, coarsened regions of wrappers that the paper's recursion keeps.)");
   property(c, "a", "Body", &QueryHandle::a);
   property(c, "b", "Body", &QueryHandle::b);
 }

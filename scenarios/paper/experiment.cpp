@@ -10,9 +10,10 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::array<PaperPart, 7> kAllParts = {
-    PaperPart::table1,   PaperPart::table2,    PaperPart::figure_3_1,     PaperPart::figure_3_2,
-    PaperPart::settings, PaperPart::heat_maps, PaperPart::refinement_tree};
+constexpr std::array<PaperPart, 9> kAllParts = {
+    PaperPart::table1,      PaperPart::table2,    PaperPart::figure_3_1,
+    PaperPart::figure_3_2,  PaperPart::settings,  PaperPart::structures,
+    PaperPart::incremental, PaperPart::heat_maps, PaperPart::refinement_tree};
 
 PaperProtocol read_protocol(const io::JsonNode& node) {
   node.object({"collisions", "steps_after", "step", "seed", "seeds"});

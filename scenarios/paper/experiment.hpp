@@ -14,13 +14,17 @@
 
 namespace lrb::paper {
 
-/// Parts of the report. `settings`: table 2 for other time steps and numbers of steps.
+/// Parts of the report. `settings`: table 2 for other time steps and numbers of steps; `structures`: the
+/// other structures that the paper names, if the program has them; `incremental`: wrappers kept between
+/// steps.
 enum class PaperPart : std::uint8_t {
   table1,
   table2,
   figure_3_1,
   figure_3_2,
   settings,
+  structures,
+  incremental,
   heat_maps,
   refinement_tree
 };
@@ -30,6 +34,8 @@ constexpr auto enum_names(PaperPart) {
                                              {PaperPart::figure_3_1, "figure3.1"},
                                              {PaperPart::figure_3_2, "figure3.2"},
                                              {PaperPart::settings, "settings"},
+                                             {PaperPart::structures, "structures"},
+                                             {PaperPart::incremental, "incremental"},
                                              {PaperPart::heat_maps, "heat_maps"},
                                              {PaperPart::refinement_tree, "refinement_tree"}});
 }

@@ -2,6 +2,7 @@
 /// Reports the paper's experiment: tables beside the published ones, figures, and the differences.
 
 #include <string>
+#include <vector>
 
 #include "scenarios/paper/experiment.hpp"
 #include "scenarios/paper/series.hpp"
@@ -18,6 +19,7 @@ struct PaperReport {
   std::string command;                   ///< the command that made it
   const SeriesReport* series = nullptr;  ///< bodies at several resolutions; may be null
   bool tex = false;                      ///< also write each table for LaTeX
+  std::vector<report::Table> more = {};  ///< tables that are shown after the counters
 };
 
 /// Writes records.jsonl, table1.csv, table2.csv, ratios.csv, tables.json, report.md, index.html, with gnuplot
@@ -25,6 +27,10 @@ struct PaperReport {
 /// refinement_tree.svg, each if the experiment reports it; for a series, the output of add_series(). Returns
 /// notes on pictures that could not be drawn. Throws EnvironmentError.
 std::vector<std::string> write_paper_report(const PaperReport& report, const report::Folder& folder);
+
+/// Returns the work of the paper's recursion on kept wrappers and from scratch, in short steps after first
+/// contact.
+report::Table incremental_table(std::span<const PaperObject> objects, PaperProtocol protocol);
 
 /// Throws InputError if the numbers of collisions or the close-ups show that the steps are from another
 /// experiment.

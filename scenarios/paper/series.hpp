@@ -39,7 +39,7 @@ namespace lrb::paper {
 /// A body at one resolution, scaled to A's diagonal.
 struct SeriesObject {
   std::string body;  ///< the mesh's name
-  LrbRep rep;        ///< built by patch caps
+  LrbRep rep;
 };
 
 enum class SeriesPartner { a, itself };

@@ -270,9 +270,12 @@ TEST_CASE("judging a method by itself, with the bodies exchanged") {
 // If the benign end were not benign the grid could not say where along the difficulty a method starts to
 // fail.
 TEST_CASE(
-    "the textbook's method is right at the lowest difficulty of every family, and wrong at the highest") {
-  StabilityRunner plain(methods::find_method(methods::registered_methods(), "plain"));
-  int failing = 0, failed = 0;
+    "the textbook's method is right at the lowest difficulty of every family, and wrong at the highest; an index of "
+    "the faces changes nothing") {
+  const std::vector<methods::MethodEntry> all = methods::registered_methods();
+  StabilityRunner plain(methods::find_method(all, "plain")), bsp(methods::find_method(all, "bsp")),
+      halved(methods::find_method(all, "brep-index")), grids(methods::find_method(all, "grids"));
+  int failing = 0, failed = 0, by_bsp = 0, wrong_bsp = 0, by_index = 0;
   for (const cases::Family& f : cases::all_families()) {
     CAPTURE(f.name);
     CHECK(std::string(f.benign) != "");
@@ -280,10 +283,27 @@ TEST_CASE(
     const auto failures = [&](int difficulty) {
       int n = 0;
       for (std::uint64_t i = 0; i < 8; ++i) {
+        CAPTURE(i);
         const cases::Case c = cases::make_case(f, 1, difficulty, i);
-        Record r;
-        plain.ask(f, c, expected_answer(c), r);
+        const RightAnswer right = expected_answer(c);
+        const auto ask = [&](StabilityRunner& method) {
+          Record r;
+          method.ask(f, c, right, r);
+          return r;
+        };
+        const Record r = ask(plain);
         n += r.outcome == Outcome::wrong;
+        for (StabilityRunner* index : {&halved, &grids}) {
+          const Record same = ask(*index);
+          if (same.outcome == Outcome::rejected) continue;  // 2D, or too large for doubles
+          ++by_index;
+          CHECK(same.outcome == r.outcome);
+          CHECK(same.missed == r.missed);
+          CHECK(same.extra == r.extra);
+        }
+        const Outcome cut = difficulty == 0 ? ask(bsp).outcome : Outcome::rejected;
+        by_bsp += cut == Outcome::right;
+        wrong_bsp += cut == Outcome::wrong;
       }
       return n;
     };
@@ -294,6 +314,9 @@ TEST_CASE(
   }
   CHECK(failed <= 3);
   CHECK(failing > 15);
+  CHECK(by_index > 300);
+  CHECK(by_bsp > 100);
+  CHECK(wrong_bsp <= 3);
 }
 
 namespace {

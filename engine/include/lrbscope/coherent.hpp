@@ -10,8 +10,12 @@
 ///
 /// Pairs, meets and relation equal those of collide(). The refined regions and the counters describe this
 /// query's own work. In first_pair and any_pair mode the pair may differ. In any_pair mode the relation
-/// describes that pair only and may differ as well. Requests that are not plain (the paper's recursions,
-/// floating predicates, coarse queries, separation) are forwarded to collide().
+/// describes that pair only and may differ as well.
+///
+/// Recursion::paper for all pairs runs on the wrappers of the last query: they are refined where faces meet
+/// and coarsened where none did. Of pairs of faces that were apart, a lower bound of the gap is kept, and
+/// they are tested again only when B has moved that far. Other requests that are not plain (the paper's other
+/// recursions, floating predicates, coarse queries, separation) are forwarded to collide().
 
 #include <cstdint>
 #include <memory>
@@ -47,6 +51,7 @@ class CoherentQuery {
     std::uint64_t swept_caches = 0;  ///< caches among these that cover a sweep of B
     std::uint64_t from_scratch = 0;  ///< queries run without a cache
     std::uint64_t tests_saved = 0;   ///< cached pairs that needed no test
+    std::uint64_t coarsened = 0;     ///< regions of kept wrappers that became part of them again
   };
   const Statistics& statistics() const;
 

@@ -1,0 +1,538 @@
+// The structures that the paper's introduction compares the LRB-rep with, in textbook versions. They classify
+// the faces of one body into the structure of the other, in doubles.
+#include "bench/methods/structures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <span>
+
+#include <Eigen/Geometry>
+
+#include "bench/methods/triangles.hpp"
+#include "engine/mesh/box_tree.hpp"
+#include <lrbscope/error.hpp>
+
+namespace lrb::methods {
+
+namespace {
+
+template <class List>
+std::size_t size_of(const List& list) {
+  return list.size() * sizeof(*list.data());
+}
+
+/// Returns the pose of B in A's frame.
+Pose relative(const Pose& a, const Pose& b) {
+  check_rigid(a);
+  check_rigid(b);
+  return {a.r.transpose() * b.r, a.r.transpose() * (b.t - a.t)};
+}
+
+// Descends two sphere trees together to a given level: an approximate, interruptible answer (P. M. Hubbard,
+// "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University, 1994: the
+// paper's Hub94). Spheres contain the triangles below them, so no contact is missed. Overlapping spheres at
+// the last level count as contact.
+
+struct Sphere {
+  Eigen::Vector3d centre;
+  double radius = 0;
+};
+
+/// Halved by the centroids of the triangles.
+struct SphereBody : SizedBody {
+  explicit SphereBody(const Triangles& t) {
+    std::vector<BoxTree::Box> centroids;
+    for (const auto& c : t.triangles)
+      centroids.emplace_back(Eigen::Vector3d((t.vertices[c[0]] + t.vertices[c[1]] + t.vertices[c[2]]) / 3));
+    tree = BoxTree(centroids, 1);
+    for (const BoxTree::Node& n : tree.nodes())
+      spheres.push_back(around(t, tree.items().subspan(n.first, n.last - n.first)));
+  }
+
+  static Sphere around(const Triangles& t, std::span<const std::uint32_t> some) {
+    Eigen::AlignedBox3d box;
+    for (const std::uint32_t i : some)
+      for (const VertexId v : t.triangles[i]) box.extend(t.vertices[v]);
+    Sphere s;
+    s.centre = box.center();
+    for (const std::uint32_t i : some)
+      for (const VertexId v : t.triangles[i])
+        s.radius = std::max(s.radius, (t.vertices[v] - s.centre).norm());
+    return s;
+  }
+
+  std::size_t bytes() const override {
+    return size_of(tree.nodes()) + size_of(tree.items()) + size_of(spheres);
+  }
+
+  BoxTree tree;
+  std::vector<Sphere> spheres;  ///< around its nodes
+};
+
+class Spheres : public Method {
+ public:
+  void set(double level) override { level_ = static_cast<int>(level); }
+
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    return std::make_unique<SphereBody>(triangles_of(rep));
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    const auto &body_a = static_cast<const SphereBody&>(a), &body_b = static_cast<const SphereBody&>(b);
+    MethodAnswer answer;
+    const Stopwatch watch;
+    const Pose b_in_a = relative(pose_a, pose_b);
+    struct Item {
+      std::uint32_t a, b;
+      int level;
+    };
+    std::vector<Item> stack = {{0, 0, 0}};
+    while (!stack.empty()) {
+      const Item item = stack.back();
+      stack.pop_back();
+      const Sphere &p = body_a.spheres[item.a], &q = body_b.spheres[item.b];
+      const Eigen::Vector3d way = b_in_a.apply(q.centre) - p.centre;
+      ++answer.face_tests;
+      const double reach = p.radius + q.radius;
+      if (way.squaredNorm() > reach * reach) continue;
+      const std::uint32_t right_a = body_a.tree.nodes()[item.a].right,
+                          right_b = body_b.tree.nodes()[item.b].right;
+      const bool leaf_a = right_a == 0, leaf_b = right_b == 0;
+      if (item.level >= level_ || (leaf_a && leaf_b)) {
+        // On average, the midpoint between the points where the line of centres leaves one sphere and enters
+        // the other.
+        const double length = way.norm();
+        const double at = length > 0 ? (p.radius + length - q.radius) / (2 * length) : 0;
+        answer.points.push_back(pose_a.apply(p.centre + at * way));
+        if (mode == Mode::first_pair) break;
+        continue;
+      }
+      if (!leaf_a && !leaf_b) {
+        for (const std::uint32_t i : {item.a + 1, right_a})
+          for (const std::uint32_t j : {item.b + 1, right_b}) stack.push_back({i, j, item.level + 1});
+      } else if (leaf_b) {
+        for (const std::uint32_t i : {item.a + 1, right_a}) stack.push_back({i, item.b, item.level + 1});
+      } else {
+        for (const std::uint32_t j : {item.b + 1, right_b}) stack.push_back({item.a, j, item.level + 1});
+      }
+    }
+    answer.microseconds = watch.microseconds();
+    answer.contact = !answer.points.empty();
+    return answer;
+  }
+
+ private:
+  int level_ = 0;
+};
+
+// B-reps with an index of space: the faces of A are in the cells that they pass through, and each face of B
+// is tested against all faces in the cells that its box touches.
+
+/// Halves space across its longest extent until few faces pass through a cell: the Brep-index (MSP tree; G.
+/// Vanecek, "Brep-index: a multidimensional space partitioning tree", IJCGA 1(3), 1991: the paper's Van91)
+/// with planes along the axes.
+class HalvedSpace {
+ public:
+  explicit HalvedSpace(const std::vector<Box>& boxes) {
+    std::vector<std::uint32_t> all(boxes.size());
+    std::iota(all.begin(), all.end(), 0U);
+    for (const Box& b : boxes) whole_.extend(b);
+    halve(boxes, whole_, all, 0);
+  }
+
+  /// Calls visit(face) for the faces in all cells that `box` touches, perhaps repeatedly. Returns the number
+  /// of cells visited.
+  template <class Visit>
+  std::uint64_t visit_near(const Box& box, const Visit& visit) const {
+    std::uint64_t visited = 0;
+    std::vector<std::uint32_t> stack;
+    if (BoxTree::intersect(whole_, box)) stack.push_back(0);
+    while (!stack.empty()) {
+      const std::uint32_t n = stack.back();
+      const Node& node = nodes_[n];
+      stack.pop_back();
+      ++visited;
+      if (node.axis == kLeaf) {
+        for (std::uint32_t i = node.first; i < node.last; ++i) visit(items_[i]);
+        continue;
+      }
+      if (box.max()[node.axis] >= node.at) stack.push_back(node.high);
+      if (box.min()[node.axis] <= node.at) stack.push_back(n + 1);
+    }
+    return visited;
+  }
+  std::size_t bytes() const { return size_of(nodes_) + size_of(items_); }
+
+ private:
+  static constexpr int kLeaf = 3, kMaxDepth = 30;
+  static constexpr std::size_t kFewFaces = 8;
+  struct Node {
+    double at = 0;
+    int axis = kLeaf;
+    std::uint32_t high = 0;             ///< the lower half follows its parent
+    std::uint32_t first = 0, last = 0;  ///< of a leaf, into items_
+  };
+
+  void halve(const std::vector<Box>& boxes, const Box& cell, const std::vector<std::uint32_t>& some,
+             int depth) {
+    const auto n = static_cast<std::uint32_t>(nodes_.size());
+    Node node;
+    cell.sizes().maxCoeff(&node.axis);
+    node.at = box_centre(cell)[node.axis];
+    std::vector<std::uint32_t> low, high;
+    for (const std::uint32_t i : some) {
+      if (boxes[i].min()[node.axis] <= node.at) low.push_back(i);
+      if (boxes[i].max()[node.axis] >= node.at) high.push_back(i);
+    }
+    // A cut through most of the faces separates nothing.
+    if (some.size() <= kFewFaces || depth == kMaxDepth || 2 * (low.size() + high.size()) > 3 * some.size()) {
+      node.axis = kLeaf;
+      node.first = static_cast<std::uint32_t>(items_.size());
+      items_.insert(items_.end(), some.begin(), some.end());
+      node.last = static_cast<std::uint32_t>(items_.size());
+      nodes_.push_back(node);
+      return;
+    }
+    nodes_.push_back(node);
+    Box lower = cell, upper = cell;
+    lower.max()[node.axis] = upper.min()[node.axis] = node.at;
+    halve(boxes, lower, low, depth + 1);
+    nodes_[n].high = static_cast<std::uint32_t>(nodes_.size());
+    halve(boxes, upper, high, depth + 1);
+  }
+
+  Box whole_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> items_;
+};
+
+/// Grids of cells of half the edge from level to level. A face is in one cell of the finest level whose cells
+/// are as large as the face, and reaches at most into the next cells (K. M. Fairchild and T. Poston, VRST
+/// '94: the paper's FP94).
+class Grids {
+ public:
+  explicit Grids(const std::vector<Box>& boxes) {
+    for (const Box& b : boxes) whole_.extend(b);
+    const double size = whole_.sizes().maxCoeff();
+    for (int l = 0; l < kLevels; ++l) levels_[l].edge = std::ldexp(size, -l);
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+      int l = 0;
+      while (l + 1 < kLevels && levels_[l + 1].edge >= boxes[i].sizes().maxCoeff()) ++l;
+      const Eigen::Vector3d at = boxes[i].min();
+      levels_[l].cells.emplace_back(key(cell(l, at, 0, 0), cell(l, at, 0, 1), cell(l, at, 0, 2)), i);
+    }
+    for (Level& level : levels_) std::sort(level.cells.begin(), level.cells.end());
+  }
+
+  /// As HalvedSpace::visit_near(); a row of cells counts once.
+  template <class Visit>
+  std::uint64_t visit_near(const Box& box, const Visit& visit) const {
+    std::uint64_t visited = 0;
+    if (!BoxTree::intersect(whole_, box)) return visited;
+    for (int l = 0; l < kLevels; ++l) {
+      const auto& cells = levels_[l].cells;
+      if (cells.empty()) continue;
+      std::uint64_t low[3], high[3];
+      for (int k = 0; k < 3; ++k) {
+        low[k] = cell(l, box.min(), -1, k);
+        high[k] = cell(l, box.max(), 0, k);
+      }
+      if ((high[0] - low[0] + 1) * (high[1] - low[1] + 1) >
+          cells.size()) {  // all faces of the level are fewer
+        ++visited;
+        for (const auto& face : cells) visit(face.second);
+        continue;
+      }
+      for (std::uint64_t i = low[0]; i <= high[0]; ++i)
+        for (std::uint64_t j = low[1]; j <= high[1]; ++j) {
+          ++visited;
+          const std::uint64_t last = key(i, j, high[2]);
+          auto at = std::lower_bound(cells.begin(), cells.end(), std::pair(key(i, j, low[2]), 0U));
+          for (; at != cells.end() && at->first <= last; ++at) visit(at->second);
+        }
+    }
+    return visited;
+  }
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const Level& level : levels_) sum += size_of(level.cells);
+    return sum;
+  }
+
+ private:
+  static constexpr int kLevels = 10;
+  struct Level {
+    double edge = 0;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> cells;  ///< by key: a face in it
+  };
+
+  static std::uint64_t key(std::uint64_t i, std::uint64_t j, std::uint64_t k) {
+    return (i << 2 * kLevels | j << kLevels) | k;
+  }
+  /// Returns the coordinate of the cell of a point, moved by some cells, within the grid.
+  std::uint64_t cell(int level, const Eigen::Vector3d& x, int moved, int axis) const {
+    const double c = std::floor((x[axis] - whole_.min()[axis]) / levels_[level].edge) + moved;
+    return c > 0 ? static_cast<std::uint64_t>(std::min(c, std::ldexp(1, level) - 1)) : 0;
+  }
+
+  Box whole_;
+  std::array<Level, kLevels> levels_;
+};
+
+template <class Index>
+class Indexed : public Method {
+ public:
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    return std::make_unique<Body>(triangles_of(rep));
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    const auto &body_a = static_cast<const Body&>(a), &body_b = static_cast<const Body&>(b);
+    MethodAnswer answer;
+    const Stopwatch watch;
+    const Pose b_in_a = relative(pose_a, pose_b);
+    std::vector<std::uint32_t> tested_with(body_a.faces.triangles.size(), kNull);
+    cells_ = 0;
+    for (std::uint32_t j = 0; j < body_b.faces.triangles.size(); ++j) {
+      Box box;
+      Eigen::Vector3d q[3];
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3d& x = body_b.faces.vertices[body_b.faces.triangles[j][k]];
+        box.extend(b_in_a.apply(x));
+        q[k] = pose_b.apply(x);
+      }
+      box.extend((box.min().array() - kUsualEpsilon).matrix())
+          .extend((box.max().array() + kUsualEpsilon).matrix());
+      cells_ += body_a.index.visit_near(box, [&](std::uint32_t i) {
+        if (tested_with[i] == j || (mode == Mode::first_pair && answer.contact)) return;
+        tested_with[i] = j;
+        ++answer.face_tests;
+        Eigen::Vector3d p[3];
+        for (int k = 0; k < 3; ++k) p[k] = pose_a.apply(body_a.faces.vertices[body_a.faces.triangles[i][k]]);
+        if (!plain_triangles_meet(p, q)) return;
+        answer.contact = true;
+        answer.pairs.push_back({SimplexId(i), SimplexId(j)});
+      });
+      if (mode == Mode::first_pair && answer.contact) break;
+    }
+    answer.microseconds = watch.microseconds();
+    sort_pairs(answer.pairs);
+    return answer;
+  }
+
+  std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
+                                        const Pose& pose_b) override {
+    const std::uint64_t faces = query(a, pose_a, b, pose_b, Mode::all_pairs).face_tests;
+    return TestCounts{cells_, faces};
+  }
+
+ private:
+  struct Body : SizedBody {
+    explicit Body(Triangles t) : faces(std::move(t)), index(boxes_of(faces)) {}
+    static std::vector<Box> boxes_of(const Triangles& t) {
+      std::vector<Box> boxes(t.triangles.size());
+      for (std::size_t i = 0; i < boxes.size(); ++i)
+        for (const VertexId v : t.triangles[i]) boxes[i].extend(t.vertices[v]);
+      return boxes;
+    }
+    std::size_t bytes() const override { return index.bytes(); }
+    Triangles faces;
+    Index index;
+  };
+
+  std::uint64_t cells_ = 0;  ///< visited by the last query
+};
+
+// A BSP tree of A, whose leaves are solid or empty; the faces of B are cut by its planes (B. Naylor, "Binary
+// space partitioning trees as an alternative representation of polytopes", CAD 22(4), 1990: the paper's
+// Nay90). A face with parts in solid and in empty cells crosses the surface.
+
+struct BspBody : SizedBody {
+  using Polygon = std::vector<Eigen::Vector3d>;
+  using Plane = Eigen::Hyperplane<double, 3>;
+  struct Face {
+    Polygon corners;
+    Plane plane;
+  };
+  struct Node {
+    Plane plane;
+    std::uint32_t front = kEmpty, back = kSolid;
+  };
+  static constexpr std::uint32_t kEmpty = kNull, kSolid = kNull - 1;
+
+  explicit BspBody(Triangles t) : faces(std::move(t)) {
+    std::vector<Face> all;
+    for (const auto& c : faces.triangles) {
+      const Eigen::Vector3d &p = faces.vertices[c[0]], &q = faces.vertices[c[1]], &r = faces.vertices[c[2]];
+      const Eigen::Vector3d normal = (q - p).cross(r - p);
+      if (normal.norm() > 0) all.push_back({{p, q, r}, Plane(normal.normalized(), p)});
+    }
+    root = add(std::move(all), kEmpty);
+  }
+
+  /// Returns the parts of a polygon in front of and behind a plane; empty ones if it is in the plane.
+  static std::array<Polygon, 2> cut(const Plane& plane, const Polygon& p) {
+    std::vector<double> d;
+    for (const Eigen::Vector3d& x : p) {
+      const double side = plane.signedDistance(x);
+      d.push_back(std::abs(side) < kUsualEpsilon ? 0 : side);
+    }
+    const double least = *std::min_element(d.begin(), d.end()), most = *std::max_element(d.begin(), d.end());
+    std::array<Polygon, 2> parts;
+    if (least >= 0 && most > 0) parts[0] = p;
+    if (most <= 0 && least < 0) parts[1] = p;
+    if (least >= 0 || most <= 0) return parts;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const std::size_t next = (i + 1) % p.size();
+      if (d[i] >= 0) parts[0].push_back(p[i]);
+      if (d[i] <= 0) parts[1].push_back(p[i]);
+      if (d[i] * d[next] >= 0) continue;
+      for (Polygon& part : parts) part.push_back(p[i] + (p[next] - p[i]) * (d[i] / (d[i] - d[next])));
+    }
+    return parts;
+  }
+
+  std::size_t bytes() const override { return size_of(nodes); }
+
+  Triangles faces;
+  std::vector<Node> nodes;
+  std::uint32_t root;
+
+ private:
+  using Halves = std::array<std::vector<Face>, 2>;
+
+  /// Adds the subtree of the faces in a cell; returns `leaf` if there are none.
+  std::uint32_t add(std::vector<Face> some, std::uint32_t leaf) {
+    if (some.empty()) return leaf;
+    Plane plane;
+    Halves halves;
+    if (!halve(some, plane, halves)) {
+      const std::size_t median = some.size() / 2;
+      plane = some[median].plane;
+      some.erase(some.begin() + static_cast<std::ptrdiff_t>(median));
+      halves = distributed(some, plane);  // without the faces in the plane
+    }
+    some = {};
+    const auto n = static_cast<std::uint32_t>(nodes.size());
+    nodes.push_back({plane});
+    const std::uint32_t front = add(std::move(halves[0]), kEmpty), back = add(std::move(halves[1]), kSolid);
+    nodes[n].front = front;
+    nodes[n].back = back;
+    return n;
+  }
+
+  static Halves distributed(const std::vector<Face>& some, const Plane& plane) {
+    Halves halves;
+    for (const Face& f : some) {
+      const auto parts = cut(plane, f.corners);
+      for (int k = 0; k < 2; ++k)
+        if (!parts[k].empty()) halves[k].push_back({parts[k], f.plane});
+    }
+    return halves;
+  }
+
+  /// Many faces are halved across an axis first, which keeps the tree low. Returns false if there are few, or
+  /// if no such plane separates them.
+  static bool halve(const std::vector<Face>& some, Plane& plane, Halves& halves) {
+    constexpr std::size_t kMany = 32;
+    if (some.size() < kMany) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double> at;
+      for (const Face& f : some) at.push_back(f.corners[0][axis]);
+      std::sort(at.begin(), at.end());
+      const auto above = std::upper_bound(at.begin(), at.end(), at[at.size() / 2]);
+      if (above == at.end() || *above - *(above - 1) < 4 * kUsualEpsilon) continue;
+      plane = Plane(Eigen::Vector3d::Unit(axis), -(*(above - 1) + *above) / 2);
+      halves = distributed(some, plane);
+      if (4 * std::max(halves[0].size(), halves[1].size()) < 3 * some.size()) return true;
+    }
+    return false;
+  }
+};
+
+class Bsp : public Method {
+ public:
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
+    if (!rep.closed()) throw InputError("skipped: a body that is not closed has no solid side");
+    return std::make_unique<BspBody>(triangles_of(rep));
+  }
+
+  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                     Mode mode) override {
+    const auto &body_a = static_cast<const BspBody&>(a), &body_b = static_cast<const BspBody&>(b);
+    MethodAnswer answer;
+    const Stopwatch watch;
+    const Pose b_in_a = relative(pose_a, pose_b);
+    for (const auto& c : body_b.faces.triangles) {
+      BspBody::Polygon face;
+      for (const VertexId v : c) face.push_back(b_in_a.apply(body_b.faces.vertices[v]));
+      answer.contact |= leaves_of(body_a, body_a.root, face, answer.face_tests) == 3;
+      if (mode == Mode::first_pair && answer.contact) break;
+    }
+    answer.microseconds = watch.microseconds();
+    return answer;
+  }
+
+ private:
+  /// Returns 1 if a part of the polygon is in an empty cell, 2 in a solid one, 3 both.
+  static unsigned leaves_of(const BspBody& tree, std::uint32_t n, const BspBody::Polygon& p,
+                            std::uint64_t& tests) {
+    if (n == BspBody::kEmpty || n == BspBody::kSolid) return n == BspBody::kEmpty ? 1 : 2;
+    const BspBody::Node& node = tree.nodes[n];
+    ++tests;
+    auto parts = BspBody::cut(node.plane, p);
+    if (parts[0].empty() && parts[1].empty()) parts = {p, p};  // in the plane: on both sides
+    const unsigned front = parts[0].empty() ? 0 : leaves_of(tree, node.front, parts[0], tests);
+    return parts[1].empty() || front == 3 ? front : front | leaves_of(tree, node.back, parts[1], tests);
+  }
+};
+
+}  // namespace
+
+std::vector<MethodEntry> structures_methods() {
+  return {
+      entry_of<Spheres>(
+          {.name = "spheres",
+           .title = "sphere tree, stopped at a level",
+           .remark =
+               "Contact, and points of it: two binary trees of spheres around triangles, descended to a level; spheres "
+               "that still overlap there count as contact. Never misses a contact; many false positives.",
+           .pairs = false,
+           .traits = {Trait::approximate},
+           .parameter = "level",
+           .settings = {2, 4, 6, 8, 10, 12},
+           .style = {"sphere tree, by level", "#1c1e22", "star"},
+           .rank = 80}),
+      entry_of<Bsp>(
+          {.name = "bsp",
+           .title = "BSP tree, faces of B classified",
+           .remark =
+               "Whether a face of B has parts in solid and in empty cells of A's BSP tree, in doubles, epsilon 1e-6. No "
+               "pairs, no relation. Supports only closed bodies.",
+           .pairs = false,
+           .style = {"BSP tree", "#7a4fa3", "rect"},
+           .rank = 81}),
+      entry_of<Indexed<HalvedSpace>>(
+          {.name = "brep-index",
+           .title = "B-rep with an index of halved space",
+           .remark =
+               "Faces of B against those of A in the cells of space that they touch, halved along the axes (as an "
+               "MSP tree), by the test of `plain`. No relation.",
+           .style = {"B-rep index (MSP)", "#2f7d5b", "rectRot"},
+           .rank = 82}),
+      entry_of<Indexed<Grids>>(
+          {.name = "grids",
+           .title = "hierarchical grid",
+           .remark =
+               "Faces of B against those of A in the cells of grids that they touch, each face in the grid of its "
+               "size, by the test of `plain`. No relation.",
+           .style = {"hierarchical grid", "#b0702a", "triangle"},
+           .rank = 83})};
+}
+
+}  // namespace lrb::methods
