@@ -9,6 +9,7 @@
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/io/files.hpp"
+#include "scenarios/io/poses.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
@@ -29,6 +30,7 @@ struct FigureOptions {
   TwoMeshes meshes;  ///< b: empty if there is one source
   std::vector<std::string> bodies;
   std::vector<std::uint32_t> faces, events, steps;
+  std::vector<std::string> towards;
   bool layers = false, close_up = false, try_views = false;
   std::optional<bool> wrappers;
   std::size_t views = 0;  ///< 0: chosen by the number of bodies
@@ -45,13 +47,18 @@ struct Source {
   bool up_applied = false;  ///< the views already follow --up
 };
 
+constexpr const char* kTowardsWhat =
+    "--towards: expected a mesh, a .lrb file or a scenario with \"show\": \"refinement\"";
+
 bool is_mesh_name(const std::string& path) {
   return has_mesh_extension(path) || path.ends_with(".lrb");
 }
 
 /// Returns the run in which the wrapper of a user's body is refined down to the body.
-Source refine_body(const std::string& path, const run::ProgressReport& progress) {
+Source refine_body(const std::string& path, const std::vector<Eigen::Vector3d>& towards,
+                   const run::ProgressReport& progress) {
   spec::Scenario s;
+  s.towards = towards;
   s.name = std::filesystem::path(path).stem().string();
   s.show = spec::Show::refinement;
   s.bodies.resize(1);
@@ -59,8 +66,13 @@ Source refine_body(const std::string& path, const run::ProgressReport& progress)
   return {s.name, {}, run::record(s, progress), {}, true};
 }
 
-Source run_of_scenario(const std::string& name, EventLevel events, const run::ProgressReport& progress) {
+Source run_of_scenario(const std::string& name, const std::vector<Eigen::Vector3d>& towards,
+                       EventLevel events, const run::ProgressReport& progress) {
   spec::Scenario s = spec::open_scenario(name);
+  if (!towards.empty()) {
+    if (s.show != spec::Show::refinement) throw InputError(kTowardsWhat);
+    s.towards = towards;
+  }
   s.events = std::max(s.events, events);
   return {s.name, s.purpose, run::record(s, progress), s.frames, false};
 }
@@ -81,6 +93,11 @@ bool is_trace_name(const std::string& path) {
 
 Source open_source(const FigureOptions& o, const Globals& globals) {
   const run::ProgressReport progress = progress_report(globals.quiet);
+  std::vector<Eigen::Vector3d> towards;
+  for (const std::string& point : o.towards) towards.push_back(io::parse_vector(point, "--towards"));
+  std::error_code error;
+  const bool is_trace = std::filesystem::is_directory(o.source, error) || is_trace_name(o.source);
+  if (!towards.empty() && (!o.meshes.b.empty() || is_trace)) throw InputError(kTowardsWhat);
   if (!o.meshes.b.empty()) {
     if (!is_mesh_name(o.source) || !is_mesh_name(o.meshes.b))
       throw InputError(printable_name(o.source) + " and " + printable_name(o.meshes.b) +
@@ -94,13 +111,12 @@ Source open_source(const FigureOptions& o, const Globals& globals) {
   }
   if (!o.meshes.poses.empty() || !o.meshes.approach.empty())
     throw InputError("--poses or --approach: expected two meshes, found one source");
-  std::error_code error;
-  if (std::filesystem::is_directory(o.source, error) || is_trace_name(o.source))
-    return open_trace(run::trace_of(o.source), o.bodies);
+  if (is_trace) return open_trace(run::trace_of(o.source), o.bodies);
   if (!o.bodies.empty())
     throw InputError("--bodies: expected a trace, but " + printable_name(o.source) + " is not one");
-  if (is_mesh_name(o.source)) return refine_body(o.source, progress);
-  return run_of_scenario(o.source, o.figure.proof_map ? EventLevel::all : EventLevel::faces, progress);
+  if (is_mesh_name(o.source)) return refine_body(o.source, towards, progress);
+  return run_of_scenario(o.source, towards, o.figure.proof_map ? EventLevel::all : EventLevel::faces,
+                         progress);
 }
 
 /// Returns the selected panels. At most one of --faces, --events, --steps and --layers is given.
@@ -359,6 +375,9 @@ Command add_figure(App& root, const Globals& globals) {
   app->add_flag("--try-views", o->try_views,
                 "Show the last state from several directions instead, each with the options for it");
   app->add_flag("--close-up", o->close_up, "Add panels that show the contact close up, without wrappers");
+  app->add_option(
+      "--towards", o->towards, "X,Y,Z",
+      "Refine the wrapper only towards the face nearest to this point of the world; several: one panel each");
   add_camera_options(*app, o->picture.camera, UpOption::axis_or_auto);
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);

@@ -13,14 +13,14 @@ namespace {
 
 using trace::EventId;
 
-/// A candidate state, and the number of faces of its wrappers.
-struct State {
-  EventId event = 0;
-  double faces = 0;
+/// Candidate states, and the number of faces of their wrappers.
+struct States {
+  std::vector<EventId> events;
+  std::vector<double> faces;
 };
 
 /// Returns the events after which a figure may show a state. One body: those that change its wrapper or end a
-/// pass of its construction. Two bodies: the ends of time steps.
+/// pass of its construction. Two bodies, or one that is refined several times: the ends of time steps.
 std::vector<EventId> candidates(const run::RecordedRun& recorded) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.header.construction) {
@@ -29,7 +29,7 @@ std::vector<EventId> candidates(const run::RecordedRun& recorded) {
     return run::moments(passes, trace);
   }
   std::vector<EventId> out;
-  if (recorded.reps.size() == 1) {
+  if (recorded.reps.size() == 1 && trace.steps.size() == 1) {
     for (EventId e = 0; e < trace.events.size(); ++e) {
       const EventKind kind = trace.events[e].kind;
       if (kind == EventKind::step || kind == EventKind::refine || kind == EventKind::coarsen)
@@ -42,55 +42,35 @@ std::vector<EventId> candidates(const run::RecordedRun& recorded) {
   return out;
 }
 
-std::vector<State> states(const run::RecordedRun& recorded) {
+States states(const run::RecordedRun& recorded) {
   trace::Cursor cursor = recorded.reps.size() == 1
                              ? trace::Cursor(*recorded.trace, *recorded.reps[0])
                              : trace::Cursor(*recorded.trace, *recorded.reps[0], *recorded.reps[1]);
-  std::vector<State> out;
-  for (const EventId e : candidates(recorded)) {
+  States out{candidates(recorded), {}};
+  for (const EventId e : out.events) {
     cursor.seek(e);
-    State state{e, 0};
+    double faces = 0;
     for (std::size_t i = 0; i < recorded.reps.size(); ++i)
-      state.faces += cursor.boundary_size(static_cast<Side>(i));
-    out.push_back(state);
-  }
-  return out;
-}
-
-/// Returns the state with the nearest number of faces, as a ratio.
-EventId nearest(const std::vector<State>& all, double faces) {
-  const auto off = [&](const State& s) { return std::abs(std::log(std::max(s.faces, 1.0) / faces)); };
-  return std::min_element(all.begin(), all.end(),
-                          [&](const State& x, const State& y) { return off(x) < off(y); })
-      ->event;
-}
-
-std::vector<EventId> by_faces(const std::vector<State>& all, std::size_t panels) {
-  const double first = std::max(all.front().faces, 1.0), last = std::max(all.back().faces, 1.0);
-  if (panels == 1) return {nearest(all, std::sqrt(first * last))};
-  std::vector<EventId> out = {all.front().event};
-  for (std::size_t i = 1; i < panels; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(panels - 1);
-    out.push_back(nearest(all, first * std::pow(last / first, share)));
+      faces += cursor.boundary_size(static_cast<Side>(i));
+    out.faces.push_back(faces);
   }
   return out;
 }
 
 /// Returns evenly spaced time steps; the one nearest to the first contact is replaced by it.
-std::vector<EventId> by_time(const run::RecordedRun& recorded, const std::vector<State>& all,
-                             std::size_t panels) {
+std::vector<EventId> by_time(const run::RecordedRun& recorded, const States& all, std::size_t panels) {
   const std::vector<trace::Step>& steps = recorded.trace->steps;
-  std::vector<std::size_t> chosen = run::evenly(all.size(), panels);
+  std::vector<std::size_t> chosen = run::evenly(all.events.size(), panels);
   const auto contact = std::find_if(
       steps.begin(), steps.end(), [](const trace::Step& s) { return s.finished && s.result.pair_count > 0; });
   const auto first = static_cast<std::size_t>(contact - steps.begin());
-  if (first < all.size() && chosen.size() > 2) {
+  if (first < all.events.size() && chosen.size() > 2) {
     const auto off = [&](std::size_t i) { return i > first ? i - first : first - i; };
     *std::min_element(chosen.begin() + 1, chosen.end() - 1,
                       [&](std::size_t x, std::size_t y) { return off(x) < off(y); }) = first;
   }
   std::vector<EventId> out;
-  for (const std::size_t i : chosen) out.push_back(all[i].event);
+  for (const std::size_t i : chosen) out.push_back(all.events[i]);
   return out;
 }
 
@@ -149,16 +129,20 @@ Chosen choose(const run::RecordedRun& recorded, const Choice& choice) {
   std::vector<EventId>& out = chosen.events;
   switch (choice.by) {
     case Choice::By::changes: {
-      const std::vector<State> all = states(recorded);
-      out = recorded.reps.size() == 1 ? by_faces(all, panels) : by_time(recorded, all, panels);
+      const States all = states(recorded);
+      if (recorded.reps.size() == 1 && trace.steps.size() == 1)
+        for (const std::size_t i : run::by_ratio(all.faces, panels)) out.push_back(all.events[i]);
+      else
+        out = by_time(recorded, all, panels);
       break;
     }
     case Choice::By::layers:
       out = by_layer(recorded);
       break;
     case Choice::By::faces: {
-      const std::vector<State> all = states(recorded);
-      for (const std::uint32_t faces : choice.numbers) out.push_back(nearest(all, std::max(faces, 1U)));
+      const States all = states(recorded);
+      for (const std::uint32_t faces : choice.numbers)
+        out.push_back(all.events[run::nearest_by_ratio(all.faces, std::max(faces, 1U))]);
       break;
     }
     case Choice::By::events:

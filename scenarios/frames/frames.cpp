@@ -223,6 +223,31 @@ render::FrameSpec completed(render::FrameSpec spec, const RecordedRun& recorded)
 
 }  // namespace
 
+namespace {
+
+/// Returns the indices of the events in a montage: evenly spaced, but for a wrapper that is refined in equal
+/// ratios of its faces, as in a figure, if there are enough events for that.
+std::vector<std::size_t> panels_of(const RecordedRun& recorded, const std::vector<trace::EventId>& events,
+                                   std::size_t count) {
+  if (count == 0) return {};
+  std::vector<double> faces;
+  for (const trace::EventId e : events) {
+    const trace::Event& event = recorded.trace->events[e];
+    if (event.changes_wrapper())
+      faces.push_back(event.boundary);
+    else if (event.kind == EventKind::step)
+      faces.push_back(static_cast<double>(recorded.reps[0]->outermost_faces().size()));
+  }
+  if (recorded.reps.size() == 1 && recorded.trace->steps.size() == 1 && faces.size() == events.size()) {
+    std::vector<std::size_t> chosen = by_ratio(faces, count);
+    if (std::adjacent_find(chosen.begin(), chosen.end(), std::greater_equal<>()) == chosen.end())
+      return chosen;
+  }
+  return evenly(events.size(), count);
+}
+
+}  // namespace
+
 std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& given,
                                        const ProgressReport& progress, const Framing* framing) {
   const render::FrameSpec spec = completed(given, recorded);
@@ -253,8 +278,7 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
 
   FrameJob& job = *laid_out;
   FrameState& state = job.state;
-  const std::vector<std::size_t> in_montage =
-      spec.montage > 0 ? evenly(events.size(), spec.montage) : std::vector<std::size_t>();
+  const std::vector<std::size_t> in_montage = panels_of(recorded, events, spec.montage);
   Montage together;
   render::FrameWriter writer;
   for (std::size_t i = 0; i < events.size(); ++i) {

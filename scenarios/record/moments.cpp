@@ -1,6 +1,7 @@
 #include "scenarios/record/moments.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "render/pictures/panel.hpp"
@@ -58,6 +59,24 @@ std::vector<EventId> listed(const render::FrameSpec& spec, const trace::Trace& t
 }
 
 }  // namespace
+
+std::size_t nearest_by_ratio(std::span<const double> sizes, double size) {
+  const auto off = [&](double s) { return std::abs(std::log(std::max(s, 1.0) / size)); };
+  return static_cast<std::size_t>(
+      std::min_element(sizes.begin(), sizes.end(), [&](double x, double y) { return off(x) < off(y); }) -
+      sizes.begin());
+}
+
+std::vector<std::size_t> by_ratio(std::span<const double> sizes, std::size_t count) {
+  const double first = std::max(sizes.front(), 1.0), last = std::max(sizes.back(), 1.0);
+  if (count == 1) return {nearest_by_ratio(sizes, std::sqrt(first * last))};
+  std::vector<std::size_t> out = {0};
+  for (std::size_t i = 1; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    out.push_back(nearest_by_ratio(sizes, first * std::pow(last / first, share)));
+  }
+  return out;
+}
 
 EventId last_event(const trace::Trace& trace, std::size_t step) {
   const std::size_t end =

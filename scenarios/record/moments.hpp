@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "scenarios/spec/scenario.hpp"
@@ -11,6 +12,12 @@ namespace lrb::run {
 /// Returns the events after which pictures are taken, ascending, at most spec.most of them. Throws InputError
 /// for events that the trace does not have, and for passes if it is not a construction.
 std::vector<trace::EventId> moments(const render::FrameSpec& spec, const trace::Trace& trace);
+
+/// Returns the index of the size that differs least from this one, as a ratio.
+std::size_t nearest_by_ratio(std::span<const double> sizes, double size);
+/// Returns the indices of `count` sizes in about equal ratios from the first to the last; one index may occur
+/// several times.
+std::vector<std::size_t> by_ratio(std::span<const double> sizes, std::size_t count);
 
 /// Returns the last stored event of a step.
 trace::EventId last_event(const trace::Trace& trace, std::size_t step);

@@ -290,13 +290,42 @@ void require_closed(const spec::Scenario& s, const LrbRep& rep) {
                    "lists its open edges), or show a collision");
 }
 
+/// Returns the transitions from a lid through the regions to a real face: "face 7 -> region 3 -> face 2".
+std::string transitions(const LrbRep& rep, const std::vector<RegionId>& regions, FaceId face) {
+  std::string out;
+  CellId outer = kOutside;
+  for (const RegionId region : regions) {
+    const auto lids = rep.lids(region);
+    const auto lid =
+        std::find_if(lids.begin(), lids.end(), [&](FaceId f) { return rep.outer_cell(f) == outer; });
+    if (lid != lids.end()) out += "face " + std::to_string(*lid) + " -> ";  // a void has no lids
+    out += "region " + std::to_string(region) + " -> ";
+    outer = region;
+  }
+  return out + "face " + std::to_string(face);
+}
+
 void record_refinement(const spec::Scenario& s, Recording& r) {
   const LrbRep& rep = r.bodies[0].rep;
   require_closed(s, rep);
   trace::Recorder recorder(rep, recorder_settings(s));
-  recorder.begin_step(0, s.bodies[0].pose);
-  for (const RegionId region : outside_in(rep))
-    recorder.refine(Side::a, region, static_cast<std::uint32_t>(rep.floor(region).size()));
+  const Pose& pose = s.bodies[0].pose;
+  const auto record = [&](std::uint32_t step, const std::vector<RegionId>& regions) {
+    recorder.begin_step(step, pose);
+    for (const RegionId region : regions)
+      recorder.refine(Side::a, region, static_cast<std::uint32_t>(rep.floor(region).size()));
+  };
+  if (s.towards.empty()) record(0, outside_in(rep));
+  const std::vector<PointDistance> nearest =
+      point_distances(rep, pose, s.towards, {.tolerance = 0, .relative_tolerance = 0, .side = false});
+  for (std::uint32_t i = 0; i < nearest.size(); ++i) {
+    const FaceId face = nearest[i].closest.face;
+    Wrapper wrapper(rep);
+    wrapper.refine_path(rep.outer_cell(face));
+    record(i, wrapper.excluded());
+    r.notes.push_back("towards point " + std::to_string(i) + ": " +
+                      transitions(rep, wrapper.excluded(), face));
+  }
   r.trace = recorder.take();
 }
 

@@ -309,8 +309,8 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
 Scenario parse_scenario(const std::string& text, const std::string& file) {
   const io::JsonText json(text, file);
   const io::JsonNode root(json);
-  root.object({"$schema", "name", "purpose", "seed", "show", "bodies", "motion", "query", "trace", "frames",
-               "expect"});
+  root.object({"$schema", "name", "purpose", "seed", "show", "bodies", "towards", "motion", "query", "trace",
+               "frames", "expect"});
   Scenario s;
   if (const auto n = root.get("$schema")) n->string();
   s.name = read_name(root.at("name"));
@@ -325,6 +325,11 @@ Scenario parse_scenario(const std::string& text, const std::string& file) {
     for (const char* key : {"motion", "query", "expect"})
       if (root.has(key))
         root.fail_key(key, "a refinement or a construction has one body and no query; remove it");
+  }
+  if (const auto n = root.get("towards")) {
+    if (s.show != Show::refinement)
+      root.fail_key("towards", "only a refinement goes towards points; remove it");
+    for (const io::JsonNode& point : n->items(1)) s.towards.push_back(point.vector());
   }
   s.request.contacts = true;
   if (const auto n = root.get("query")) s.request = read_query(*n, &s.more);

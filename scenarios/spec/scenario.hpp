@@ -79,6 +79,9 @@ struct Scenario {
   std::uint32_t event_cap = 1'000'000;
   EventLevel events = EventLevel::faces;  ///< that are recorded
   StepQuestions more;
+  /// A refinement: only regions between the outside and the face nearest to a point, for one point after the
+  /// other, each from the outermost wrapper. Empty: all regions.
+  std::vector<Eigen::Vector3d> towards;
   bool gzip = false;
   FrameSpec frames;
   std::vector<Expectation> expect;
