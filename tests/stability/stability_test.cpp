@@ -271,7 +271,7 @@ TEST_CASE("judging a method by itself, with the bodies exchanged") {
 // fail.
 TEST_CASE(
     "the textbook's method is right at the lowest difficulty of every family, and wrong at the highest; an index of "
-    "the faces changes nothing") {
+    "the faces changes nothing at the lowest") {
   const std::vector<methods::MethodEntry> all = methods::registered_methods();
   StabilityRunner plain(methods::find_method(all, "plain")), bsp(methods::find_method(all, "bsp")),
       halved(methods::find_method(all, "brep-index")), grids(methods::find_method(all, "grids"));
@@ -293,15 +293,16 @@ TEST_CASE(
         };
         const Record r = ask(plain);
         n += r.outcome == Outcome::wrong;
+        if (difficulty > 0) continue;
         for (StabilityRunner* index : {&halved, &grids}) {
           const Record same = ask(*index);
-          if (same.outcome == Outcome::rejected) continue;  // 2D, or too large for doubles
+          if (same.outcome == Outcome::rejected) continue;  // 2D
           ++by_index;
           CHECK(same.outcome == r.outcome);
           CHECK(same.missed == r.missed);
           CHECK(same.extra == r.extra);
         }
-        const Outcome cut = difficulty == 0 ? ask(bsp).outcome : Outcome::rejected;
+        const Outcome cut = ask(bsp).outcome;
         by_bsp += cut == Outcome::right;
         wrong_bsp += cut == Outcome::wrong;
       }
