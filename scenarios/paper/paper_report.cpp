@@ -345,7 +345,7 @@ class Pages {
 }  // namespace
 
 report::Table incremental_table(std::span<const PaperObject> objects, PaperProtocol protocol) {
-  constexpr int kSteps = 50;
+  constexpr int kSteps = 100;
   constexpr double kStep = 2e-4;  // of the diagonal
   protocol.steps_after = 0;
   protocol.collisions = std::min(protocol.collisions, 2U);
