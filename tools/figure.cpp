@@ -376,8 +376,9 @@ Command add_figure(App& root, const Globals& globals) {
                 "Show the last state from several directions instead, each with the options for it");
   app->add_flag("--close-up", o->close_up, "Add panels that show the contact close up, without wrappers");
   app->add_option(
-      "--towards", o->towards, "X,Y,Z",
-      "Refine the wrapper only towards the face nearest to this point of the world; several: one panel each");
+         "--towards", o->towards, "X,Y,Z",
+         "Refine the wrapper only towards the face nearest to this point of the world; several: one panel each")
+      ->allow_extra_args(false);
   add_camera_options(*app, o->picture.camera, UpOption::axis_or_auto);
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);

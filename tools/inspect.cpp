@@ -414,7 +414,9 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
       failed = true;
     }
     if (!o.drawing.empty()) {
-      const bool cross = shown[MeshFault::self_intersection].count > 0;
+      constexpr std::uint64_t kMaxDrawn = 100'000;  // of more pairs, the first are drawn
+      const std::uint64_t crossing = shown[MeshFault::self_intersection].count;
+      const bool cross = crossing > 0 && crossing <= kMaxDrawn;
       draw_findings({mesh.mesh(), shown, loops,
                      cross ? self_intersections(mesh).segments : SelfIntersections().segments},
                     o, j, notes);

@@ -208,6 +208,11 @@ Json fault_json(const profile::FoundFault& f, const capture::Tree& tree, const c
     j["by_share_of_diagonal"] = f.by_share;
     j["corners_outside"] = f.count;
   }
+  if (f.kind == profile::TreeFault::part_outside) {
+    j["point"] = {f.point.x(), f.point.y(), f.point.z()};
+    j["area"] = f.by;
+    j["share_of_triangle"] = f.by_share;
+  }
   j["text"] = text_of(f, tree, mesh);
   return j;
 }

@@ -434,7 +434,7 @@ class Reader {
   }
 
   void read_value() {
-    query_ = static_cast<std::uint32_t>(u64());
+    query_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(u64(), kNull));
     Query& query = begun().query;
     const auto lower = number<double>(), upper = number<double>();
     require(query.kind == QueryKind::distance,

@@ -225,7 +225,10 @@ void CoherentQuery::Work::query_kept_wrappers(const Pose& pose_a, const Pose& po
   statistics_.tests_saved += gaps_->saved();
   for (const Side side : {Side::a, Side::b}) {
     Wrapper& wrapper = *context_[side].wrapper;
-    for (const RegionId r : std::vector<RegionId>(wrapper.excluded())) {
+    // Backwards: a region inside another one is closed first.
+    const std::vector<RegionId> excluded = wrapper.excluded();
+    for (auto i = excluded.rbegin(); i != excluded.rend(); ++i) {
+      const RegionId r = *i;
       if (gaps_->is_reached(side, r)) continue;
       wrapper.coarsen(r);
       ++statistics_.coarsened;

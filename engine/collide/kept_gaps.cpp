@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 
 namespace lrb {
@@ -31,14 +32,15 @@ double gap_between(const std::vector<Vector3d>& p, const std::vector<Vector3d>& 
   double widest = 0;
   for (const Vector3d& axis : {across(p), across(q), Vector3d(q[0] - p[0]), Vector3d(1, 0, 0),
                                Vector3d(0, 1, 0), Vector3d(0, 0, 1)}) {
-    const double length = axis.norm();
-    if (!(length > 0)) continue;
+    const double length = stable_norm3(axis);
+    if (!(length > 0) || !std::isfinite(length)) continue;
+    const Vector3d unit = axis / length;  // before the products, which would overflow or underflow
     double low[2], high[2];
     for (int k = 0; k < 2; ++k) {
       low[k] = std::numeric_limits<double>::infinity();
       high[k] = -low[k];
       for (const Vector3d& x : k == 0 ? p : q) {
-        const double at = axis.dot(x) / length;
+        const double at = dot3(unit, x);
         low[k] = std::min(low[k], at);
         high[k] = std::max(high[k], at);
       }
@@ -55,7 +57,7 @@ KeptGaps::KeptGaps(const LrbRep& a, const LrbRep& b) {
   for (int k = 0; k < 2; ++k) {
     size_[k] = 0;
     for (const Vector3d& v : (k == 0 ? a : b).vertices()) {
-      size_[k] = std::max(size_[k], v.norm());
+      size_[k] = std::max(size_[k], stable_norm3(v));
       if (k == 1) box.extend(v);
     }
   }
@@ -73,11 +75,16 @@ void KeptGaps::begin(const Pose& pose_a, const Pose& pose_b) {
   // The motion is affine in the points of B, so that a corner of its box moves farthest.
   double step = 0;
   for (const Vector3d& x : corners_of_b_)
-    step = std::max(step, ((now.m - last_.m) * x + (now.t - last_.t)).norm());
-  moved_ += step;
-  rounding_ = 8 * kRigid * (size_[0] + size_[1] + pose_a.t.norm() + pose_b.t.norm());
+    step = std::max(step, stable_norm3((now.m - last_.m) * x + (now.t - last_.t)));
+  // Rounded up, so that the sum of many small steps stays a bound. A long way starts again: its rounding
+  // errors would exceed rounding_.
+  constexpr double kUp = 1 + 0x1p-48, kFar = 1000;
+  moved_ = std::nextafter(moved_ + step * kUp, std::numeric_limits<double>::infinity());
+  rounding_ =
+      8 * kRigid * (size_[0] + size_[1] + stable_norm3(pose_a.t) + stable_norm3(pose_b.t)) + kWorldUnderflow;
   last_ = now;
-  if (!is_rigid_ || !was_rigid || !std::isfinite(moved_ + rounding_)) {
+  const bool is_far = !(moved_ <= kFar * (size_[0] + size_[1]));
+  if (!is_rigid_ || !was_rigid || is_far || !std::isfinite(moved_ + rounding_)) {
     forget();
     moved_ = 0;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -208,6 +209,13 @@ std::optional<ProofMap> proof_map(const RecordedRun& recorded, std::size_t step)
   const bool known =
       trace.header.engine.empty() || (recorded.trees != nullptr && recorded.trees->size() == 2);
   if (recorded.reps.size() != 2 || !known) return std::nullopt;
+  if (!trace.header.engine.empty())
+    for (const trace::TreeShape& tree : *recorded.trees) {
+      std::set<SimplexId> seen;
+      for (const std::uint32_t n : tree.from_root())
+        for (const SimplexId s : tree.simplices(n))
+          if (!seen.insert(s).second) return std::nullopt;
+    }
   const EventId first = trace.steps[step].first_event,
                 end = first + static_cast<EventId>(trace.events_of(step).size());
   EventId walk = end, begin = end;  // the last traversal with visits

@@ -67,7 +67,8 @@ struct ProofMap {
   std::uint64_t visits = 0;                       ///< pairs of nodes that contribute
 };
 
-/// Returns the map of the last traversal of a step, or nullopt if the run has none with pairs of nodes.
+/// Returns the map of the last traversal of a step. nullopt: the run has none with pairs of nodes, or an
+/// engine's tree has a simplex in several leaves, so that its pairs have no place of their own.
 std::optional<ProofMap> proof_map(const RecordedRun& recorded, std::size_t step);
 
 /// Returns the tree that a traversal descends; `walked`: as in trace::payload::PhaseBegin.

@@ -381,6 +381,7 @@ report::Table incremental_table(std::span<const PaperObject> objects, PaperProto
         }
         coarsened += static_cast<double>(query.statistics().coarsened);
       }
+    if (steps == 0) continue;  // no contact was found
     t.rows.push_back({x.name, fixed(scratch / steps, 0), fixed(kept / steps, 0),
                       fixed(100 * kept / scratch, 1), fixed(refined / steps, 2), fixed(coarsened / steps, 2),
                       std::to_string(differ)});

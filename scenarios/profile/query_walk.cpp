@@ -241,11 +241,16 @@ std::uint32_t QueryWalk::deepest_above(const TrianglePair& pair) const {
 }
 
 std::uint32_t QueryWalk::deepest_above(std::uint32_t a, std::uint32_t b) const {
+  // Of several pairs of leaves (spatial splits), those that were rejected may hold disjoint parts of the
+  // triangles.
   std::uint32_t best = kNone;
+  const auto rank = [&](std::uint32_t visit) {
+    return std::pair(query_->events[visit].met > 0, depth_of(visit));
+  };
   index_[0]->for_each_leaf(a, [&](std::uint32_t x) {
     index_[1]->for_each_leaf(b, [&](std::uint32_t y) {
       const std::uint32_t found = deepest_from(x, y, [](const capture::Event&) { return true; });
-      if (found != kNone && (best == kNone || depth_of(found) > depth_of(best))) best = found;
+      if (found != kNone && (best == kNone || rank(found) > rank(best))) best = found;
     });
   });
   return best;

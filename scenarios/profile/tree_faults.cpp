@@ -232,7 +232,18 @@ void Finder::find_in_parts(const NodeMeasures& measures, double tolerance) {
     std::vector<Polygon> left = {all}, outside;
     index_.for_each_leaf(t, [&](std::uint32_t leaf) {
       outside.clear();
-      for (Polygon& part : left)
+      for (Polygon& part : left) {
+        // A part that is outside of one volume is not cut up.
+        bool is_beyond = false;
+        for (std::uint32_t n = leaf; n != kNull && !is_beyond; n = index_.parent[n])
+          is_beyond = std::ranges::any_of(sides[n], [&](const HalfSpace& side) {
+            return std::ranges::all_of(part,
+                                       [&](const Vector3d& p) { return side.normal.dot(p) > side.offset; });
+          });
+        if (is_beyond) {
+          outside.push_back(std::move(part));
+          continue;
+        }
         for (std::uint32_t n = leaf; n != kNull && !part.empty(); n = index_.parent[n])
           for (const HalfSpace& side : sides[n]) {
             Polygon beyond = part;
@@ -240,6 +251,7 @@ void Finder::find_in_parts(const NodeMeasures& measures, double tolerance) {
             if (area_of(beyond) > 0) outside.push_back(std::move(beyond));
             clip(part, side);
           }
+      }
       left.swap(outside);
     });
     if (left.empty()) continue;

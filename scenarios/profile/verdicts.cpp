@@ -306,10 +306,12 @@ void Checker::blame(const Posed& posed, const QueryWalk& walk, bool tested, Wron
   wrong.axis = e.axis;
   // A volume that does not contain its triangle explains the rest.
   const std::uint32_t triangles[] = {pair.a, pair.b};
-  for (std::size_t side = 0; side < 2; ++side)
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (bodies_.tree(posed.trees[side]).splits) continue;
     for (const Eigen::Vector3d& x : triangle_of(*posed.meshes[side], triangles[side]))
       wrong.outside[side] =
           std::max(wrong.outside[side], bodies_.volumes(posed.trees[side]).outside(wrong.nodes[side], x));
+  }
 }
 
 void Checker::check_pairs(const Posed& posed, const QueryWalk& walk, QueryVerdict& out) {

@@ -25,6 +25,26 @@ CollideResult ask(const LrbRep& a, const LrbRep& b, const Pose& p, Recursion rec
 
 }  // namespace
 
+TEST_CASE(
+    "on kept wrappers the paper's recursion gives the answers of queries from scratch for bodies of any size") {
+  for (const double size : {1e-310, 1e-200, 1e-160, 1e-82, 1.0, 1e100, 1e150, 1e200, 1e300}) {
+    CAPTURE(size);
+    const LrbRep a = build_lrb(shapes::scaled(shapes::icosphere(2), size)),
+                 b = build_lrb(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size));
+    CollideRequest request;
+    request.recursion = Recursion::paper;
+    CoherentQuery query(a, b, request);
+    std::size_t contacts = 0;
+    for (int step = 0; step < 40; ++step) {
+      const Pose p = Pose::translation({size * (2.3 - 0.02 * step), 0.1 * size, 0});
+      const std::vector<SimplexPair> expected = collide(a, Pose{}, b, p, request).pairs;
+      CHECK(query.collide(Pose{}, p).pairs == expected);
+      contacts += !expected.empty();
+    }
+    CHECK(contacts > 10);
+  }
+}
+
 TEST_CASE("without regions the paper's query is brute force and finds all pairs") {
   const LrbRep a = LrbRep::without_regions(shapes::icosphere(1), true, false);
   const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
@@ -143,6 +163,13 @@ TEST_CASE(
     CHECK(changed > 0);
     CHECK(query.statistics().coarsened > 0);
     if (rep.dim() == 2) continue;
+    // Far away and back, and then with steps far below the way there; A moves as well.
+    for (int step = 0; step < 60; ++step) {
+      const double x = step == 0 ? 1e16 * size : (1.4 - 0.02 * step) * size;
+      const Pose pose_a = Pose::translation({0, step > 30 ? 0.01 * size * step : 0, 0}),
+                 pose_b = Pose::translation({x, 0.1 * size, 0});
+      CHECK(query.collide(pose_a, pose_b).pairs == collide(rep, pose_a, rep, pose_b, request).pairs);
+    }
     // Scaled: nothing may be kept.
     for (const double scale : {1.5, 1.0, 0.7}) {
       const Pose scaled = {p.r * scale, p.t};

@@ -115,6 +115,17 @@ TEST_CASE("the map of another engine's query: each pair is rejected, tested, or 
       const ProofMap map = checked_map(recorded, recording.results[0].pairs, complete);
       CHECK(pairs_of(map, Argument::contact) == (complete ? recording.results[0].pairs.size() : 1));
       if (!complete && !wide) CHECK(pairs_of(map, Argument::open) > 0);
+      // Spatial splits: the first triangle of a leaf is in another one as well.
+      capture::Capture split = engine.capture;
+      capture::Tree& tree = split.trees[a];
+      tree.splits = true;
+      tree.triangle.push_back(tree.triangle.front());
+      ++tree.first_triangle.back();
+      const run::Recording other =
+          profile::captured_run(split, pair, profile::captured_bodies(split, pair), {}, run::kSilent);
+      recorded = run_of(other.bodies[0].rep, other.bodies[1].rep, other.trace);
+      recorded.trees = &other.trees;
+      CHECK_FALSE(proof_map(recorded, 0));
     }
 }
 
