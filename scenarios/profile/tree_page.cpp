@@ -216,7 +216,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
   using namespace render::svg_text;
   constexpr double kWidth = 1200, kMargin = 8, kRow = 18, kText = 11, kRule = 0.7, kRuleShare = 0.2;
   constexpr double kRoomForText = 40, kNarrowest = 1;  // pixels
-  constexpr double kDark = 0.5;  // share of the colour scale above which white is better legible than black
+  constexpr double kDark = 0.588;  // share of the colour scale from which white is better legible than black
   constexpr std::uint32_t kMaxDepths = 40;
   double largest = 0;
   if (figures.epo)
@@ -251,7 +251,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
     if (width > kRoomForText)
       boxes += "<text" + attribute("x", number(x + width / 2)) + attribute("y", number(y + kRow / 2)) +
                font(kText) + attribute("text-anchor", "middle") + attribute("dominant-baseline", "central") +
-               paint("fill", value > kDark ? render::kWhite : render::kBlack) + ">" + name + "</text>\n";
+               paint("fill", value >= kDark ? render::kWhite : render::kBlack) + ">" + name + "</text>\n";
   }
   const double height = 2 * kMargin + kRow * depths;
   return svg_open(kWidth, height) + "<title>The nodes of the tree by depth</title>\n<rect" +
