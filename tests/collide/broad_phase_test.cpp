@@ -9,28 +9,28 @@
 #include <lrbscope/world_box.hpp>
 
 using namespace lrb;
+using Eigen::AlignedBox3d;
 using shapes::RandomEngine;
-using Box = Eigen::AlignedBox3d;
 
 namespace {
 
-Box box_of_all_vertices(const LrbRep& rep, const Pose& pose) {
-  Box box;
+AlignedBox3d box_of_all_vertices(const LrbRep& rep, const Pose& pose) {
+  AlignedBox3d box;
   for (FaceId f = 0; f < rep.real_face_count(); ++f)
     for (const VertexId v : rep.face(f)) box.extend(pose.apply(rep.vertices()[v]));
   return box;
 }
 
 void check_box(const LrbRep& rep, const Pose& pose, ExtremeVertices* last = nullptr) {
-  const Box slow = box_of_all_vertices(rep, pose), fast = world_box(rep, pose, last);
+  const AlignedBox3d slow = box_of_all_vertices(rep, pose), fast = world_box(rep, pose, last);
   CHECK(slow.min() == fast.min());
   CHECK(slow.max() == fast.max());
-  const Box either = BodyExtent(rep).in_world(pose, last);
+  const AlignedBox3d either = BodyExtent(rep).in_world(pose, last);
   CHECK(slow.min() == either.min());
   CHECK(slow.max() == either.max());
 }
 
-std::vector<BodyPair> all_pairs(const std::vector<Box>& boxes) {
+std::vector<BodyPair> all_pairs(const std::vector<AlignedBox3d>& boxes) {
   std::vector<BodyPair> out;
   for (std::uint32_t i = 0; i < boxes.size(); ++i)
     for (std::uint32_t j = i + 1; j < boxes.size(); ++j) {
@@ -90,8 +90,8 @@ TEST_CASE("the box of a body that may leave the range of doubles intersects ever
   Pose pose;
   pose.r *= 1e308;
   pose.t.setConstant(1.5e308);
-  const std::vector<Box> boxes = {Box(Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(6, 6, 6)),
-                                  world_box(rep, pose)};
+  const std::vector<AlignedBox3d> boxes = {AlignedBox3d(Eigen::Vector3d(5, 5, 5), Eigen::Vector3d(6, 6, 6)),
+                                           world_box(rep, pose)};
   CHECK(SweepAndPrune().update(boxes) == all_pairs(boxes));
   CHECK(all_pairs(boxes).size() == 1);
 }
@@ -107,10 +107,10 @@ TEST_CASE("incremental updates find the pairs of boxes of brute force, and compa
         low[k] = std::floor(shapes::uniform(random, 0, room));
         size[k] = std::floor(shapes::uniform(random, 0, 4));
       }
-      return Box(low, low + size);
+      return AlignedBox3d(low, low + size);
     };
-    std::vector<Box> boxes(100);
-    for (Box& box : boxes) box = random_box();
+    std::vector<AlignedBox3d> boxes(100);
+    for (AlignedBox3d& box : boxes) box = random_box();
     sweep.update(boxes, {});
     for (int step = 0; step < 60; ++step) {
       // Most steps move few boxes, some move many, some none.
@@ -120,8 +120,9 @@ TEST_CASE("incremental updates find the pairs of boxes of brute force, and compa
         if (random() % share != 0) continue;
         moved.push_back(i);
         boxes[i] = random_box();
-        if (random() % 8 == 0) boxes[i] = Box();  // empty
-        if (random() % 16 == 0) boxes[i] = Box(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1e300, 1, 1));
+        if (random() % 8 == 0) boxes[i] = AlignedBox3d();  // empty
+        if (random() % 16 == 0)
+          boxes[i] = AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1e300, 1, 1));
         if (random() % 16 == 0) boxes[i].min().setConstant(-HUGE_VAL);
       }
       CAPTURE(step);
