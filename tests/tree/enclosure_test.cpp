@@ -25,7 +25,7 @@ namespace {
 /// World coordinates of one body seen on A's axes, in query units: r_a^T (w - t_a) / unit.
 class Seen {
  public:
-  Seen(const LrbRep& rep, const Pose& pose, const Pose& pose_a, double unit) : rep_(rep) {
+  Seen(const LrbRep& rep, const Pose& pose, const Pose& pose_a, double unit) {
     const int e = -std::ilogb(unit);
     for (const auto& v : rep.vertices()) {
       const Eigen::Vector3d w = pose.apply(v);
@@ -56,7 +56,6 @@ class Seen {
   }
 
  private:
-  const LrbRep& rep_;
   std::vector<Exact3> on_a_;
 };
 
