@@ -64,8 +64,7 @@ class JsonOut {
       flush();
       if (text.size() > buffer_.size()) return sink_->write(text);
     }
-    std::memcpy(buffer_.data() + used_, text.data(), text.size());
-    used_ += text.size();
+    used_ += text.copy(buffer_.data() + used_, text.size());  // unlike memcpy, also from a null pointer
   }
   void raw(char c) { raw(std::string_view(&c, 1)); }
 
