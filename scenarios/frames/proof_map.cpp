@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -50,6 +49,7 @@ MapAxis::MapAxis(const trace::TreeShape& tree) : low(tree.size()), high(tree.siz
     std::uint32_t next = low[n];
     for (const SimplexId s : tree.simplices(n)) {
       if (s >= leaf.size()) leaf.resize(s.value() + std::size_t{1}, kNull), rank.resize(leaf.size(), kNull);
+      repeats |= leaf[s] != kNull;
       leaf[s] = n;
       rank[s] = next++;
     }
@@ -100,7 +100,10 @@ class MapMaker {
                      [](const MapCell& x, const MapCell& y) { return x.event < y.event; });
   }
 
-  ProofMap take() { return std::move(map_); }
+  std::optional<ProofMap> take() {
+    if (axis_[0].repeats || axis_[1].repeats) return std::nullopt;
+    return std::move(map_);
+  }
 
  private:
   using Nodes = std::span<const std::uint32_t>;
@@ -209,13 +212,6 @@ std::optional<ProofMap> proof_map(const RecordedRun& recorded, std::size_t step)
   const bool known =
       trace.header.engine.empty() || (recorded.trees != nullptr && recorded.trees->size() == 2);
   if (recorded.reps.size() != 2 || !known) return std::nullopt;
-  if (!trace.header.engine.empty())
-    for (const trace::TreeShape& tree : *recorded.trees) {
-      std::set<SimplexId> seen;
-      for (const std::uint32_t n : tree.from_root())
-        for (const SimplexId s : tree.simplices(n))
-          if (!seen.insert(s).second) return std::nullopt;
-    }
   const EventId first = trace.steps[step].first_event,
                 end = first + static_cast<EventId>(trace.events_of(step).size());
   EventId walk = end, begin = end;  // the last traversal with visits

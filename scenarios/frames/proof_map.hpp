@@ -57,6 +57,7 @@ struct MapCell {
 struct MapAxis {
   std::vector<std::uint32_t> low, high;   ///< by node: its simplices
   std::vector<std::uint32_t> leaf, rank;  ///< by simplex; kNull: in no leaf
+  bool repeats = false;                   ///< a simplex is in several leaves
   explicit MapAxis(const trace::TreeShape& tree);
 };
 

@@ -25,6 +25,7 @@ nlohmann::json map_json(const RecordedRun& p) {
   for (const auto& [side, number] : walked) {
     const trace::TreeShape tree = walked_shape(p, side, number);
     const MapAxis axis(tree);
+    if (axis.repeats) return nullptr;
     std::vector<std::uint32_t> parent(tree.size(), kNull);
     for (const std::uint32_t n : tree.from_root())
       for (const std::uint32_t child : tree.children(n)) parent[child] = n;
