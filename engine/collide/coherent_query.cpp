@@ -54,6 +54,8 @@ class CoherentQuery::Work {
   template <class Probe>
   void query_kept_wrappers(const Pose& pose_a, const Pose& pose_b, Probe& probe);
   template <class Probe>
+  void finish(Probe& probe);
+  template <class Probe>
   bool still_crosses(Probe& probe);
   template <class Probe>
   bool make_cache(const CachePolicy::Plan& plan, Probe& probe);
@@ -195,15 +197,8 @@ void CoherentQuery::Work::query_from_scratch(Probe& probe) {
   result_.meets.clear();
   result_.contacts.clear();
   result_.regions.clear();
-  // The steps of collide(): traverse the trees, sort the pairs, decide the relation, describe the contact.
   TreeQuery<Probe>(context_, request_, result_, probe).run();
-  in_phase(probe, Phase::sort, [&] {
-    context_.pair_order.sort(result_);
-    return result_.pairs.size();
-  });
-  decide_relation_watched(context_, result_, probe, [] { return true; });
-  describe(probe);
-  show_opened();
+  finish(probe);
 }
 
 /// Runs the paper's recursion on the wrappers of the last query: they are refined where faces meet, and
@@ -236,6 +231,12 @@ void CoherentQuery::Work::query_kept_wrappers(const Pose& pose_a, const Pose& po
         probe.coarsen(side, r, static_cast<std::uint32_t>(wrapper.rep().floor(r).size()));
     }
   }
+  finish(probe);
+}
+
+/// The steps of collide() after the search: sorts the pairs, decides the relation, describes the contact.
+template <class Probe>
+void CoherentQuery::Work::finish(Probe& probe) {
   in_phase(probe, Phase::sort, [&] {
     context_.pair_order.sort(result_);
     return result_.pairs.size();

@@ -4,7 +4,6 @@
 /// relative to A, the pair needs no test.
 
 #include <cstdint>
-#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>

@@ -221,10 +221,6 @@ render::FrameSpec completed(render::FrameSpec spec, const RecordedRun& recorded)
   return spec;
 }
 
-}  // namespace
-
-namespace {
-
 /// Returns the indices of the events in a montage: evenly spaced, but for a wrapper that is refined in equal
 /// ratios of its faces, as in a figure, if there are enough events for that.
 std::vector<std::size_t> panels_of(const RecordedRun& recorded, const std::vector<trace::EventId>& events,

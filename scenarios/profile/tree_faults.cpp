@@ -219,6 +219,7 @@ void Finder::find_in_parts(const NodeMeasures& measures, double tolerance) {
   using Polygon = std::vector<Vector3d>;
   const double most = std::max(tolerance, 1e-12) * diagonal_of(mesh_);
   std::vector<std::vector<HalfSpace>> sides(tree_.size());  // of the volumes, larger by the tolerance
+  std::vector<HalfSpace> around;                            // those of a leaf and of the nodes above it
   for (const std::uint32_t n : index_.from_root) {
     if (measures.empty[n]) add({TreeFault::empty_volume, n});
     sides[n] = volumes_.half_spaces(n);
@@ -231,26 +232,26 @@ void Finder::find_in_parts(const NodeMeasures& measures, double tolerance) {
     const double area = area_of(all);
     std::vector<Polygon> left = {all}, outside;
     index_.for_each_leaf(t, [&](std::uint32_t leaf) {
+      around.clear();
+      for (std::uint32_t n = leaf; n != kNull; n = index_.parent[n])
+        around.insert(around.end(), sides[n].begin(), sides[n].end());
       outside.clear();
       for (Polygon& part : left) {
-        // A part that is outside of one volume is not cut up.
-        bool is_beyond = false;
-        for (std::uint32_t n = leaf; n != kNull && !is_beyond; n = index_.parent[n])
-          is_beyond = std::ranges::any_of(sides[n], [&](const HalfSpace& side) {
-            return std::ranges::all_of(part,
-                                       [&](const Vector3d& p) { return side.normal.dot(p) > side.offset; });
-          });
+        // A part that is beyond one side is not cut up.
+        const bool is_beyond = std::ranges::any_of(around, [&](const HalfSpace& side) {
+          return std::ranges::all_of(part,
+                                     [&](const Vector3d& p) { return side.normal.dot(p) > side.offset; });
+        });
         if (is_beyond) {
           outside.push_back(std::move(part));
           continue;
         }
-        for (std::uint32_t n = leaf; n != kNull && !part.empty(); n = index_.parent[n])
-          for (const HalfSpace& side : sides[n]) {
-            Polygon beyond = part;
-            clip(beyond, {-side.normal, -side.offset});
-            if (area_of(beyond) > 0) outside.push_back(std::move(beyond));
-            clip(part, side);
-          }
+        for (const HalfSpace& side : around) {
+          Polygon beyond = part;
+          clip(beyond, {-side.normal, -side.offset});
+          if (area_of(beyond) > 0) outside.push_back(std::move(beyond));
+          clip(part, side);
+        }
       }
       left.swap(outside);
     });
