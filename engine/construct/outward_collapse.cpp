@@ -47,7 +47,7 @@ bool OutwardCollapse::place(const Star& star, Vector3& w) {
     if (!solve()) return false;
   }
   w += centre;
-  return true;
+  return w.allFinite();  // squares of lengths above 1e154 overflow
 }
 
 bool OutwardCollapse::is_in_front(const Star& star) const {
