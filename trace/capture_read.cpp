@@ -1,22 +1,18 @@
-/// Reads captures: docs/capture.md describes the format.
-///
-/// A file is untrusted. Every count is compared with the bytes left in its chunk before anything is
-/// allocated, so that memory is bounded by a multiple of the file's size.
+/// Reads captures, their queries and events: capture_descriptions.hpp reads the rest.
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <string_view>
-#include <type_traits>
 #include <unordered_map>
 #include <utility>
 
 #include <Eigen/LU>
 
+#include "trace/capture_descriptions.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -25,50 +21,17 @@
 namespace lrb::capture {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "captures are read in the order of their writers");
-
-constexpr std::string_view kMagic("LRBCAP\r\n", 8);
-constexpr std::uint32_t kVersion = 1, kByteOrder = 0x01020304, kOtherByteOrder = 0x04030201;
-constexpr std::size_t kFileHeader = 16, kChunkHeader = 24;
 constexpr double kRigid = 1e-6;  ///< of a rotation's determinant and of the products of its columns
 
-/// Bits of the word of options of a TREE.
-constexpr std::uint32_t kHasIds = 1, kFloatVolumes = 2, kSplits = 4;
 /// Bits of the first byte of an event, above its kind.
 constexpr std::uint8_t kMet = 4, kCounted = 8, kHasAxis = 16, kKnownBits = 31;
 constexpr std::size_t kLeastEvent = 3;  ///< bytes of an event in the file
-
-/// Returns the number of doubles per volume; 0 for an unknown kind.
-std::uint64_t numbers_of(std::uint32_t kind, std::uint64_t directions) {
-  switch (static_cast<VolumeKind>(kind)) {
-    case VolumeKind::aabb:
-      return 6;
-    case VolumeKind::sphere:
-      return 4;
-    case VolumeKind::obb:
-      return 12;
-    case VolumeKind::rss:
-      return 10;
-    case VolumeKind::kdop:
-      return 2 * directions;
-  }
-  return 0;
-}
-
-bool is_chunk_name(std::string_view name) {
-  return std::all_of(name.begin(), name.end(),
-                     [](char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); });
-}
 
 /// Returns the largest error of r as a rotation: of the products of its columns, and of its determinant.
 double error_as_rotation(const Eigen::Matrix3d& r) {
   const double products = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   const double error = std::max(products, std::abs(r.determinant() - 1));
   return std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
-}
-
-std::string text(std::uint64_t number) {
-  return std::to_string(number);
 }
 
 }  // namespace
@@ -86,10 +49,10 @@ struct Growing {
   std::map<std::uint32_t, std::size_t> part_now;  ///< by thread: index of its last part
 };
 
-class Reader {
+class Reader : public Descriptions {
  public:
   Reader(std::span<const std::byte> bytes, const std::string& name, std::uint32_t first, std::uint32_t last)
-      : bytes_(bytes), name_(printable_name(name)), first_(first), last_(last) {}
+      : Descriptions(bytes, name), first_(first), last_(last) {}
 
   Capture read() {
     read_header();
@@ -125,111 +88,24 @@ class Reader {
   std::size_t unfinished() const { return queries_.size(); }
 
  private:
-  /// Throws an InputError: the name, the location and the fault.
-  [[noreturn]] void fail(const std::string& what) const {
-    std::string where = name_ + ":";
-    if (chunk_ != 0)
-      where += " chunk " + text(chunk_) + " (" + kind_ + " at byte " + text(base_ + begin_) + ")";
-    if (query_ != 0) where += (chunk_ != 0 ? ", query " : " query ") + text(query_);
-    if (event_ != 0) where += ", event " + text(event_);
-    throw InputError(where + (chunk_ != 0 || query_ != 0 ? ": " : " ") + what);
-  }
-  void require(bool holds, const char* what) const {
-    if (!holds) fail(what);
-  }
-
-  void read_header() {
-    const auto file = std::string_view(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
-    if (!is_capture(bytes_))
-      fail("expected a capture (LRBCAP ...), found " + content_of(file) +
-           "; record one with lrbscope_capture.h");
-    if (bytes_.size() < kFileHeader)
-      fail("expected 16 bytes of file header, found " + text(bytes_.size()) + "; record the capture again");
-    end_ = kFileHeader;
-    at_ = kMagic.size();
-    const auto version = number<std::uint32_t>(), order = number<std::uint32_t>();
-    if (order == kOtherByteOrder)
-      fail("expected little-endian numbers, found a capture of a big-endian machine; record it on another");
-    if (order != kByteOrder)
-      fail("expected the byte order mark 01020304, found another; the file is damaged");
-    if (version != kVersion)
-      fail("expected version 1 of the format, found " + text(version) +
-           "; use an lrbscope_capture.h and an lrbscope that belong together");
-  }
-
-  /// Returns what a file that is not a capture looks like.
-  static std::string content_of(std::string_view file) {
-    if (file.empty()) return "an empty file";
-    const std::string_view begin = file.substr(0, 256);
-    if (begin.starts_with("\x1f\x8b")) return "a gzip file (unpack it)";
-    if (begin.starts_with('{') || begin.starts_with('[')) return "JSON";
-    const bool is_text = std::all_of(begin.begin(), begin.end(), [](char c) {
-      return static_cast<unsigned char>(c) >= ' ' || c == '\n' || c == '\r' || c == '\t';
-    });
-    return (is_text ? "text: " : "other bytes: ") + in_quotes(begin.substr(0, begin.find('\n')), 20);
-  }
-
-  // The current chunk, in order.
-
-  std::size_t left() const { return end_ - at_; }
-  template <class Number>
-  Number number() {
-    static_assert(std::is_arithmetic_v<Number>);
-    require(left() >= sizeof(Number), "the content ends too early; the file is damaged");
-    Number x;
-    std::memcpy(&x, bytes_.data() + at_, sizeof x);
-    at_ += sizeof x;
-    return x;
-  }
-  std::uint32_t u32() { return number<std::uint32_t>(); }
-  std::uint64_t u64() { return number<std::uint64_t>(); }
-  template <class Number>
-  std::vector<Number> numbers(std::uint64_t count) {
-    require(count <= left() / sizeof(Number),
-            "the content is smaller than its counts say; the file is damaged");
-    std::vector<Number> out(count);
-    if (count != 0) std::memcpy(out.data(), bytes_.data() + at_, count * sizeof(Number));
-    at_ += count * sizeof(Number);
-    return out;
-  }
-  std::string characters(std::uint64_t count) {
-    const std::vector<char> read = numbers<char>(count);
-    return {read.begin(), read.end()};
-  }
-
   /// Reads the next chunk. Returns false if it is not whole.
   bool read_chunk() {
-    begin_ = at_, end_ = bytes_.size(), ++chunk_, query_ = 0, event_ = 0;
-    kind_ = characters(4);
-    if (kind_ == kMagic.substr(0, 4))
-      fail("a second capture begins here; give each program a file of its own");
-    if (!is_chunk_name(kind_)) {
-      kind_ = in_quotes(kind_);
-      fail("expected a chunk name of four letters; the file is damaged");
-    }
-    const std::uint32_t version = u32();
-    const std::uint64_t size = u64();
-    ticks_ = u64();
-    if (size > left()) {
-      at_ = begin_;
-      return false;
-    }
-    end_ = at_ + size;
-    if (read_content(version)) require(left() == 0, "more content than its counts say; the file is damaged");
-    at_ = end_;
+    if (!open_next()) return false;
+    if (read_content()) require(left() == 0, "more content than its counts say; the file is damaged");
+    skip_content();
     return true;
   }
 
   /// Returns false for an unknown chunk, whose content is skipped.
-  bool read_content(std::uint32_t version) {
-    static constexpr std::pair<std::string_view, void (Reader::*)()> kKinds[] = {
+  bool read_content() {
+    static const std::pair<std::string_view, void (Reader::*)()> kKinds[] = {
         {"HEAD", &Reader::read_engine}, {"SYNC", &Reader::read_sync},   {"STOP", &Reader::read_stop},
         {"NAME", &Reader::read_name},   {"MESH", &Reader::read_mesh},   {"TREE", &Reader::read_tree},
         {"QRYB", &Reader::read_begin},  {"QRYE", &Reader::read_answer}, {"EVTS", &Reader::read_events},
         {"VALU", &Reader::read_value}};
     for (const auto& [kind, read] : kKinds) {
       if (kind_ != kind) continue;
-      if (version != 1) fail("expected version 1, found " + text(version) + "; use a newer lrbscope");
+      if (version_ != 1) fail("expected version 1, found " + text(version_) + "; use a newer lrbscope");
       (this->*read)();
       return true;
     }
@@ -246,135 +122,6 @@ class Reader {
   void read_stop() {
     read_sync();
     out_.cut_off = false;
-  }
-
-  /// Assigns the next index to an id of the engine, which must be new.
-  void define(std::unordered_map<std::uint32_t, std::uint32_t>& ids, std::uint32_t id, const char* what) {
-    if (id == 0 || !ids.emplace(id, static_cast<std::uint32_t>(ids.size())).second)
-      fail(std::string("expected a new id of a ") + what + " above 0, found " + text(id) +
-           "; the file is damaged, or two programs wrote to it");
-  }
-
-  void read_name() {
-    define(names_, u32(), "name");
-    out_.names.push_back(characters(left()));
-  }
-
-  void read_mesh() {
-    define(meshes_, u32(), "mesh");
-    const std::uint32_t vertices = u32(), triangles = u32(), length = u32();
-    Mesh mesh;
-    mesh.name = characters(length);
-    const std::vector<double> xyz = numbers<double>(std::uint64_t{3} * vertices);
-    const std::vector<std::uint32_t> corners = numbers<std::uint32_t>(std::uint64_t{3} * triangles);
-    mesh.vertices.reserve(vertices);
-    for (std::size_t i = 0; i < xyz.size(); i += 3) {
-      mesh.vertices.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
-      if (!mesh.vertices.back().allFinite())
-        fail("vertex " + text(i / 3) + ": expected finite numbers; describe the mesh as the engine has it");
-    }
-    mesh.triangles.reserve(triangles);
-    for (std::size_t i = 0; i < corners.size(); i += 3) {
-      mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
-      for (const std::uint32_t v : mesh.triangles.back())
-        if (v >= vertices)
-          fail("triangle " + text(i / 3) + ": expected a vertex below " + text(vertices) + ", found " +
-               text(v) + "; count vertices from 0");
-    }
-    out_.meshes.push_back(std::move(mesh));
-  }
-
-  void read_tree() {
-    Tree tree;
-    define(trees_, tree.id = u32(), "tree");
-    const std::uint32_t mesh = u32(), replaces = u32(), nodes = u32(), kind = u32(), directions = u32();
-    const std::uint32_t options = u32();
-    u32();  // reserved
-    tree.mesh = index_of(meshes_, mesh, "mesh");
-    if (replaces != 0) {
-      tree.replaces = index_of(trees_, replaces, "tree");
-      if (replaces == tree.id) fail("tree " + text(tree.id) + " replaces itself; name the tree before it");
-    }
-    require(nodes != 0 && nodes != kNull, "expected at least one node; also describe the root");
-    require((options & ~(kHasIds | kFloatVolumes | kSplits)) == 0,
-            "unknown options of a tree; use a newer lrbscope");
-    require(kind != static_cast<std::uint32_t>(VolumeKind::kdop) || directions <= left() / 24,
-            "more directions than its content has room for; the file is damaged");
-    const std::uint64_t per_node = numbers_of(kind, directions);
-    if (per_node == 0)
-      fail("expected a bounding volume of kind 1 (AABB) to 5 (k-DOP with directions), found kind " +
-           text(kind) + "; see docs/capture.md");
-    tree.volume = static_cast<VolumeKind>(kind);
-    tree.splits = (options & kSplits) != 0;
-    require(
-        !tree.splits || (tree.volume != VolumeKind::sphere && tree.volume != VolumeKind::rss),
-        "expected AABBs, OBBs or k-DOPs of a tree with spatial splits, found spheres or RSS; leave LRBCAP_SPLITS out");
-    if ((options & kHasIds) != 0) tree.ids = numbers<std::uint32_t>(nodes);
-    read_ranges(nodes, nodes, "child", tree.first_child, tree.child);
-    read_ranges(nodes, kNull, "triangle", tree.first_triangle, tree.triangle);
-    if ((options & kFloatVolumes) != 0) {
-      const std::vector<float> floats = numbers<float>(nodes * per_node);
-      tree.volumes.assign(floats.begin(), floats.end());
-    } else {
-      tree.volumes = numbers<double>(nodes * per_node);
-    }
-    for (std::size_t i = 0; i < tree.volumes.size(); ++i)
-      if (!std::isfinite(tree.volumes[i]))
-        fail("node " + text(i / per_node) + ": expected finite numbers of its volume, found " +
-             io::number_text(tree.volumes[i]) + "; describe the volumes after the tree was built");
-    if (tree.volume == VolumeKind::kdop) {
-      const std::vector<double> xyz = numbers<double>(std::uint64_t{3} * directions);
-      for (std::size_t i = 0; i < xyz.size(); i += 3) {
-        tree.directions.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
-        if (!tree.directions.back().allFinite() || tree.directions.back().isZero(0))
-          fail("direction " + text(i / 3) +
-               ": expected a finite vector that is not zero; see docs/capture.md");
-      }
-    }
-    index_nodes(tree);
-    out_.trees.push_back(std::move(tree));
-  }
-
-  /// Reads n + 1 offsets and the indices to which they refer, which must be below `end`.
-  void read_ranges(std::uint32_t n, std::uint32_t end, const char* what, std::vector<std::uint32_t>& offsets,
-                   std::vector<std::uint32_t>& indices) {
-    offsets = numbers<std::uint32_t>(std::uint64_t{n} + 1);
-    const std::string of_kind = std::string("offsets of ") + what + " indices: ";
-    if (offsets[0] != 0)
-      fail(of_kind + "expected 0 first, found " + text(offsets[0]) + "; see docs/capture.md");
-    for (std::uint32_t i = 0; i < n; ++i)
-      if (offsets[i + 1] < offsets[i])
-        fail(of_kind + "expected ascending numbers, found " + text(offsets[i + 1]) + " after " +
-             text(offsets[i]) + " (node " + text(i) + "); give each node the range of its own");
-    indices = numbers<std::uint32_t>(offsets[n]);
-    if (end == kNull) return;
-    const auto wrong =
-        std::find_if(indices.begin(), indices.end(), [&](std::uint32_t i) { return i >= end; });
-    if (wrong == indices.end()) return;
-    const auto position = static_cast<std::uint32_t>(wrong - indices.begin());
-    const auto node = std::upper_bound(offsets.begin(), offsets.end(), position) - offsets.begin() - 1;
-    fail("node " + text(static_cast<std::uint64_t>(node)) + ": expected a " + what + " below " + text(end) +
-         ", found " + text(*wrong) + "; children are indices of nodes, not ids");
-  }
-
-  /// Makes the table from the engine's numbers of nodes to ours.
-  void index_nodes(const Tree& tree) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>>& table = node_of_.emplace_back();
-    for (std::uint32_t i = 0; i < tree.ids.size(); ++i) table.emplace_back(tree.ids[i], i);
-    std::sort(table.begin(), table.end());
-    for (std::size_t i = 1; i < table.size(); ++i)
-      if (table[i].first == table[i - 1].first)
-        fail("nodes " + text(table[i - 1].second) + " and " + text(table[i].second) + " have the same id, " +
-             text(table[i].first) + "; give each node an id of its own");
-  }
-
-  std::uint32_t index_of(const std::unordered_map<std::uint32_t, std::uint32_t>& ids, std::uint32_t id,
-                         const char* what) const {
-    const auto found = ids.find(id);
-    if (found == ids.end())
-      fail(std::string("refers to ") + what + " " + text(id) +
-           ", which was not described; describe it before");
-    return found->second;
   }
 
   void read_begin() {
@@ -645,39 +392,16 @@ class Reader {
     }
   }
 
-  std::span<const std::byte> bytes_;
-  std::string name_;
   std::uint32_t first_, last_;
-  Capture out_;
-
-  // The current chunk, and where in it.
-  std::size_t begin_ = 0, at_ = 0, end_ = 0, chunk_ = 0;
-  std::string kind_;
-  std::uint64_t ticks_ = 0;
-  std::uint32_t query_ = 0;  ///< its number; 0: none
-  std::uint64_t event_ = 0;  ///< for messages, from 1; 0: none
-
   bool synced_ = false;
   std::uint64_t first_ticks_ = 0, first_wall_ = 0, last_ticks_ = 0, last_wall_ = 0;
-  std::unordered_map<std::uint32_t, std::uint32_t> names_, meshes_, trees_;  ///< index by id
-  /// By tree: (id, node), sorted; empty if ids are our numbers.
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> node_of_;
   std::unordered_map<std::uint32_t, Growing> queries_;
 
   // Of a stream.
   bool streaming_ = false;
-  std::uint64_t base_ = 0;        ///< offset of bytes_
   std::uint32_t last_begun_ = 0;  ///< greatest number of a query that began
   std::uint32_t ended_ = 0;       ///< the query that the current chunk ends; 0: none
 };
-
-std::size_t Tree::numbers() const {
-  return numbers_of(static_cast<std::uint32_t>(volume), directions.size());
-}
-
-bool is_capture(std::span<const std::byte> bytes) {
-  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
-}
 
 Capture parse_capture(std::span<const std::byte> bytes, const std::string& name, std::uint32_t first,
                       std::uint32_t last) {

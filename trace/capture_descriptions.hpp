@@ -1,0 +1,39 @@
+#pragma once
+/// Reads the descriptions in a capture: names, meshes and trees.
+
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "trace/capture_chunks.hpp"
+#include <lrbscope/trace/capture.hpp>
+
+namespace lrb::capture {
+
+class Descriptions : public Chunk {
+ protected:
+  using Chunk::Chunk;
+
+  void read_name();
+  void read_mesh();
+  void read_tree();
+  std::uint32_t index_of(const std::unordered_map<std::uint32_t, std::uint32_t>& ids, std::uint32_t id,
+                         const char* what) const;
+
+  Capture out_;
+  std::unordered_map<std::uint32_t, std::uint32_t> names_, meshes_, trees_;  ///< index by id of the engine
+  /// By tree: (id, node), sorted; empty if ids are our numbers.
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> node_of_;
+
+ private:
+  /// Assigns the next index to an id of the engine, which must be new.
+  void define(std::unordered_map<std::uint32_t, std::uint32_t>& ids, std::uint32_t id, const char* what);
+  /// Reads n + 1 offsets and the indices to which they refer, which must be below `end`.
+  void read_ranges(std::uint32_t n, std::uint32_t end, const char* what, std::vector<std::uint32_t>& offsets,
+                   std::vector<std::uint32_t>& indices);
+  /// Makes the table from the engine's numbers of nodes to ours.
+  void index_nodes(const Tree& tree);
+};
+
+}  // namespace lrb::capture
