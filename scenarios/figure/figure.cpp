@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <set>
 
 #include "render/canvas.hpp"
 #include "render/face_look.hpp"
-#include "render/paint_list.hpp"
 #include "render/pictures/panel.hpp"
 #include "render/vector_faces.hpp"
+#include "scenarios/figure/panel_painter.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/frames/framing.hpp"
 #include <lrbscope/error.hpp>
@@ -63,7 +62,8 @@ class FigureJob {
         dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
         chosen_(choose(recorded, figure.choice)),
         framing_(run::frame_sequence(recorded, frames_)),
-        state_(in_common_range(), frames_, false) {
+        state_(in_common_range(), frames_, false),
+        painter_(frames_, framing_.dim, margin()) {
     for (const Callout& c : figure.callouts) check_target(c.option, c.target, recorded.reps);
     for (const Inset& i : figure.insets) check_target(i.option, i.target, recorded.reps);
     if (figure.occlusion && shows_values())
@@ -102,13 +102,17 @@ class FigureJob {
   bool flat() const { return framing_.dim == 2; }
   std::size_t moments() const { return chosen_.events.size(); }
 
+  /// Half the width of the widest lines, contacts with their halo.
+  double margin() const {
+    constexpr double kThinLines = 3;
+    return kThinLines * figure_.line_width;
+  }
+
   LayoutOptions options() const {
-    constexpr double kWidest =
-        3;  // half the width of the widest lines, contacts with their halo, in thin lines
     LayoutOptions o;
     o.width = figure_.width;
     o.font_size = figure_.font_size;
-    o.margin = kWidest * figure_.line_width;
+    o.margin = margin();
     o.grid = flat() && figure_.format != FigureSpec::Format::png ? 0 : render::kPointsPerInch / dpi_;
     o.columns = figure_.columns;
     return o;
@@ -243,11 +247,6 @@ class FigureJob {
     AlignedBox2d shown = {};  ///< part of the view
   };
 
-  AlignedBox2d shown_part(const PanelPlace& place, double scale) const {
-    const Vector2d low = place.seen_from - Vector2d::Constant(options().margin / scale);
-    return {low, low + place.box.sizes() / scale};
-  }
-
   /// Collects panels, each followed by its insets.
   void find_pieces() {
     pieces_.clear();
@@ -257,8 +256,8 @@ class FigureJob {
       for (std::size_t i = 0; i < block.panels.size(); ++i, ++panel) {
         const PanelPlace& place = block.panels[i];
         const auto [view, moment] = panels_[b][i];
-        pieces_.push_back(
-            {view, moment, b, panel, place, block.scale, nullptr, 1, shown_part(place, block.scale)});
+        pieces_.push_back({view, moment, b, panel, place, block.scale, nullptr, 1,
+                           painter_.shown_part(place, block.scale)});
         for (std::size_t k = 0; k < place.insets.size(); ++k) add_inset(b, i, panel, k);
       }
     }
@@ -282,7 +281,7 @@ class FigureJob {
     piece.scale = piece.magnification * block.scale;
     const Vector2d half = 0.5 * piece.place.box.sizes() / piece.scale;
     piece.shown = {target.center() - half, target.center() + half};
-    piece.place.seen_from = piece.shown.min() + Vector2d::Constant(options().margin / piece.scale);
+    piece.place.seen_from = piece.shown.min() + Vector2d::Constant(margin() / piece.scale);
     pieces_.push_back(std::move(piece));
   }
 
@@ -372,7 +371,7 @@ class FigureJob {
     raster.labels = false;
     raster.background.reset();
     const render::Image content =
-        rasterizer_.draw(list, part_of(camera(*piece.view, piece.moment), piece.shown), raster);
+        painter_.rasterizer.draw(list, part_of(camera(*piece.view, piece.moment), piece.shown), raster);
     std::vector<render::Canvas::Loop> frames;
     for (const Piece& p : pieces_)
       if (piece.inset == nullptr && p.inset != nullptr && p.panel == piece.panel)
@@ -490,11 +489,10 @@ class FigureJob {
                  side = pixel * std::ceil(kViewSide * scale / pixel);
     PanelPlace place;
     place.box = AlignedBox2d(Vector2d(0, 0), Vector2d(side, side));
-    place.seen_from = Vector2d(options().margin, options().margin) / scale;
+    place.seen_from = Vector2d(margin(), margin()) / scale;
     const render::Scene shown = scene(view, moment);
     return render::paint_pixels({side, side, render::kWhite, {}, {}}, kEyeDpi, [&](render::Canvas& canvas) {
-      flat() ? paint_flat(canvas, shown.list, camera(view, moment), place, scale)
-             : paint_deep(canvas, shown.list, camera(view, moment), place, scale, kEyeDpi);
+      painter_.paint(canvas, shown.list, camera(view, moment), place, scale, kEyeDpi);
     });
   }
 
@@ -562,16 +560,15 @@ class FigureJob {
       if (figure_.occlusion && !flat()) {
         // An inset shows the scene of the panel before it.
         if (piece.inset == nullptr) {
-          render::add_ambient_occlusion(shown.list, rasterizer_);
+          render::add_ambient_occlusion(shown.list, painter_.rasterizer);
           shaded = shown.list.triangles;
         } else {
           shown.list.triangles = shaded;
         }
       }
       const auto callouts = add_marks(shown.list, piece);
-      flat() ? paint_flat(canvas, shown.list, camera(*piece.view, piece.moment), piece.place, piece.scale)
-             : paint_deep(canvas, shown.list, camera(*piece.view, piece.moment), piece.place, piece.scale,
-                          dpi_, vector_faces_.empty() ? nullptr : &vector_faces_[i]);
+      painter_.paint(canvas, shown.list, camera(*piece.view, piece.moment), piece.place, piece.scale, dpi_,
+                     vector_faces_.empty() ? nullptr : &vector_faces_[i]);
       if (piece.inset != nullptr) {
         canvas.stroke(render::corners(piece.place.box), true,
                       {style().ink, std::max(kHairline, 1.5 * figure_.line_width), 0});
@@ -604,35 +601,6 @@ class FigureJob {
     }
   }
 
-  void paint_flat(render::Canvas& canvas, const render::DrawList& list, const render::Camera& camera,
-                  const PanelPlace& place, double scale) const {
-    const double side = kViewSide * scale, margin = options().margin;
-    const render::Projection projection(camera, side, side, render::bounds(list));
-    canvas.begin_clip(place.box);
-    render::paint_flat(canvas, list, projection,
-                       place.box.min() + Vector2d(margin, margin) - place.seen_from * scale);
-    canvas.end_clip();
-  }
-
-  /// The part of a view that a panel shows.
-  struct DeepView {
-    render::Camera camera;
-    Vector2d paper;         ///< size, points
-    Eigen::Vector2i drawn;  ///< the same, pixels
-    double pixel;           ///< points
-  };
-
-  DeepView deep_view(const render::Camera& whole, const PanelPlace& place, double scale, double dpi) const {
-    DeepView out;
-    out.pixel = render::kPointsPerInch / dpi;
-    out.drawn = (place.box.sizes() / out.pixel).array().round().max(1).cast<int>();
-    out.paper = out.drawn.cast<double>() * out.pixel;
-    AlignedBox2d part = shown_part(place, scale);
-    part.max() = part.min() + out.paper / scale;
-    out.camera = part_of(whole, part);
-    return out;
-  }
-
   /// Finds the visible faces of all panels in painting order, if none has too many.
   void find_vector_faces(std::vector<std::string>& notes, const run::ProgressReport& progress) {
     const auto draw_image = [&](const Piece& piece, std::size_t count, const std::string& why) {
@@ -647,8 +615,9 @@ class FigureJob {
       progress("find visible faces", visible.size(), pieces_.size());
       const render::DrawList list = scene(*piece.view, piece.moment).list;
       const DeepView deep = deep_view(piece);
-      const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
-      auto faces = render::visible_faces(list, projection(deep, list), depths);
+      const render::DepthImage depths =
+          painter_.rasterizer.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
+      auto faces = render::visible_faces(list, deep.projection(list), depths);
       if (!faces) return;
       if (faces->size() > figure_.vector_faces)
         return draw_image(piece, faces->size(),
@@ -659,7 +628,7 @@ class FigureJob {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       progress("order visible faces", i, pieces_.size());
       const render::DrawList list = scene(*pieces_[i].view, pieces_[i].moment).list;
-      const render::Projection on_paper = projection(deep_view(pieces_[i]), list);
+      const render::Projection on_paper = deep_view(pieces_[i]).projection(list);
       auto ordered = render::painting_order(list, on_paper, looks(list, on_paper), visible[i]);
       if (!ordered) return draw_image(pieces_[i], visible[i].size(), "which intersect each other too often");
       vector_faces_.push_back(std::move(*ordered));
@@ -667,45 +636,7 @@ class FigureJob {
   }
 
   DeepView deep_view(const Piece& piece) const {
-    return deep_view(camera(*piece.view, piece.moment), piece.place, piece.scale, dpi_);
-  }
-
-  static render::FaceLooks looks(const render::DrawList& list, const render::Projection& on_paper) {
-    return {list, on_paper, 1, render::Lighting(), true};
-  }
-
-  static render::Projection projection(const DeepView& deep, const render::DrawList& list) {
-    return {deep.camera, deep.paper.x(), deep.paper.y(), render::bounds(list)};
-  }
-
-  /// Paints `faces` as vector graphics, or without them all faces as pixels of resolution `dpi`,
-  /// with whole pixels in the panel's box. Paints lines and texts over them.
-  void paint_deep(render::Canvas& canvas, const render::DrawList& list, const render::Camera& whole,
-                  const PanelPlace& place, double scale, double dpi,
-                  const std::vector<render::ScreenFace>* faces = nullptr) {
-    const DeepView deep = deep_view(whole, place, scale, dpi);
-    const render::DepthImage depths = rasterizer_.depths(list, deep.camera, deep.drawn.x(), deep.drawn.y());
-    const render::Projection on_paper = projection(deep, list);
-    const Vector2d& origin = place.box.min();
-    if (faces == nullptr) canvas.picture(pixels(list, deep), place.box);
-    canvas.begin_clip(place.box);
-    if (faces != nullptr) {
-      render::paint_faces(canvas, list, *faces, looks(list, on_paper), origin);
-      render::paint_visible_lines(canvas, list, on_paper, depths, origin);
-    }
-    render::paint_over(canvas, list, on_paper, depths, origin);
-    canvas.end_clip();
-  }
-
-  render::Image pixels(const render::DrawList& list, const DeepView& deep) {
-    render::RasterOptions raster;
-    raster.width = deep.drawn.x(), raster.height = deep.drawn.y();
-    raster.supersample = frames_.supersampling;
-    raster.unit = 1 / deep.pixel;
-    raster.labels = false;
-    raster.even_edges = true;
-    raster.background = frames_.paper();
-    return rasterizer_.draw(render::under_lines(list), deep.camera, raster);
+    return painter_.deep_view(camera(*piece.view, piece.moment), piece.place, piece.scale, dpi_);
   }
 
   const run::RecordedRun& recorded_;
@@ -715,7 +646,7 @@ class FigureJob {
   Chosen chosen_;
   run::Framing framing_;
   run::FrameState state_;
-  render::Rasterizer rasterizer_;
+  PanelPainter painter_;
   struct ShownState {
     const View* view;
     std::size_t moment;
@@ -736,38 +667,6 @@ class FigureJob {
 };
 
 }  // namespace
-
-FigureSpec::Format format_of(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending == ".pdf") return FigureSpec::Format::pdf;
-  if (ending == ".svg") return FigureSpec::Format::svg;
-  if (ending == ".png") return FigureSpec::Format::png;
-  throw InputError(path + ": a figure is a .pdf, an .svg or a .png file: end its name in one of these");
-}
-
-double default_dpi(FigureSpec::Format format) {
-  return format == FigureSpec::Format::png ? 300 : 600;
-}
-
-std::string figure_file(FigureSpec::Format format, double dpi, const render::PaperPage& page,
-                        const std::function<void(render::Canvas&)>& paint) {
-  constexpr double kPointsPerScreenPixel = 0.75;
-  switch (format) {
-    case FigureSpec::Format::pdf:
-      return render::paint_pdf(page, paint);
-    case FigureSpec::Format::svg: {
-      render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
-      paint(canvas);
-      return render::svg_file(
-          canvas, {page.width, page.height, kPointsPerScreenPixel, page.title, page.background, true});
-    }
-    case FigureSpec::Format::png:
-      break;
-  }
-  const auto png = render::encode_png(render::paint_pixels(page, dpi, paint),
-                                      {{{"Software", page.creator}, {"lrbscope:scenario", page.title}}, dpi});
-  return {png.begin(), png.end()};
-}
 
 Figure draw_figure(const run::RecordedRun& recorded, const render::FrameSpec& frames,
                    const FigureSpec& figure, const run::ProgressReport& progress) {

@@ -7,6 +7,7 @@
 
 #include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/figure/figure_panels.hpp"
+#include "scenarios/figure/figure_targets.hpp"
 #include "scenarios/frames/frames.hpp"
 
 namespace lrb::figure {

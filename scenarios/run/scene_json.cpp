@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <span>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "render/page_palette.hpp"
-#include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/frame_state.hpp"
 #include "scenarios/record/moments.hpp"
@@ -24,65 +22,6 @@
 #include <lrbscope/trace/work.hpp>
 
 namespace lrb::run {
-namespace {
-
-std::optional<MarkedSegment> separation_vector_in(const RecordedRun& p, std::size_t step) {
-  const trace::Step& s = p.trace->steps[step];
-  if (!s.result.clash) return std::nullopt;
-  std::span<const ContactRegion> contacts;
-  if (p.results != nullptr && step < p.results->size()) contacts = (*p.results)[step].regions;
-  return separation_vector_of(*s.result.clash, {*p.reps[0], s.pose_a, *p.reps[1], s.pose_b}, contacts);
-}
-
-}  // namespace
-
-nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
-  // The order of MEASURED in scene_marks.js.
-  enum Kind : std::uint32_t { gap, separation_vector, near_pair, contact, point, point_inside };
-  constexpr std::size_t kMaxOfStep = 100;  // near pairs, contacts, and points
-  std::vector<std::uint32_t> steps, kinds;
-  std::vector<float> ends;
-  nlohmann::json words = nlohmann::json::array();
-  const auto add = [&](const trace::Step& s, Kind kind, const Eigen::Vector3d& from,
-                       const Eigen::Vector3d& to, const std::string& text) {
-    steps.push_back(s.index);
-    kinds.push_back(kind);
-    frame.add_point(ends, from);
-    frame.add_point(ends, to);
-    words.push_back(text);
-  };
-  for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
-    const trace::Step& s = p.trace->steps[i];
-    if (!s.finished) continue;
-    if (const auto way = s.result.distance ? gap_of(*s.result.distance) : std::nullopt)
-      add(s, gap, way->from, way->to, "distance " + way->text);
-    if (const auto way = separation_vector_in(p, i))
-      add(s, separation_vector, way->from, way->to, "depth " + way->text);
-    if (s.result.near) {
-      const std::vector<NearMark> marks = near_marks(*s.result.near);
-      for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
-        add(s, near_pair, marks[k].points[0], marks[k].points[1], k == 0 ? text_of(*s.result.near) : "");
-    }
-    if (s.result.manifold) {
-      const std::vector<ContactMark> marks = contact_marks(*s.result.manifold);
-      const double length = normal_length(marks, size_of({*p.reps[0], s.pose_a, *p.reps[1], s.pose_b}));
-      for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
-        add(s, contact, marks[k].point, marks[k].point + length * marks[k].normal,
-            k == 0 ? text_of(*s.result.manifold) : "");
-    }
-    if (s.result.points) {
-      const std::vector<PointMark> marks = point_marks(*s.result.points);
-      for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
-        add(s, marks[k].side == Where::inside ? point_inside : point, marks[k].point, marks[k].closest,
-            k == 0 ? text_of(*s.result.points) : "");
-    }
-  }
-  if (steps.empty()) return nullptr;
-  return {{"step", report::packed(steps)},
-          {"kind", report::packed(kinds)},
-          {"ends", report::packed(ends)},
-          {"words", std::move(words)}};
-}
 
 Eigen::Vector3d body_centre(const LrbRep& rep) {
   return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0)
@@ -362,78 +301,6 @@ json outcomes_json(const trace::Trace& trace, const std::vector<trace::EventId>&
   };
   const std::string numbers = packed_each(kept, number);
   return {{"words", words}, {"numbers", numbers}};
-}
-
-/// The tests that have no events at EventLevel::faces, in the names of the full chart. Counters have their
-/// numbers.
-struct Unrecorded {
-  std::string_view outcome;
-  std::uint64_t Counters::*count;
-};
-constexpr Unrecorded kUnrecorded[] = {{"boxes", &Counters::box_tests},
-                                      {"planes of faces", &Counters::prefilter_tests}};
-
-/// Returns true if the work of a trace without node pairs is known from the counters of its steps.
-bool counts_work(const trace::Trace& trace) {
-  return trace.header.level == EventLevel::faces && trace.header.bodies.size() == 2 &&
-         trace.header.request.recursion == Recursion::complete && !trace.has_engine_reports();
-}
-
-/// Returns the chart of the work, from events and, where node pairs were not recorded, from counters.
-trace::WorkChart work_of(const trace::Trace& trace) {
-  trace::WorkChart chart = trace::work_chart(trace);
-  if (!counts_work(trace)) return chart;
-  std::vector<trace::WorkOutcome> counted;
-  for (const auto& [outcome, count] : kUnrecorded) {
-    trace::WorkOutcome& part = counted.emplace_back();
-    part.phase = "walk of the bodies", part.outcome = outcome;
-    for (const trace::Step& step : trace.steps) part.operations += step.result.counters.*count;
-  }
-  chart.outcomes.insert(chart.outcomes.begin(), counted.begin(), counted.end());
-  for (std::uint8_t& part : chart.of_event)
-    if (part != trace::WorkChart::kNone) part = static_cast<std::uint8_t>(part + std::size(kUnrecorded));
-  return chart;
-}
-
-/// Returns the counters of the parts in each step, step by step.
-json work_by_step(const trace::Trace& trace, const trace::WorkChart& chart) {
-  constexpr double kMicros = 1e6;
-  Numbers index, events, operations;
-  std::vector<float> micros;
-  for (std::size_t step = 0; step < trace.steps.size(); ++step) {
-    index.push_back(trace.steps[step].index);
-    std::vector<trace::WorkOutcome> outcomes = trace::outcomes_of_step(trace, chart, step);
-    if (counts_work(trace))
-      for (std::size_t i = 0; i < std::size(kUnrecorded); ++i)
-        outcomes[i].operations = trace.steps[step].result.counters.*kUnrecorded[i].count;
-    for (const trace::WorkOutcome& o : outcomes) {
-      events.push_back(static_cast<std::uint32_t>(o.events));
-      operations.push_back(static_cast<std::uint32_t>(o.operations));
-      micros.push_back(static_cast<float>(kMicros * o.seconds));
-    }
-  }
-  return {{"index", packed(index)},
-          {"events", packed(events)},
-          {"operations", packed(operations)},
-          {"micros", packed(micros)}};
-}
-
-/// Returns the parts of the work; null if it is not known.
-json work_json(const trace::Trace& trace, const trace::WorkChart& chart) {
-  if (chart.outcomes.empty() || (trace.header.level == EventLevel::faces && !counts_work(trace)))
-    return nullptr;
-  constexpr double kMicros = 1e6;
-  json out = json::array();
-  for (const trace::WorkOutcome& o : chart.outcomes)
-    out.push_back({{"phase", o.phase},
-                   {"outcome", o.outcome},
-                   {"events", o.events},
-                   {"operations", o.operations},
-                   {"micros", kMicros * o.seconds}});
-  return {{"outcomes", std::move(out)},
-          // At EventLevel::faces, the times of box and plane tests are unknown.
-          {"timed", !trace.wall_ns.empty() && !counts_work(trace)},
-          {"steps", work_by_step(trace, chart)}};
 }
 
 json events_json(const trace::Trace& trace, const trace::WorkChart& chart,

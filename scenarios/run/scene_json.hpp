@@ -10,6 +10,7 @@
 
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/run/explanations.hpp"
+#include <lrbscope/trace/work.hpp>
 
 namespace lrb::run {
 
@@ -17,6 +18,11 @@ namespace lrb::run {
 /// the segment between the closest points, or the separation vector of B from A. Returns null if there is
 /// none.
 nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame);
+
+/// Returns the chart of the work, from events and, where node pairs were not recorded, from counters.
+trace::WorkChart work_of(const trace::Trace& trace);
+/// Returns the parts of the work, in all and by step; null if it is not known.
+nlohmann::json work_json(const trace::Trace& trace, const trace::WorkChart& chart);
 
 /// Returns the centre of a body in its own frame. A page has vertices and poses relative to it.
 Eigen::Vector3d body_centre(const LrbRep& rep);

@@ -9,6 +9,7 @@
 #include "render/face_look.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/figure/figure_layout.hpp"
+#include "scenarios/figure/figure_targets.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tests/support/text.hpp"
