@@ -28,7 +28,7 @@ import numpy as np
 from . import _core
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Hashable, Iterator, Sequence
     from typing import Optional, Protocol, Union
 
     import numpy.typing as npt
@@ -43,8 +43,8 @@ if TYPE_CHECKING:
 
     _Pose = Optional[npt.ArrayLike]
     _Placed = tuple[Body, _Floats]
-    _Names = tuple[Any, Any]
-    _Other = Union["Crowd", _Placed, None]
+    _Other = Union["CollisionManager", _Placed, None]
+    _Side = tuple[dict[int, Any], Callable[[int], _Placed]]  # names and placed bodies, by keys of a scene
 
 
 class Shown:
@@ -60,70 +60,6 @@ def _short(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return str(value.tolist()) if value.size <= 4 else f"{value.shape} array"
     return f"[{len(value)} items]" if isinstance(value, list) and len(value) > 2 else repr(value)
-
-
-class Crowd:
-    """Labelled objects in a Scene: the core of both collision managers. Queries ask for all pairs of its objects;
-    or for pairs with those of another Crowd; or with a body at a pose, which is the first of a pair and called
-    `outside`.
-    """
-
-    def __init__(self, objects: Iterable[tuple[Any, Body, _Floats]] = ()) -> None:
-        self.scene = _core.Scene()
-        self.labels: dict[int, Any] = {}  # by key
-        for each in objects:
-            self.add(*each)
-
-    def add(self, label: Any, body: Body, pose: _Floats) -> int:
-        """Add an object. Returns its key."""
-        key = self.scene.add(body, pose)
-        self.labels[key] = label
-        return key
-
-    def remove(self, key: int) -> None:
-        """Remove an object."""
-        self.scene.remove(key)
-        del self.labels[key]
-
-    def placed(self, key: int) -> _Placed:
-        """Return the body of an object and its pose."""
-        return self.scene.body(key), self.scene.pose(key)
-
-    def objects(self) -> list[tuple[Any, Body, _Floats]]:
-        """Return label, body and pose of each object."""
-        return [(label, *self.placed(key)) for key, label in self.labels.items()]
-
-    def against(self, other: _Other, outside: Any) -> tuple[tuple[Any, ...], Callable[[int, int], _Names]]:
-        """Return the arguments that select `other` in the scene's functions, and a function from pairs of keys to
-        labels.
-        """
-        if isinstance(other, Crowd):
-            theirs = other.labels
-            return (other.scene,), lambda a, b: (self.labels[a], theirs[b])
-        return other or (), lambda a, b: (self.labels.get(a, outside), self.labels[b])
-
-    def collide(self, other: _Other, outside: Any, data: bool) -> tuple[list[_Names], list[ContactData]]:
-        """Return the labels of colliding objects and, if requested, their contacts."""
-        others, labels_of = self.against(other, outside)
-        theirs = other if isinstance(other, Crowd) else self
-        met = self.scene.collide(*others, mode="all" if data else "any", contacts=data)
-        keys, contacts = met.keys.tolist(), []
-        for (a, b), result in zip(keys, list(met) if data else []):
-            first = other if isinstance(other, tuple) else self.placed(a)
-            faces = result.face_pairs.tolist()
-            for i, point, normal, depth in contacts_of(result, first, theirs.placed(b)):
-                contacts.append(ContactData(labels_of(a, b), faces[i], point=point, normal=normal, depth=depth))
-        return [labels_of(a, b) for a, b in keys], contacts
-
-    def nearest(self, other: _Other, outside: Any) -> tuple[float, _Names, DistanceData | None]:
-        """Return distance, labels and data of the closest pair."""
-        others, labels_of = self.against(other, outside)
-        found = self.scene.nearest(*others, solids=True)
-        if found is None:
-            return math.inf, (None, None), None
-        names, distance = labels_of(*found[:2]), found[2].solids[1]
-        points = dict(zip(names, found[2].points))
-        return distance, names, DistanceData(names, found[2].faces, distance=distance, _points=points)
 
 
 def contacts_of(result: Result, a: _Placed, b: _Placed) -> Iterator[tuple[int, _Floats, _Floats, float]]:
@@ -144,7 +80,7 @@ def contacts_of(result: Result, a: _Placed, b: _Placed) -> Iterator[tuple[int, _
 
 
 class _OfPair(Shown):
-    def __init__(self, names: _Names, faces: Sequence[int], **values: Any) -> None:
+    def __init__(self, names: Sequence[Any], faces: Sequence[int], **values: Any) -> None:
         self.names: set[Any] = set(names)
         self._faces: dict[Any, int] = dict(zip(names, faces))
         vars(self).update(values)
@@ -234,8 +170,9 @@ class CollisionManager:
     """
 
     def __init__(self) -> None:
-        self._crowd = Crowd()
+        self._scene = _core.Scene()
         self._keys: dict[Any, int] = {}  # by name
+        self._names: dict[int, Any] = {}  # by key
 
     def __repr__(self) -> str:
         return f"<lrbscope.CollisionManager of {len(self._keys)} objects>"
@@ -243,27 +180,26 @@ class CollisionManager:
     def add_object(self, name: Hashable, mesh: _Mesh, transform: _Pose = None) -> Body:
         """Add an object, or replace the one of this name. Returns its Body."""
         body = body_of(mesh)
-        key = self._crowd.add(name, body, _pose_of(transform))
+        key = self._scene.add(body, _pose_of(transform))
         if name in self._keys:
             self.remove_object(name)
-        self._keys[name] = key
+        self._keys[name], self._names[key] = key, name
         return body
 
     def remove_object(self, name: Hashable) -> None:
         """Remove an object."""
-        self._crowd.remove(self._known(name))
-        del self._keys[name]
+        self._scene.remove(self._known(name))
+        del self._names[self._keys.pop(name)]
 
     def set_transform(self, name: Hashable, transform: npt.ArrayLike) -> None:
         """Move an object."""
-        self._crowd.scene.move(self._known(name), _pose_of(transform))
+        self._scene.move(self._known(name), _pose_of(transform))
 
     def in_collision_single(
         self, mesh: _Mesh, transform: _Pose = None, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Return whether a mesh collides with any object. In ContactData it is called '__external' and comes first."""
-        outside = body_of(mesh), _pose_of(transform)
-        return self._collide(outside, return_names, return_data, lambda _, b: b)
+        return self._collide((body_of(mesh), _pose_of(transform)), return_names, return_data, lambda _, b: b)
 
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Return whether any two objects collide. Pairs of names are in alphabetical order."""
@@ -273,31 +209,29 @@ class CollisionManager:
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Return whether any object collides with one of another manager. This manager's names come first."""
-        return self._collide(self._other(other_manager), return_names, return_data, lambda a, b: (a, b))
+        return self._collide(other_manager, return_names, return_data, lambda a, b: (a, b))
 
     def min_distance_single(
         self, mesh: _Mesh, transform: _Pose = None, return_name: bool = False, return_data: bool = False
     ) -> Any:
         """Return the distance from a mesh to the closest object. In DistanceData the mesh is called '__external'."""
-        distance, names, data = self._crowd.nearest((body_of(mesh), _pose_of(transform)), "__external")
+        distance, names, data = self._nearest((body_of(mesh), _pose_of(transform)), "__external")
         return _answer(distance, (return_name, names[1]), (return_data, data))
 
     def min_distance_internal(self, name: Hashable = None, return_names: bool = False, return_data: bool = False) -> Any:
         """Return the minimum distance between two objects; `name`: between this one and the others. Names are in
         alphabetical order.
         """
-        crowd, one = self._crowd, None
-        if name is not None:
-            one = crowd.placed(self._known(name))
-            crowd = Crowd(each for each in crowd.objects() if each[0] != name)
-        distance, names, data = crowd.nearest(one, name)
+        one = None if name is None else self._placed(self._known(name))
+        others = self if name is None else self._without(name)
+        distance, names, data = others._nearest(one, name)
         return _answer(distance, (return_names, _sorted_names(*names)), (return_data, data))
 
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Return the minimum distance to the objects of another manager. This manager's name comes first."""
-        distance, names, data = self._crowd.nearest(self._other(other_manager), None)
+        distance, names, data = self._nearest(other_manager)
         return _answer(distance, (return_names, names), (return_data, data))
 
     def _known(self, name: Hashable) -> int:
@@ -305,15 +239,54 @@ class CollisionManager:
             raise ValueError(f"{name} not in collision manager!")
         return self._keys[name]
 
-    def _other(self, manager: CollisionManager) -> Crowd:
-        crowd = manager._crowd  # with itself: each object intersects itself
-        return Crowd(crowd.objects()) if crowd is self._crowd else crowd
+    def _placed(self, key: int) -> _Placed:
+        return self._scene.body(key), self._scene.pose(key)
+
+    def _without(self, name: Hashable) -> CollisionManager:
+        """Return a manager of all objects but one."""
+        out = CollisionManager()
+        for key, other in self._names.items():
+            if name is None or other != name:
+                out.add_object(other, *self._placed(key))
+        return out
+
+    def _selected(self, other: _Other, outside: Any = "__external") -> tuple[tuple[Any, ...], _Side, _Side]:
+        """Return the arguments that select the others in the scene's functions, and both sides of the pairs that
+        these find: of all objects (None), with those of another manager, or with a body at a pose, called `outside`.
+        """
+        own = self._names, self._placed
+        if other is self:
+            other = self._without(None)  # with itself: each object intersects itself
+        if isinstance(other, CollisionManager):
+            return (other._scene,), own, (other._names, other._placed)
+        if other is None:
+            return (), own, own
+        placed = other
+        return placed, ({-1: outside}, lambda _: placed), own
 
     def _collide(self, other: _Other, names: bool, data: bool, named: Callable[[Any, Any], Any]) -> Any:
+        others, (first, first_placed), (second, second_placed) = self._selected(other)
         if not (names or data):
-            return self._crowd.scene.any_meet(*self._crowd.against(other, None)[0])
-        met, contacts = self._crowd.collide(other, "__external", data)
-        return _answer(bool(met), (names, {named(*pair) for pair in met}), (data, contacts))
+            return self._scene.any_meet(*others)
+        met = self._scene.collide(*others, mode="all" if data else "any", contacts=data)
+        found = [(a, b, (first[a], second[b])) for a, b in met.keys.tolist()]
+        contacts = []
+        for (a, b, pair), result in zip(found if data else [], met):
+            faces = result.face_pairs.tolist()
+            for i, point, normal, depth in contacts_of(result, first_placed(a), second_placed(b)):
+                contacts.append(ContactData(pair, faces[i], point=point, normal=normal, depth=depth))
+        return _answer(bool(found), (names, {named(*pair) for _, _, pair in found}), (data, contacts))
+
+    def _nearest(self, other: _Other, outside: Any = None) -> tuple[float, tuple[Any, Any], DistanceData | None]:
+        """Return distance, names and data of the closest pair."""
+        others, (first, _), (second, _) = self._selected(other, outside)
+        found = self._scene.nearest(*others, solids=True)
+        if found is None:
+            return math.inf, (None, None), None
+        a, b, distance = found
+        names, upper = (first[a], second[b]), distance.solids[1]
+        points = dict(zip(names, distance.points))
+        return upper, names, DistanceData(names, distance.faces, distance=upper, _points=points)
 
 
 def scene_to_collision(scene: Any) -> tuple[CollisionManager, dict[Any, Body]]:

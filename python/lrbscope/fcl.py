@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from .collision import Crowd, Shown, contacts_of
+from .collision import CollisionManager, Shown, contacts_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -593,8 +593,8 @@ def defaultDistanceCallback(o1: CollisionObject, o2: CollisionObject, cdata: Dis
 
 
 class DynamicAABBTreeCollisionManager:
-    """Many objects: the bodies of a Scene. Poses are read at each query, so that setup() and update() do
-    nothing; parameters of FCL's tree have no effect.
+    """Many objects. Poses are read at each query, so that setup() and update() do nothing; parameters of FCL's
+    tree have no effect.
     """
 
     max_tree_nonbalanced_level = tree_incremental_balance_pass = 10
@@ -603,7 +603,7 @@ class DynamicAABBTreeCollisionManager:
     octree_as_geometry_collide, octree_as_geometry_distance = True, False
 
     def __init__(self) -> None:
-        self._crowd = Crowd()
+        self._manager = CollisionManager()  # in which the names are the objects
 
     def __repr__(self) -> str:
         return f"<lrbscope.fcl.DynamicAABBTreeCollisionManager of {self.size()} objects>"
@@ -615,11 +615,11 @@ class DynamicAABBTreeCollisionManager:
     def registerObject(self, obj: CollisionObject) -> None:
         if not isinstance(obj, CollisionObject):
             raise TypeError(f"expected a CollisionObject, got {type(obj).__name__}")
-        self._crowd.add(obj, obj.body, obj.pose)
+        self._manager.add_object(obj, obj.body, obj.pose)
 
     def unregisterObject(self, obj: CollisionObject) -> None:
-        for key in [key for key, o in self._crowd.labels.items() if o is obj]:
-            self._crowd.remove(key)
+        if obj in self._manager._keys:
+            self._manager.remove_object(obj)
 
     def setup(self) -> None:
         """Do nothing."""
@@ -628,26 +628,25 @@ class DynamicAABBTreeCollisionManager:
         """Do nothing."""
 
     def getObjects(self) -> list[CollisionObject]:
-        return list(self._crowd.labels.values())
+        return list(self._manager._keys)
 
     def clear(self) -> None:
-        self._crowd = Crowd()
+        self._manager = CollisionManager()
 
     def empty(self) -> bool:
-        return not self._crowd.labels
+        return not self._manager._keys
 
     def size(self) -> int:
-        return len(self._crowd.labels)
+        return len(self._manager._keys)
 
-    def _moved(self) -> Crowd:
-        """Return the objects at their current poses and with their current bodies."""
-        crowd, objects = self._crowd, self.getObjects()
-        if any(o.body is not crowd.scene.body(key) for key, o in crowd.labels.items()):
-            self.clear()
-            self.registerObjects(objects)
-        elif objects:
-            crowd.scene.move(list(crowd.labels), np.array([o.pose for o in objects]))
-        return self._crowd
+    def _moved(self) -> CollisionManager:
+        """Return the manager with the objects' current poses and bodies."""
+        manager = self._manager
+        for o, key in list(manager._keys.items()):
+            if o.body is not manager._scene.body(key):
+                manager.add_object(o, o.body)
+        manager._scene.move(list(manager._names), np.array([o.pose for o in manager._names.values()]))
+        return manager
 
     def _arguments(self, args: tuple[Any, ...]) -> tuple[Any, ...]:
         """Return the scene, the arguments that select the others in its functions, a function from pairs of
@@ -655,13 +654,13 @@ class DynamicAABBTreeCollisionManager:
         """
         if len(args) not in (2, 3) or not callable(args[-1]):
             raise ValueError("expected data and callback, optionally after an object or a manager")
-        crowd, other = self._moved(), args[0] if len(args) == 3 else self
-        if isinstance(other, DynamicAABBTreeCollisionManager):
-            others, objects_of = crowd.against(None if other is self else other._moved(), None)
-        else:
-            others, of_pair = crowd.against((other.body, other.pose), other)
-            objects_of = lambda a, b: of_pair(a, b)[::-1]
-        return (crowd.scene, others, objects_of, *args[-2:])
+        other = args[0] if len(args) == 3 and args[0] is not self else None
+        is_object = isinstance(other, CollisionObject)
+        manager = self._moved()
+        whose = (other.body, other.pose) if is_object else None if other is None else other._moved()
+        others, (first, _), (second, _) = manager._selected(whose, other)
+        objects_of = lambda a, b: (second[b], first[a]) if is_object else (first[a], second[b])
+        return (manager._scene, others, objects_of, *args[-2:])
 
     def collide(self, *args: Any) -> None:
         """collide(data, callback), (object, data, callback) or (manager, data, callback).

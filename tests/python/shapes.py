@@ -86,31 +86,3 @@ def placed(vertices, pose):
     """Return points in the world, rounded as the engine defines it: products added from left to right."""
     x, y, z = np.asarray(vertices, dtype=float).T
     return np.stack([((r[0] * x + r[1] * y) + r[2] * z) + r[3] for r in np.asarray(pose)[:3]], axis=1)
-
-
-def _edges_through(starts, ends, tri):
-    """Return (e, t): whether each segment passes through each triangle, for segments in no triangle's
-    plane.
-    """
-
-    def volume(a, b, c, d):
-        return np.einsum("...i,...i", np.cross(b - a, c - a), d - a)
-
-    p, q = starts[:, None], ends[:, None]
-    a, b, c = (tri[None, :, i] for i in range(3))
-    sides = [volume(p, q, x, y) for x, y in ((a, b), (b, c), (c, a))]
-    straddles = volume(a, b, c, p) * volume(a, b, c, q) < 0
-    return straddles & np.isin(sum(np.sign(sides)), (-3, 3))
-
-
-def brute_pairs(va, fa, vb, fb):
-    """Return the pairs of triangles that meet, ascending: an edge of one passes through the other.
-
-    For bodies in general position.
-    """
-    ta, tb = va[fa], vb[fb]
-    meet = np.zeros((len(ta), len(tb)), dtype=bool)
-    for i in range(3):
-        meet |= _edges_through(ta[:, i], ta[:, (i + 1) % 3], tb)
-        meet |= _edges_through(tb[:, i], tb[:, (i + 1) % 3], ta).T
-    return np.argwhere(meet)

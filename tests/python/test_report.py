@@ -74,9 +74,6 @@ def test_up_and_view_from_are_axes_or_vectors(cube):
     for word, vector in (("y", (0, 1, 0)), ("-x", (-1, 0, 0)), ("z", (0, 0, 1))):
         of_word = lrbscope.render(cube, up=word, view_from=(1, 2, 3), size=(320, 240))
         assert np.array_equal(of_word, lrbscope.render(cube, up=vector, view_from=(1, 2, 3), size=(320, 240)))
-    for bad in ("w", "xy", "-", "", "+x"):
-        with pytest.raises(lrbscope.InputError, match="up: expected three numbers, 'x'"):
-            lrbscope.render(cube, up=bad)
 
 
 def test_signatures_are_those_of_the_docs(cube):
