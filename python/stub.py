@@ -181,12 +181,11 @@ def class_lines(cls):
             lines += ["@property", f"def {member}(self) -> {type_of(value.__doc__)}:", *text_lines(value.__doc__)]
         elif isinstance(value, list):
             lines.append(f"{member}: list[str]")
-        elif member == "__getitem__" and name == "Results":
+        elif member == "__getitem__":
             for index, found in (("int", item), ("slice", f"list[{item}]")):
                 lines += ["@overload", f"def __getitem__(self, i: {index}) -> {found}: ..."]
-        elif member in ("__getitem__", "__iter__"):
-            i, found = ("", f"Iterator[{item}]") if member == "__iter__" else (", i: int", item)
-            lines.append(f"def {member}(self{i}) -> {found}: ...")
+        elif member == "__iter__":
+            lines.append(f"def __iter__(self) -> Iterator[{item}]: ...")
         elif member in ("__bool__", "__float__", "__len__", "__contains__", "__copy__", "__deepcopy__"):
             more = {"__contains__": ", key: object", "__deepcopy__": ", memo: dict[int, Any], /"}.get(member, "")
             result = name if "copy" in member else looked_up(RETURNS, f"{name}.{member}", member)

@@ -23,24 +23,6 @@ static void find_faces(Answer& answer) {
       answer.faces.push_back({answer.a->face_of_simplex(p.a), answer.b->face_of_simplex(p.b)});
 }
 
-// Members for pickles.
-
-void members(Archive& archive, ContactLoop& x) {
-  archive(x.points, x.closed);
-}
-void members(Archive& archive, ContactRegion& x) {
-  archive(x.pairs, x.loops, x.length, x.area, x.centroid, x.normal, x.depth_estimate);
-}
-void members(Archive& archive, Separation& x) {
-  archive(x.refined, x.face_count);
-}
-void members(Archive& archive, Counters& x) {
-  for_each_field<Counters>([&](const auto& field) { archive(x.*field.member); });
-}
-void members(Archive& archive, CollideResult& x) {
-  archive(x.relation, x.interiors_overlap, x.recursion, x.mode, x.pairs, x.meets, x.contacts, x.regions,
-          x.opened, x.error_bound, x.finished, x.separation, x.counters);
-}
 void members(Archive& archive, Answer& x) {
   if (!archive.reads()) {
     find_faces(x);
@@ -101,7 +83,11 @@ py::object separation_of(const Answer& answer) {
   return d;
 }
 
-std::string shown(const Answer& answer) {
+std::string fingerprint_of(const Answer& answer) {
+  return trace::to_hex(fingerprint(answer.result->pairs));
+}
+
+std::string answer_text(const Answer& answer) {
   const CollideResult& r = *answer.result;
   return std::string("<lrbscope.Result ") + to_string(r.relation) + ", " + std::to_string(r.pairs.size()) +
          (r.pairs.size() == 1 ? " pair>" : " pairs>");
@@ -127,8 +113,7 @@ disjoint, the bodies' boxes overlap, and a body is not closed), 'unresolved' (on
             [](const CollideResult& r) {
               return column(r.meets, [](exact::Meet meet) { return meet == exact::Meet::cross; });
             });
-  of_result("fingerprint", "str: 16 hexadecimal digits, a hash of `pairs`.",
-            [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); });
+  property(c, "fingerprint", "str: 16 hexadecimal digits, a hash of `pairs`.", &fingerprint_of);
   of_result("interiors_overlap",
             "bool or None: True if the bodies share a volume; None if not known or not requested.",
             &CollideResult::interiors_overlap);
@@ -138,11 +123,8 @@ disjoint, the bodies' boxes overlap, and a body is not closed), 'unresolved' (on
       R"(((c, 3) float64, (c,) uint32): corners of the intersections of pairs, world frame, and the pair of each, if
 contacts were requested.)",
       &points_of);
-  of_result("counters", "dict: the work of the query, in numbers of operations.", [](const CollideResult& r) {
-    py::dict d;
-    for_each_field<Counters>([&](const auto& field) { d[field.name.data()] = r.counters.*field.member; });
-    return d;
-  });
+  of_result("counters", "dict: the work of the query, in numbers of operations.",
+            [](const CollideResult& r) { return dict_of(r.counters); });
   of_result("error_bound",
             "float: 0 if the answer is exact; else the sum of both intersecting wrappers' maximum deviations "
             "from their bodies, world's unit.",
@@ -156,16 +138,8 @@ contacts were requested.)",
   c.def(
       "__bool__", [](const Answer& a) { return in_contact(*a.result); },
       R"(True if the bodies are known to have a point in common: surfaces intersect, or one body is inside the other.)");
-  c.def("__repr__", &shown);
+  c.def("__repr__", &answer_text);
   make_picklable(c);
-}
-
-/// Returns a name of each answer as a numpy array of strings.
-template <class Name>
-py::array names(const Answers& answers, const Name& name) {
-  py::list all;
-  for (const Answer& answer : answers.all) all.append(py::str(name(*answer.result)));
-  return py::module_::import("numpy").attr("array")(all, py::arg("dtype") = "U16");
 }
 
 /// Returns all pairs of all poses as rows pose, triangle of A, triangle of B.
@@ -176,32 +150,13 @@ py::array_t<std::uint32_t> all_pairs(const Answers& answers) {
   return column(rows, std::identity());
 }
 
-py::object item(const Answers& answers, const py::object& which) {
-  if (!py::isinstance<py::slice>(which)) {
-    const auto i = py::reinterpret_steal<py::object>(PyNumber_Index(which.ptr()));
-    if (!i) throw py::error_already_set();
-    return py::cast(answers.all[checked_index(i.cast<py::ssize_t>(), answers.all.size())]);
-  }
-  std::size_t begin, end, step, n;
-  if (!which.cast<py::slice>().compute(answers.all.size(), &begin, &end, &step, &n))
-    throw py::error_already_set();
-  py::list out;
-  for (; n > 0; --n, begin += step) out.append(answers.all[begin]);
-  return out;
-}
-
 void bind_results(py::module_& m) {
-  py::class_<Answers> c(m, "Results",
-                        "Answers for k poses: a sequence of Result, in the order of the poses.");
-  c.def("__getitem__", &item);
-  bind_iterator(c);
+  auto c = bind_sequence<Answers>(m, "Results",
+                                  "Answers for k poses: a sequence of Result, in the order of the poses.");
   const auto of_each = rows_of(c, "poses", &Answers::all);
-  property(c, "relations", "(k,) str: Result.relation of each.", [](const Answers& a) {
-    return names(a, [](const CollideResult& r) { return to_string(r.relation); });
-  });
-  property(c, "fingerprints", "(k,) str: Result.fingerprint of each.", [](const Answers& a) {
-    return names(a, [](const CollideResult& r) { return trace::to_hex(fingerprint(r.pairs)); });
-  });
+  of_each("relations", "(k,) str: Result.relation of each.",
+          [](const Answer& a) { return std::string(name_of(a.result->relation)); });
+  of_each("fingerprints", "(k,) str: Result.fingerprint of each.", &fingerprint_of);
   of_each("counts", "(k,) int64: the number of pairs of each.",
           [](const Answer& a) { return static_cast<std::int64_t>(a.result->pairs.size()); });
   of_each("hits", "(k,) bool: bool() of each.", [](const Answer& a) { return in_contact(*a.result); });
@@ -311,7 +266,8 @@ unsigned threads_of(std::size_t requested) {
   return all > 0 ? all : 1;
 }
 
-Progress::Progress(const py::object& progress) : callee_(progress), is_bar_(progress.is(py::bool_(true))) {
+Progress::Progress(py::handle progress)
+    : callee_(py::reinterpret_borrow<py::object>(progress)), is_bar_(progress.is(py::bool_(true))) {
   if (is_bar_)
     callee_ = py::module_::import("lrbscope._progress").attr("Bar")();
   else if (progress.is(py::bool_(false)))

@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "python/src/arguments.hpp"
 #include "python/src/objects.hpp"
 #include "python/src/properties.hpp"
 #include <lrbscope/collide.hpp>
@@ -50,6 +49,9 @@ py::list regions_of(Answer& answer);
 /// the one that loaded the module. Threads do not survive a fork, and a program that forks uses processes for
 /// all cores.
 unsigned threads_of(std::size_t requested);
+inline unsigned threads_of(const Given& given) {
+  return threads_of(count(given["threads"]));
+}
 
 /// Calls work(i, worker) for i = 0 .. n - 1 on threads_of(requested) threads without the GIL, which the
 /// caller must hold. Checks for signals meanwhile: after Ctrl-C, calls that have not started are skipped and
@@ -69,6 +71,14 @@ std::vector<Result> ask_each(std::size_t n, unsigned threads, const Ask& ask) {
   return results;
 }
 
+/// Answers ask(pose of B, workspace) for each pose, as ask_each() does.
+template <class Result, class Ask>
+std::vector<Result> ask_poses(const Poses& at, const Given& given, const Ask& ask) {
+  const std::vector<Pose> all = at.to_vector();
+  return ask_each<Result>(all.size(), at.one ? 1 : threads_of(given),
+                          [&](std::size_t i, Workspace& memory) { return ask(all[i], memory); });
+}
+
 /// Returns the workspace that single queries of the calling thread reuse. `threads`: of one query.
 Workspace& own_workspace(unsigned threads = 1);
 
@@ -79,7 +89,7 @@ void check_signals();
 /// None. The GIL must be held where this is made and destroyed.
 class Progress {
  public:
-  explicit Progress(const py::object& progress);
+  explicit Progress(py::handle progress);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -96,14 +106,7 @@ class Progress {
 std::vector<CollideResult> results_of(const std::vector<Answer>& answers, const CollideRequest& request,
                                       unsigned threads);
 
-/// The query's keyword arguments, in the order of the functions' parameters. None: the default of
-/// CollideRequest.
-struct RequestArguments {
-  py::handle mode = Py_None, contacts = Py_None, interiors_overlap = Py_None, tolerance = Py_None,
-             max_tests = Py_None, max_time = Py_None, separation = Py_None, max_pairs = Py_None,
-             recursion = Py_None;
-};
-
-CollideRequest request_of(const RequestArguments& given);
+/// Reads the request of a query from those of its arguments that the function has.
+CollideRequest request_of(const Given& given);
 
 }  // namespace lrb::python

@@ -181,18 +181,18 @@ void add_any_faces(const py::sequence& faces, Mesh& mesh) {
 
 }  // namespace
 
-Doubles numbers(py::handle given, const char* what) {
-  return any_numbers(given, what, "numbers");
+Doubles numbers(const Argument& arg) {
+  return any_numbers(arg.given, arg.name, "numbers");
 }
 
-Doubles numbers(py::handle given, const char* what, const std::vector<py::ssize_t>& shape) {
+Doubles numbers(const Argument& arg, const std::vector<py::ssize_t>& shape) {
   const std::string expected = "numbers of shape " + shape_text(shape);
-  return of_shape(any_numbers(given, what, expected), what, shape, expected);
+  return of_shape(any_numbers(arg.given, arg.name, expected), arg.name, shape, expected);
 }
 
-Integers integers(py::handle given, const char* what, const std::vector<py::ssize_t>& shape) {
+Integers integers(const Argument& arg, const std::vector<py::ssize_t>& shape) {
   const std::string expected = "integers of shape " + shape_text(shape);
-  return of_shape(any_integers(given, what, expected), what, shape, expected);
+  return of_shape(any_integers(arg.given, arg.name, expected), arg.name, shape, expected);
 }
 
 std::string described(py::handle given) {
@@ -215,65 +215,66 @@ py::list printable(const std::vector<std::string>& texts) {
   return out;
 }
 
-bool flag(py::handle given, const char* what, bool fallback) {
-  if (given.is_none()) return fallback;
-  if (given.ptr() == Py_True) return true;
-  if (given.ptr() == Py_False) return false;
-  const int truth = py::hasattr(given, "dtype") ? PyObject_IsTrue(given.ptr()) : -1;  // numpy.bool_
+bool flag(const Argument& arg, bool fallback) {
+  if (arg.is_none()) return fallback;
+  if (arg.given.ptr() == Py_True) return true;
+  if (arg.given.ptr() == Py_False) return false;
+  const int truth = py::hasattr(arg.given, "dtype") ? PyObject_IsTrue(arg.given.ptr()) : -1;  // numpy.bool_
   if (truth >= 0) return truth == 1;
   PyErr_Clear();
-  throw py::type_error(std::string(what) + ": expected True or False, got " + described(given));
+  throw py::type_error(std::string(arg.name) + ": expected True or False, got " + described(arg.given));
 }
 
-double number(py::handle given, const char* what, double fallback) {
-  if (given.is_none()) return fallback;
-  const double x = PyFloat_AsDouble(given.ptr());
+double number(const Argument& arg, double fallback) {
+  if (arg.is_none()) return fallback;
+  const double x = PyFloat_AsDouble(arg.given.ptr());
   if (x == -1 && PyErr_Occurred() != nullptr) {
     PyErr_Clear();
-    throw py::type_error(std::string(what) + ": expected a number, got " + described(given));
+    throw py::type_error(std::string(arg.name) + ": expected a number, got " + described(arg.given));
   }
   return x;
 }
 
-double size(py::handle given, const char* what, double fallback) {
-  const double x = number(given, what, fallback);
+double size(const Argument& arg, double fallback) {
+  const double x = number(arg, fallback);
   if (!(x >= 0 && x <= std::numeric_limits<double>::max()))
-    throw InputError(std::string(what) + ": expected a finite number of at least 0, got " +
-                     std::string(py::str(given)));
+    throw InputError(std::string(arg.name) + ": expected a finite number of at least 0, got " +
+                     std::string(py::str(arg.given)));
   return x;
 }
 
-std::uint64_t count(py::handle given, const char* what, std::uint64_t fallback) {
-  if (given.is_none()) return fallback;
-  const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
+std::uint64_t count(const Argument& arg, std::uint64_t fallback) {
+  if (arg.is_none()) return fallback;
+  const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(arg.given.ptr()));
   const std::uint64_t n = index ? PyLong_AsUnsignedLongLong(index.ptr()) : 0;
   if (PyErr_Occurred() != nullptr) {
     PyErr_Clear();
-    if (!index) throw py::type_error(std::string(what) + ": expected an integer, got " + described(given));
-    throw InputError(std::string(what) + ": expected an integer of at least 0, got " +
+    if (!index)
+      throw py::type_error(std::string(arg.name) + ": expected an integer, got " + described(arg.given));
+    throw InputError(std::string(arg.name) + ": expected an integer of at least 0, got " +
                      std::string(py::str(index)));
   }
   return n;
 }
 
-std::string text(py::handle given, const char* what, const std::string& fallback) {
-  if (given.is_none()) return fallback;
-  if (!py::isinstance<py::str>(given))
-    throw py::type_error(std::string(what) + ": expected a str, got " + described(given));
+std::string text(const Argument& arg, const std::string& fallback) {
+  if (arg.is_none()) return fallback;
+  if (!py::isinstance<py::str>(arg.given))
+    throw py::type_error(std::string(arg.name) + ": expected a str, got " + described(arg.given));
   py::ssize_t size = 0;
-  const char* const utf8 = PyUnicode_AsUTF8AndSize(given.ptr(), &size);
+  const char* const utf8 = PyUnicode_AsUTF8AndSize(arg.given.ptr(), &size);
   if (utf8 == nullptr) {
     PyErr_Clear();
-    throw InputError(std::string(what) + ": expected a valid Unicode string, got a lone surrogate");
+    throw InputError(std::string(arg.name) + ": expected a valid Unicode string, got a lone surrogate");
   }
   return {utf8, static_cast<std::size_t>(size)};
 }
 
-std::string path(py::handle given, const char* what) {
-  const auto found = py::reinterpret_steal<py::object>(PyOS_FSPath(given.ptr()));
+std::string path(const Argument& arg) {
+  const auto found = py::reinterpret_steal<py::object>(PyOS_FSPath(arg.given.ptr()));
   if (!found) {
     PyErr_Clear();
-    throw py::type_error(std::string(what) + ": expected a path, got " + described(given));
+    throw py::type_error(std::string(arg.name) + ": expected a path, got " + described(arg.given));
   }
   PyObject* bytes = nullptr;
   if (PyUnicode_FSConverter(found.ptr(), &bytes) == 0) throw py::error_already_set();
@@ -285,18 +286,18 @@ py::str path_of(std::string_view path) {
       PyUnicode_DecodeFSDefaultAndSize(path.data(), static_cast<py::ssize_t>(path.size())));
 }
 
-Eigen::Vector3d vector(py::handle given, const char* what) {
-  const Doubles v = numbers(given, what, {3});
+Eigen::Vector3d vector(const Argument& arg) {
+  const Doubles v = numbers(arg, {3});
   return {v.data()[0], v.data()[1], v.data()[2]};
 }
 
-Poses poses(py::handle given, const char* what) {
-  return read_poses(given, what, kPoses);
+Poses poses(const Argument& arg) {
+  return read_poses(arg.given, arg.name, kPoses);
 }
 
-Pose pose(py::handle given, const char* what) {
-  const Poses found = read_poses(given, what, kPose);
-  if (!found.one) reject(what, kPose, std::to_string(found.many.size()) + " poses");
+Pose pose(const Argument& arg) {
+  const Poses found = read_poses(arg.given, arg.name, kPose);
+  if (!found.one) reject(arg.name, kPose, std::to_string(found.many.size()) + " poses");
   return found.first;
 }
 
@@ -315,11 +316,11 @@ Mesh mesh_of_arrays(py::handle vertices, py::handle faces, const std::string& na
   return mesh;
 }
 
-std::vector<Eigen::Vector3d> points(py::handle given, const char* what, int dim) {
+std::vector<Eigen::Vector3d> points(const Argument& arg, int dim) {
   std::vector<Eigen::Vector3d> out;
-  const int width = read_points(given, what, out);
+  const int width = read_points(arg.given, arg.name, out);
   if (!out.empty() && width < dim)
-    throw InputError(std::string(what) + ": expected 3 coordinates of each point, found " +
+    throw InputError(std::string(arg.name) + ": expected 3 coordinates of each point, found " +
                      std::to_string(width));
   return out;
 }

@@ -28,33 +28,41 @@ std::string described(py::handle given);
 py::str printable(std::string_view text);
 py::list printable(const std::vector<std::string>& texts);
 
+/// An argument of a function, and its name for messages.
+struct Argument {
+  py::handle given;
+  const char* name;
+
+  bool is_none() const { return given.is_none(); }
+};
+
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 /// Return an argument as an array, of this shape (-1: any length). Masked values are rejected.
-Doubles numbers(py::handle given, const char* what);
-Doubles numbers(py::handle given, const char* what, const std::vector<py::ssize_t>& shape);
-Integers integers(py::handle given, const char* what, const std::vector<py::ssize_t>& shape);
+Doubles numbers(const Argument& arg);
+Doubles numbers(const Argument& arg, const std::vector<py::ssize_t>& shape);
+Integers integers(const Argument& arg, const std::vector<py::ssize_t>& shape);
 
-/// Return an argument as a number or a flag; `fallback` for None. `what` is the argument's name.
-bool flag(py::handle given, const char* what, bool fallback = false);
-double number(py::handle given, const char* what, double fallback = 0);
-double size(py::handle given, const char* what, double fallback = 0);  ///< finite, at least 0
-std::uint64_t count(py::handle given, const char* what, std::uint64_t fallback = 0);
-std::string text(py::handle given, const char* what, const std::string& fallback = {});
+/// Return an argument as a number or a flag; `fallback` for None.
+bool flag(const Argument& arg, bool fallback = false);
+double number(const Argument& arg, double fallback = 0);
+double size(const Argument& arg, double fallback = 0);  ///< finite, at least 0
+std::uint64_t count(const Argument& arg, std::uint64_t fallback = 0);
+std::string text(const Argument& arg, const std::string& fallback = {});
 /// Returns a path, given as str, bytes or os.PathLike.
-std::string path(py::handle given, const char* what);
+std::string path(const Argument& arg);
 /// Returns a path as a Python str that open() accepts.
 py::str path_of(std::string_view path);
 /// Returns three numbers as a vector.
-Eigen::Vector3d vector(py::handle given, const char* what);
+Eigen::Vector3d vector(const Argument& arg);
 
 /// Returns the enumerator of a word; `fallback` for None.
 template <class Enum>
-Enum word(py::handle given, const char* what, Enum fallback) {
-  if (given.is_none()) return fallback;
-  const std::string name = text(given, what);
+Enum word(const Argument& arg, Enum fallback) {
+  if (arg.is_none()) return fallback;
+  const std::string name = text(arg);
   if (const auto value = from_name<Enum>(name)) return *value;
-  throw InputError(std::string(what) + ": \"" + name + "\" is not one of " + all_names<Enum>());
+  throw InputError(std::string(arg.name) + ": \"" + name + "\" is not one of " + all_names<Enum>());
 }
 
 /// Poses of a body: one, or many.
@@ -66,12 +74,12 @@ struct Poses {
   std::vector<Pose> to_vector() const { return one ? std::vector<Pose>{first} : many; }
 };
 /// Reads (4, 4) or (3, 4) as one pose, (k, 4, 4) or (k, 3, 4) as many; None is the identity.
-Poses poses(py::handle given, const char* what);
+Poses poses(const Argument& arg);
 /// Reads one pose; throws for many.
-Pose pose(py::handle given, const char* what);
+Pose pose(const Argument& arg);
 
 /// Reads points (n, 3); for a body in 2D also (n, 2).
-std::vector<Eigen::Vector3d> points(py::handle given, const char* what, int dim);
+std::vector<Eigen::Vector3d> points(const Argument& arg, int dim);
 
 /// Makes a mesh from arrays: vertices (n, 3) and faces (m, k) with k >= 3, or a sequence of sequences; in 2D
 /// vertices (n, 2) and segments (m, 2).

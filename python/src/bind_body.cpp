@@ -15,11 +15,6 @@
 
 namespace lrb::python {
 
-void members(Archive& archive, LrbData& d) {
-  archive(d.dim, d.vertices, d.face_offsets, d.face_vertices, d.real_face_count, d.inner_cell, d.outer_cell,
-          d.region_layer, d.closed, d.self_intersecting, d.name);
-}
-
 namespace {
 
 /// Returns the number of vertices up to the last one used by a real face.
@@ -31,29 +26,26 @@ std::size_t used_vertices(const LrbRep& rep) {
 }
 
 /// `progress` must outlive the options.
-BuildOptions build_options(py::handle lean, py::handle max_lids, py::handle seed, py::handle threads,
-                           const py::object& cache, const Progress& progress) {
+BuildOptions build_options(const Given& given, const Progress& progress) {
   BuildOptions options;
-  if (!cache.is_none()) options.cache = path(cache, "cache");
-  options.lean = flag(lean, "lean");
-  const std::uint64_t lids = count(max_lids, "max_lids");
+  if (const Argument cache = given["cache"]; !cache.is_none()) options.cache = path(cache);
+  options.lean = flag(given["lean"]);
+  const std::uint64_t lids = count(given["max_lids"]);
   if (lids > 1000) throw InputError("max_lids: expected at most 1000, got " + std::to_string(lids));
   options.max_lids = static_cast<std::uint32_t>(lids);
-  options.seed = count(seed, "seed", options.seed);
-  options.threads = threads_of(count(threads, "threads"));
+  options.seed = count(given["seed"], options.seed);
+  options.threads = threads_of(given);
   options.progress = [&progress](std::uint32_t pass, std::uint32_t front_faces) {
     progress("building regions, front of " + std::to_string(front_faces) + " faces", pass, 0);
   };
   return options;
 }
 
-BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions, py::handle lean,
-                       py::handle max_lids, py::handle seed, py::handle threads, py::handle name,
-                       const py::object& progress, const py::object& cache) {
-  Mesh mesh = mesh_of_arrays(vertices, faces, text(name, "name", "body"));
-  const Progress report(progress);
-  const BuildOptions options = build_options(lean, max_lids, seed, threads, cache, report);
-  const bool with_regions = flag(regions, "regions", true);
+BodyPtr body_of_arrays(const Given& given) {
+  Mesh mesh = mesh_of_arrays(given["vertices"].given, given["faces"].given, text(given["name"], "body"));
+  const Progress report(given["progress"].given);
+  const BuildOptions options = build_options(given, report);
+  const bool with_regions = flag(given["regions"], true);
   const std::size_t n = mesh.vertices.size();
   const py::gil_scoped_release unlocked;
   return std::make_shared<Body>(with_regions ? bodies::body_of_mesh(std::move(mesh), options)
@@ -61,12 +53,11 @@ BodyPtr body_of_arrays(py::handle vertices, py::handle faces, py::handle regions
                                 n);
 }
 
-BodyPtr load(py::handle file, py::handle regions, py::handle lean, py::handle max_lids, py::handle seed,
-             py::handle threads, const py::object& progress, const py::object& cache) {
-  const std::string name = path(file, "path");
-  const Progress report(progress);
-  const BuildOptions options = build_options(lean, max_lids, seed, threads, cache, report);
-  const bool with_regions = flag(regions, "regions", true);
+BodyPtr load(const Given& given) {
+  const std::string name = path(given["path"]);
+  const Progress report(given["progress"].given);
+  const BuildOptions options = build_options(given, report);
+  const bool with_regions = flag(given["regions"], true);
   const py::gil_scoped_release unlocked;
   return std::make_shared<Body>(with_regions
                                     ? bodies::load_body(name, options)
@@ -84,8 +75,8 @@ Mesh real_mesh(const Body& body) {
   return mesh;
 }
 
-void save(const Body& body, py::handle file) {
-  const std::string name = path(file, "path");
+void save_body(const Body& body, const Given& given) {
+  const std::string name = path(given["path"]);
   const py::gil_scoped_release unlocked;
   if (std::filesystem::path(name).extension() == ".lrb")
     save_lrb(body.rep(), name);
@@ -151,8 +142,8 @@ py::object figures(const Body& body) {
   return parsed_json(j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-py::object levels(const Body& body, py::handle threads) {
-  const unsigned n = threads_of(count(threads, "threads"));
+py::object levels(const Body& body, const Given& given) {
+  const unsigned n = threads_of(given);
   std::string text;
   {
     const py::gil_scoped_release unlocked;
@@ -165,8 +156,8 @@ py::object levels(const Body& body, py::handle threads) {
   return parsed_json(text);
 }
 
-py::array_t<double> box(const Body& body, py::handle given) {
-  const Eigen::AlignedBox3d found = body.extent().in_world(pose(given, "pose"));
+py::array_t<double> box(const Body& body, const Given& given) {
+  const Eigen::AlignedBox3d found = body.extent().in_world(pose(given["pose"]));
   return column(std::array<Eigen::Vector3d, 2>{found.min(), found.max()}, std::identity());
 }
 
@@ -192,7 +183,7 @@ BodyPtr unpickled(const py::tuple& state) {
                                 vertices);
 }
 
-py::str shown(const Body& body) {
+py::str body_text(const Body& body) {
   const LrbRep& rep = body.rep();
   return printable("<lrbscope.Body '" + rep.name() + "': " + std::to_string(rep.real_face_count()) +
                    (rep.dim() == 2 ? " segments, " : " faces, ") + std::to_string(rep.region_count()) +
@@ -202,10 +193,9 @@ py::str shown(const Body& body) {
 using BodyClass = py::class_<Body, BodyPtr>;
 
 void bind_making(BodyClass& c) {
-  c.def(
-      py::init(&body_of_arrays),
-      Signature(
-          R"(Body(vertices, faces, *, regions=True, lean=False, max_lids=0, seed=1, threads=0, name='body', progress=None, cache=None)
+  define_constructor(
+      c,
+      R"(Body(vertices, faces, *, regions=True, lean=False, max_lids=0, seed=1, threads=0, name='body', progress=None, cache=None)
 
 Makes a body from arrays.
 
@@ -222,20 +212,21 @@ cache: a folder that keeps LRB-reps, so that each mesh is built once; by default
     variable LRBSCOPE_CACHE, or none.
 
 Raises InputError, which names the element, for a mesh that cannot be queried at all. A surface that cannot
-have regions (open, not manifold) gives a body without them.)"));
-  c.def_static(
-      "load", &load,
-      Signature(
-          R"(load(path, *, regions=True, lean=False, max_lids=0, seed=1, threads=0, progress=None, cache=None)
+have regions (open, not manifold) gives a body without them.)",
+      &body_of_arrays);
+  define_static(
+      c,
+      R"(load(path, *, regions=True, lean=False, max_lids=0, seed=1, threads=0, progress=None, cache=None)
 
-Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)"));
+Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)",
+      &load);
   define(c,
          "save(path)\n\n"
          "Writes the body: with its regions as .lrb, its faces alone as .ply or .obj.",
-         &save);
+         &save_body);
   c.def(py::pickle(&pickled, &unpickled));
   make_copyable(c);
-  c.def("__repr__", &shown);
+  c.def("__repr__", &body_text);
 }
 
 void bind_geometry(BodyClass& c) {
@@ -318,33 +309,43 @@ const BodyExtent& Body::extent() const {
 namespace {
 
 /// Returns a Body, or that of a mesh of another library.
-py::object body_object(py::handle given, const char* what, const char* expected) {
+py::object body_object(const Argument& arg, const char* expected) {
+  const py::handle given = arg.given;
   if (py::isinstance<Body>(given)) {
     given.cast<const Body&>();  // raises TypeError for an object without a value
     return py::reinterpret_borrow<py::object>(given);
   }
   if (!py::hasattr(given, "vertices") || !(py::hasattr(given, "faces") || py::hasattr(given, "triangles")))
-    throw py::type_error(std::string(what) + ": expected " + expected + ", got " + described(given));
+    throw py::type_error(std::string(arg.name) + ": expected " + expected + ", got " + described(given));
   return py::module_::import("lrbscope.collision").attr("body_of")(given);
 }
 
 }  // namespace
 
-const Body& body(py::handle given, const char* what) {
+const Body& body(const Argument& arg) {
   // Cached: the look-up in isinstance() and cast() gives the same result in each call and takes as long as a
   // query.
   static PyTypeObject* const type = reinterpret_cast<PyTypeObject*>(py::type::of<Body>().ptr());
-  if (Py_TYPE(given.ptr()) == type) {
-    auto* object = reinterpret_cast<py::detail::instance*>(given.ptr());
+  if (Py_TYPE(arg.given.ptr()) == type) {
+    auto* object = reinterpret_cast<py::detail::instance*>(arg.given.ptr());
     if (const auto* found = object->get_value_and_holder().value_ptr<Body>()) return *found;
   }
-  const py::object found = body_object(given, what, "a Body");
+  const py::object found = body_object(arg, "a Body");
   py::detail::loader_life_support::add_patient(found);  // a mesh's body is kept until the call ends
   return found.cast<const Body&>();
 }
 
-BodyPtr shared_body(py::handle given, const char* what, const char* expected) {
-  return body_object(given, what, expected).cast<BodyPtr>();
+BodyPtr shared_body(const Argument& arg, const char* expected) {
+  return body_object(arg, expected).cast<BodyPtr>();
+}
+
+TwoBodies::TwoBodies(const Given& given) : a(body(given["a"])), b(body(given["b"])) {
+  const Argument one = given.optional("pose_b");
+  if (one.name == nullptr)
+    poses_b = poses(given["poses_b"]);
+  else
+    poses_b.first = pose(one);
+  pose_a = pose(given["pose_a"]);
 }
 
 void bind_body(py::module_& m) {

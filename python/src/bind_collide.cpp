@@ -6,6 +6,7 @@
 #include "python/src/properties.hpp"
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/parallel.hpp>
+#include <lrbscope/trace/answer_fields.hpp>
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::python {
@@ -22,17 +23,15 @@ struct QueryHandle {
 };
 using QueryHandlePtr = std::shared_ptr<QueryHandle>;
 
-QueryHandlePtr make(py::handle a, py::handle b, py::handle mode, py::handle contacts,
-                    py::handle interiors_overlap, py::handle max_pairs, py::handle always) {
-  const CollideRequest request = request_of(
-      {.mode = mode, .contacts = contacts, .interiors_overlap = interiors_overlap, .max_pairs = max_pairs});
+QueryHandlePtr make(const Given& given) {
+  const CollideRequest request = request_of(given);
   const auto use =
-      flag(always, "always") ? CoherentQuery::CacheUse::always : CoherentQuery::CacheUse::as_it_pays;
-  return std::make_shared<QueryHandle>(shared_body(a, "a"), shared_body(b, "b"), request, use);
+      flag(given["always"]) ? CoherentQuery::CacheUse::always : CoherentQuery::CacheUse::as_it_pays;
+  return std::make_shared<QueryHandle>(shared_body(given["a"]), shared_body(given["b"]), request, use);
 }
 
-Answer collide_next(QueryHandle& self, py::handle pose_b, py::handle pose_a) {
-  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+Answer collide_next(QueryHandle& self, const Given& given) {
+  const Pose at_a = pose(given["pose_a"]), at_b = pose(given["pose_b"]);
   auto result = std::make_shared<CollideResult>();
   {
     const py::gil_scoped_release unlocked;
@@ -49,8 +48,7 @@ py::dict statistics(QueryHandle& self) {
     const std::lock_guard lock(self.mutex);
     s = self.query.statistics();
   }
-  return dict_of(s,
-                 {"from_cache", "caches_made", "swept_caches", "from_scratch", "tests_saved", "coarsened"});
+  return dict_of(s);
 }
 
 constexpr const char* kCoherentText =
@@ -66,11 +64,9 @@ tests).
 >>> [q.collide(shifted(x, 0.25, 0.125)).relation for x in (0.5, 0.51, 1.5)]
 ['crossing', 'crossing', 'separate'])";
 
-}  // namespace
-
 void bind_coherent(py::module_& m) {
   py::class_<QueryHandle, QueryHandlePtr> c(m, "CoherentQuery", kCoherentText);
-  c.def(py::init(&make), Signature(kCoherentText));
+  define_constructor(c, kCoherentText, &make);
   define(c,
          "collide(pose_b=None, pose_a=None)\n\n"
          "Returns the Result for these poses, (4, 4); None: the identity.",
@@ -87,55 +83,34 @@ queries from_scratch, tests_saved, coarsened regions of wrappers that the paper'
   property(c, "b", "Body", &QueryHandle::b);
 }
 
-}  // namespace lrb::python
-
-namespace lrb::python {
-
-Workspace& own_workspace(unsigned threads) {
-  thread_local std::map<unsigned, Workspace> workspaces;
-  return workspaces.try_emplace(threads, threads).first->second;
-}
-
-namespace {
-
 /// Answers a query with its own memory. Throws InputError if the query is rejected.
 CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                   const CollideRequest& request, Workspace& workspace) {
   return std::move(lrb::collide(a, pose_a, b, pose_b, request, workspace).value());
 }
 
-py::object collide_one(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
-                       const CollideRequest& request, unsigned threads) {
-  auto result = std::make_shared<CollideResult>();
-  {
-    const py::gil_scoped_release unlocked;
-    *result = ask(a.rep(), pose_a, b.rep(), pose_b, request, own_workspace(threads));
+py::object answers_to(const Given& given, const CollideRequest& request) {
+  const TwoBodies two(given);
+  const unsigned threads = threads_of(given);
+  const auto answer = [&](const Pose& pose_b) {
+    return Answer{nullptr, two.a.shared(), two.b.shared(), two.pose_a, pose_b};
+  };
+  if (two.poses_b.one) {
+    Answer found = answer(two.pose_b());
+    auto result = std::make_shared<CollideResult>();
+    {
+      const py::gil_scoped_release unlocked;
+      *result = ask(two.a.rep(), two.pose_a, two.b.rep(), two.pose_b(), request, own_workspace(threads));
+    }
+    found.result = std::move(result);
+    return py::cast(std::move(found));
   }
-  return py::cast(Answer{std::move(result), a.shared(), b.shared(), pose_a, pose_b});
-}
-
-py::object collide_many(const Body& a, const Pose& pose_a, const Body& b, const std::vector<Pose>& poses_b,
-                        const CollideRequest& request, unsigned threads) {
   std::vector<Answer> answers;
-  for (const Pose& pose_b : poses_b) answers.push_back({nullptr, a.shared(), b.shared(), pose_a, pose_b});
-  auto results = ask_each<CollideResult>(poses_b.size(), threads, [&](std::size_t i, Workspace& memory) {
-    return lrb::collide(a.rep(), pose_a, b.rep(), poses_b[i], request, memory);
+  for (const Pose& pose_b : two.poses_b.many) answers.push_back(answer(pose_b));
+  auto results = ask_poses<CollideResult>(two.poses_b, given, [&](const Pose& pose_b, Workspace& memory) {
+    return lrb::collide(two.a.rep(), two.pose_a, two.b.rep(), pose_b, request, memory);
   });
   return py::cast(Answers{with_results(std::move(answers), std::move(results))});
-}
-
-py::object collide(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle mode,
-                   py::handle contacts, py::handle interiors_overlap, py::handle tolerance,
-                   py::handle max_tests, py::handle max_time, py::handle separation, py::handle max_pairs,
-                   py::handle recursion, py::handle threads) {
-  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
-  const Poses at = poses(poses_b, "poses_b");
-  const Pose at_a = pose(pose_a, "pose_a");
-  const CollideRequest request = request_of(
-      {mode, contacts, interiors_overlap, tolerance, max_tests, max_time, separation, max_pairs, recursion});
-  const unsigned n = threads_of(count(threads, "threads"));
-  return at.one ? collide_one(body_a, at_a, body_b, at.first, request, n)
-                : collide_many(body_a, at_a, body_b, at.many, request, n);
 }
 
 /// A sequence of bodies with their poses.
@@ -144,42 +119,40 @@ struct Row {
   std::vector<Pose> poses;
 };
 
-Row row_of(const py::sequence& bodies, py::handle given, const char* what, const char* what_poses) {
+Row row_of(const Argument& bodies, const Argument& given) {
   Row out;
-  for (const py::handle one : bodies) out.reps.push_back(body(one, what).shared());
-  out.poses = poses(given, what_poses).to_vector();
+  if (!py::isinstance<py::sequence>(bodies.given)) throw py::reference_cast_error();
+  for (const py::handle one : bodies.given) out.reps.push_back(body({one, bodies.name}).shared());
+  out.poses = poses(given).to_vector();
   if (out.poses.size() != out.reps.size())
-    throw InputError(std::string(what_poses) + ": expected as many as " + what + ", " +
+    throw InputError(std::string(given.name) + ": expected as many as " + bodies.name + ", " +
                      std::to_string(out.reps.size()) + ", got " + std::to_string(out.poses.size()));
   return out;
 }
 
-py::object collide_pairs(const py::sequence& bodies_a, py::handle poses_a, const py::sequence& bodies_b,
-                         py::handle poses_b, py::handle mode, py::handle contacts, py::handle max_pairs,
-                         py::handle threads) {
-  const Row a = row_of(bodies_a, poses_a, "bodies_a", "poses_a");
-  const Row b = row_of(bodies_b, poses_b, "bodies_b", "poses_b");
+std::vector<Answer> collide_pairs(const Given& given) {
+  const Row a = row_of(given["bodies_a"], given["poses_a"]), b = row_of(given["bodies_b"], given["poses_b"]);
   if (a.reps.size() != b.reps.size())
     throw InputError("bodies_b: expected as many as bodies_a, " + std::to_string(a.reps.size()) + ", got " +
                      std::to_string(b.reps.size()));
-  const CollideRequest request = request_of({.mode = mode, .contacts = contacts, .max_pairs = max_pairs});
-  const unsigned n = threads_of(count(threads, "threads"));
   std::vector<Answer> answers;
   for (std::size_t i = 0; i < a.reps.size(); ++i)
     answers.push_back({nullptr, a.reps[i], b.reps[i], a.poses[i], b.poses[i]});
-  std::vector<CollideResult> results = results_of(answers, request, n);
-  return py::cast(with_results(std::move(answers), std::move(results)));
+  std::vector<CollideResult> results = results_of(answers, request_of(given), threads_of(given));
+  return with_results(std::move(answers), std::move(results));
 }
 
-py::object contacts(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle max_pairs,
-                    py::handle threads) {
-  const py::none no;
-  const py::object found =
-      collide(a, b, poses_b, pose_a, no, py::bool_(true), no, no, no, no, no, max_pairs, no, threads);
+py::object collide(const Given& given) {
+  return answers_to(given, request_of(given));
+}
+
+py::object contacts(const Given& given) {
+  CollideRequest request = request_of(given);
+  request.contacts = true;
+  const py::object found = answers_to(given, request);
   if (py::isinstance<Answer>(found)) return regions_of(found.cast<Answer&>());
   std::vector<Answer>& each = found.cast<Answers&>().all;
-  run_batch(each.size(), threads_of(count(threads, "threads")),
-            [&](std::size_t i, unsigned) { find_depths(each[i]); });
+  run_batch(each.size(), threads_of(given), [&](std::size_t i, unsigned) { find_depths(each[i]); });
   py::list out;
   for (Answer& answer : each) out.append(regions_of(answer));
   return out;
@@ -229,6 +202,11 @@ such lists.
 
 }  // namespace
 
+Workspace& own_workspace(unsigned threads) {
+  thread_local std::map<unsigned, Workspace> workspaces;
+  return workspaces.try_emplace(threads, threads).first->second;
+}
+
 std::vector<CollideResult> results_of(const std::vector<Answer>& answers, const CollideRequest& request,
                                       unsigned threads) {
   std::vector<PosedPair> pairs;
@@ -243,21 +221,22 @@ std::vector<CollideResult> results_of(const std::vector<Answer>& answers, const 
   return results;
 }
 
-CollideRequest request_of(const RequestArguments& given) {
+CollideRequest request_of(const Given& given) {
   CollideRequest r;
-  r.mode = word(given.mode, "mode", r.mode);
-  r.contacts = flag(given.contacts, "contacts");
-  r.interiors_overlap = flag(given.interiors_overlap, "interiors_overlap");
-  r.tolerance = size(given.tolerance, "tolerance");
-  r.max_tests = count(given.max_tests, "max_tests");
-  r.max_time = size(given.max_time, "max_time");
-  r.separation = flag(given.separation, "separation");
-  r.max_pairs = count(given.max_pairs, "max_pairs");
-  r.recursion = word(given.recursion, "recursion", r.recursion);
+  r.mode = word(given.optional("mode"), r.mode);
+  r.contacts = flag(given.optional("contacts"));
+  r.interiors_overlap = flag(given.optional("interiors_overlap"));
+  r.tolerance = size(given.optional("tolerance"));
+  r.max_tests = count(given.optional("max_tests"));
+  r.max_time = size(given.optional("max_time"));
+  r.separation = flag(given.optional("separation"));
+  r.max_pairs = count(given.optional("max_pairs"));
+  r.recursion = word(given.optional("recursion"), r.recursion);
   return r;
 }
 
 void bind_collide(py::module_& m) {
+  bind_coherent(m);
   define(m, kCollideText, &collide);
   define(m, kCollidePairsText, &collide_pairs);
   define(m, kContactsText, &contacts);

@@ -1,42 +1,30 @@
 #include "python/src/answers.hpp"
 #include "python/src/objects.hpp"
-#include "python/src/pickle.hpp"
 #include "python/src/properties.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/first_contact.hpp>
+#include <lrbscope/trace/answer_fields.hpp>
 #include <lrbscope/workspace.hpp>
 
 namespace lrb::python {
 
-void members(Archive& archive, FirstContactResult& x) {
-  archive(x.outcome, x.t0, x.t1, x.at_start, x.grazing, x.passed, x.finished, x.unresolved, x.at_begin,
-          x.ambiguous, x.pair, x.witness, x.normal, x.speed, x.history, x.counters);
-}
-
 namespace {
 
-py::object clash(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle clearance,
-                 py::handle along, py::handle depth, py::handle volume, py::handle threads) {
-  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
-  const Poses at = poses(poses_b, "poses_b");
-  const Pose at_a = pose(pose_a, "pose_a");
+py::object clash(const Given& given) {
+  const TwoBodies two(given);
   ClashRequest request;
-  request.clearance = size(clearance, "clearance");
-  if (!along.is_none()) request.along = vector(along, "along");
-  request.depth = flag(depth, "depth", request.depth);
-  request.volume = flag(volume, "volume", request.volume);
-  const std::vector<Pose> each = at.to_vector();
-  std::vector<ClashResult> results = ask_each<ClashResult>(
-      each.size(), at.one ? 1 : threads_of(count(threads, "threads")), [&](std::size_t i, Workspace& memory) {
-        return lrb::clash(body_a.rep(), at_a, body_b.rep(), each[i], request, memory);
+  request.clearance = size(given["clearance"]);
+  if (const Argument along = given["along"]; !along.is_none()) request.along = vector(along);
+  request.depth = flag(given["depth"], request.depth);
+  request.volume = flag(given["volume"], request.volume);
+  std::vector<ClashResult> found =
+      ask_poses<ClashResult>(two.poses_b, given, [&](const Pose& pose_b, Workspace& memory) {
+        return lrb::clash(two.a.rep(), two.pose_a, two.b.rep(), pose_b, request, memory);
       });
-  if (at.one) return py::cast(std::move(results[0]));
-  py::list out;
-  for (ClashResult& result : results) out.append(std::move(result));
-  return out;
+  return two.poses_b.one ? py::cast(std::move(found[0])) : py::cast(std::move(found));
 }
 
-void bind_result(py::module_& m) {
+void bind_clash(py::module_& m) {
   py::class_<ClashResult> c(
       m, "Clash",
       R"(Kind and depth of the contact of two solids. Lengths are in the world's unit; intervals are proven
@@ -72,12 +60,6 @@ bounds. Made by clash().)");
   c.def("__repr__",
         [](const ClashResult& r) { return "<lrbscope.Clash " + std::string(to_string(r.kind)) + ">"; });
   make_picklable(c);
-}
-
-}  // namespace
-
-void bind_clash(py::module_& m) {
-  bind_result(m);
   define(m, R"(clash(a, b, poses_b=None, pose_a=None, *, clearance=0, along=None, depth=True, volume=True,
       threads=0)
 
@@ -95,32 +77,25 @@ Returns a Clash, or for (k, 4, 4) a list of them.
          &clash);
 }
 
-namespace {
-
-py::object distance(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle within,
-                    py::handle tolerance, py::handle relative_tolerance, py::handle max_steps,
-                    py::handle relation, py::handle threads) {
-  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
-  const Poses at = poses(poses_b, "poses_b");
-  const Pose at_a = pose(pose_a, "pose_a");
+py::object distance(const Given& given) {
+  const TwoBodies two(given);
   DistanceRequest request;
-  if (!within.is_none()) request.within = size(within, "within");
-  request.tolerance = size(tolerance, "tolerance");
-  request.relative_tolerance = size(relative_tolerance, "relative_tolerance");
-  request.max_steps = count(max_steps, "max_steps");
-  request.relation = flag(relation, "relation", true);
-  if (at.one) {
-    DistanceResult result;
-    {
-      const py::gil_scoped_release unlocked;
-      result = lrb::distance(body_a.rep(), at_a, body_b.rep(), at.first, request, own_workspace()).value();
-    }
-    return py::cast(std::move(result));
+  if (const Argument within = given["within"]; !within.is_none()) request.within = size(within);
+  request.tolerance = size(given["tolerance"]);
+  request.relative_tolerance = size(given["relative_tolerance"]);
+  request.max_steps = count(given["max_steps"]);
+  request.relation = flag(given["relation"], true);
+  const auto ask = [&](const Pose& pose_b, Workspace& memory) {
+    return lrb::distance(two.a.rep(), two.pose_a, two.b.rep(), pose_b, request, memory);
+  };
+  if (!two.poses_b.one)
+    return py::cast(Sequence<DistanceResult>{ask_poses<DistanceResult>(two.poses_b, given, ask)});
+  DistanceResult result;
+  {
+    const py::gil_scoped_release unlocked;
+    result = ask(two.pose_b(), own_workspace()).value();
   }
-  return py::cast(Sequence<DistanceResult>{ask_each<DistanceResult>(
-      at.many.size(), threads_of(count(threads, "threads")), [&](std::size_t i, Workspace& memory) {
-        return lrb::distance(body_a.rep(), at_a, body_b.rep(), at.many[i], request, memory);
-      })});
+  return py::cast(std::move(result));
 }
 
 /// Returns get(witness) of A and of B as a tuple.
@@ -163,9 +138,7 @@ void bind_single_distance(py::module_& m) {
              return column(std::span(w.corners).first(static_cast<std::size_t>(w.corner_count)),
                            std::identity());
            }));
-  property(c, "counters", kCountersText, [](const DistanceResult& r) {
-    return dict_of(r.counters, {"steps", "box_tests", "pairs_in_floats", "pairs_in_doubles", "pairs_exact"});
-  });
+  property(c, "counters", kCountersText, [](const DistanceResult& r) { return dict_of(r.counters); });
   c.def(
       "__float__", [](const DistanceResult& r) { return r.upper; }, "The upper end.");
   c.def("__repr__", [](const DistanceResult& r) {
@@ -175,11 +148,9 @@ void bind_single_distance(py::module_& m) {
   make_picklable(c);
 }
 
-}  // namespace
-
 void bind_distance(py::module_& m) {
   bind_single_distance(m);
-  auto c = bind_sequence<DistanceResult>(
+  auto c = bind_sequence<Sequence<DistanceResult>>(
       m, "Distances", "Distances for k poses: a sequence of Distance, in the order of the poses.");
   const auto of_each = rows_of(c, "poses", &Sequence<DistanceResult>::all);
   of_each("lower", "(k,) float64", &DistanceResult::lower);
@@ -203,8 +174,6 @@ Returns a Distance, or for (k, 4, 4) a Distances.
          &distance);
 }
 
-namespace {
-
 /// Returns the motion through poses at equally spaced times from 0 to 1; a single pose is at rest.
 Motion motion_through(std::span<const Pose> poses) {
   if (poses.size() == 1) return Motion::still(poses[0]);
@@ -221,13 +190,13 @@ struct Motions {
 };
 
 /// Reads (4, 4), at rest, or (m, 4, 4), through m poses, as one motion; (k, m, 4, 4) as many.
-Motions motions(py::handle given, const char* what) {
+Motions motions(const Argument& arg) {
   Motions out;
-  const py::object all = given.is_none() ? py::object(py::none()) : numbers(given, what);
-  out.one = given.is_none() || all.cast<Doubles>().ndim() != 4;
+  const py::object all = arg.is_none() ? py::object(py::none()) : numbers(arg);
+  out.one = arg.is_none() || all.cast<Doubles>().ndim() != 4;
   const auto add = [&](py::handle one) {
-    const std::vector<Pose> through = poses(one, what).to_vector();
-    if (through.empty()) throw InputError(std::string(what) + ": expected at least one pose, got none");
+    const std::vector<Pose> through = poses({one, arg.name}).to_vector();
+    if (through.empty()) throw InputError(std::string(arg.name) + ": expected at least one pose, got none");
     out.all.push_back(motion_through(through));
   };
   if (out.one)
@@ -237,21 +206,18 @@ Motions motions(py::handle given, const char* what) {
   return out;
 }
 
-py::object first_contact(py::handle a, py::handle b, py::handle motion_b, py::handle motion_a,
-                         py::handle tolerance, py::handle max_steps, py::handle relation,
-                         py::handle threads) {
-  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
-  const Motions of_b = motions(motion_b, "motion_b"), of_a = motions(motion_a, "motion_a");
+py::object first_contact(const Given& given) {
+  const Body &a = body(given["a"]), &b = body(given["b"]);
+  const Motions of_b = motions(given["motion_b"]), of_a = motions(given["motion_a"]);
   if (!of_a.one) throw InputError("motion_a: expected one motion, (m, 4, 4)");
   FirstContactRequest request;
-  request.tolerance = size(tolerance, "tolerance", request.tolerance);
-  request.max_steps = count(max_steps, "max_steps", request.max_steps);
-  request.relation = flag(relation, "relation", true);
+  request.tolerance = size(given["tolerance"], request.tolerance);
+  request.max_steps = count(given["max_steps"], request.max_steps);
+  request.relation = flag(given["relation"], true);
   // Runs in a batch even for a single motion, because it can take long: Ctrl-C ends the wait.
   Sequence<FirstContactResult> found{ask_each<FirstContactResult>(
-      of_b.all.size(), of_b.one ? 1 : threads_of(count(threads, "threads")),
-      [&](std::size_t i, Workspace& memory) {
-        return lrb::first_contact(body_a.rep(), of_a.all[0], body_b.rep(), of_b.all[i], request, memory);
+      of_b.all.size(), of_b.one ? 1 : threads_of(given), [&](std::size_t i, Workspace& memory) {
+        return lrb::first_contact(a.rep(), of_a.all[0], b.rep(), of_b.all[i], request, memory);
       })};
   return of_b.one ? py::cast(std::move(found.all[0])) : py::cast(std::move(found));
 }
@@ -299,9 +265,7 @@ bodies are as close as rounding errors; 'steps': a step limit was reached.)",
   property(c, "normal",
            "(3,) float64: unit, from A to B, at t0; 0 at the start, and if it is below rounding errors.",
            &Contact::normal);
-  property(c, "counters", kCountersText, [](const Contact& f) {
-    return dict_of(f.counters, {"spans", "pairs", "steps", "exact_queries"});
-  });
+  property(c, "counters", kCountersText, [](const Contact& f) { return dict_of(f.counters); });
   c.def("__bool__", &Contact::is_contact, "True if the outcome is 'contact'.");
   c.def("__repr__", [](const Contact& f) {
     const std::string t0 = py::str(py::float_(f.t0)), t1 = py::str(py::float_(f.t1));
@@ -310,11 +274,9 @@ bodies are as close as rounding errors; 'steps': a step limit was reached.)",
   make_picklable(c);
 }
 
-}  // namespace
-
 void bind_first_contact(py::module_& m) {
   bind_single_contact(m);
-  auto c = bind_sequence<FirstContactResult>(
+  auto c = bind_sequence<Sequence<FirstContactResult>>(
       m, "FirstContacts", "First contacts for k motions: a sequence of FirstContact, in their order.");
   const auto of_each = rows_of(c, "motions", &Sequence<FirstContactResult>::all);
   of_each("t0", "(k,) float64: FirstContact.t0 of each.", &FirstContactResult::t0);
@@ -339,6 +301,14 @@ Returns a FirstContact, or for (k, m, 4, 4) a FirstContacts.
 >>> f.outcome, round(f.t0, 6)
 ('contact', 0.666667))",
          &first_contact);
+}
+
+}  // namespace
+
+void bind_distances(py::module_& m) {
+  bind_distance(m);
+  bind_first_contact(m);
+  bind_clash(m);
 }
 
 }  // namespace lrb::python

@@ -26,33 +26,27 @@ struct OfWalk {
   std::string json() const { return run::explanation_json(reported).dump(); }
 };
 
-/// Reads a pair of triangles, as in Result.pairs.
-SimplexPair pair_of(py::handle given) {
-  const Integers pair = integers(given, "pair", {2});
+OfPair explain_pair(const Given& given) {
+  const TwoBodies two(given);
+  const Integers pair = integers(given["pair"], {2});
   for (const std::int64_t n : {pair.at(0), pair.at(1)})
     if (n < 0 || n > kMaxId)
       throw InputError("pair: expected numbers of triangles, got " + std::to_string(n));
-  return {SimplexId(pair.at(0)), SimplexId(pair.at(1))};
+  const SimplexPair of{SimplexId(pair.at(0)), SimplexId(pair.at(1))};
+  const py::gil_scoped_release unlocked;
+  return {lrb::explain_pair(two.a.rep(), two.pose_a, two.b.rep(), two.pose_b(), of), two.a.shared(),
+          two.b.shared()};
 }
 
-OfPair explain_pair(py::handle a, py::handle b, py::handle given, py::handle pose_b, py::handle pose_a) {
-  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
-  const SimplexPair pair = pair_of(given);
-  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+OfWalk explain_walk(const Given& given) {
+  const TwoBodies two(given);
   const py::gil_scoped_release unlocked;
-  return {lrb::explain_pair(body_a.rep(), at_a, body_b.rep(), at_b, pair), body_a.shared(), body_b.shared()};
-}
-
-OfWalk explain_walk(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a) {
-  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
-  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
-  const py::gil_scoped_release unlocked;
-  return {lrb::explain_walk(body_a.rep(), at_a, body_b.rep(), at_b), body_a.shared(), body_b.shared(), at_a,
-          at_b};
+  return {lrb::explain_walk(two.a.rep(), two.pose_a, two.b.rep(), two.pose_b()), two.a.shared(),
+          two.b.shared(), two.pose_a, two.pose_b()};
 }
 
 /// Returns the points of a contact, or the closest points of disjoint faces.
-py::array_t<double> points_of(const OfPair& e) {
+py::array_t<double> explained_points(const OfPair& e) {
   const PairExplanation& x = e.reported;
   if (x.meet == exact::Meet::disjoint) return column(x.nearest, std::identity());
   return column(std::span(x.contact.corners).first(static_cast<std::size_t>(x.contact.corner_count)),
@@ -79,7 +73,7 @@ void bind_pair(py::module_& m) {
   property(
       c, "points",
       "(c, 3) float64: corners of the triangles' intersection, or (2, 3) their closest points; world frame.",
-      &points_of);
+      &explained_points);
   property(
       c, "distance", "float: of the triangles, in double arithmetic; the world's unit.",
       [](const OfPair& e) { return e.reported.meet == exact::Meet::disjoint ? e.reported.distance : 0.0; });

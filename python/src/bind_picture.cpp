@@ -11,7 +11,7 @@ namespace {
 using View = render::FrameSpec::View;
 
 int side(const py::handle& given) {
-  const std::uint64_t n = count(given, "size");
+  const std::uint64_t n = count({given, "size"});
   if (n < 16 || n > 8192)
     throw InputError("size: expected two numbers from 16 to 8192, got " + std::to_string(n));
   return static_cast<int>(n);
@@ -24,45 +24,47 @@ struct Wanted {
 };
 
 /// Returns the direction of "x", "-y" and the like, or of three numbers.
-Eigen::Vector3d direction(py::handle given, const char* what) {
-  if (!py::isinstance<py::str>(given)) return vector(given, what);
-  const auto word = given.cast<std::string>();
+Eigen::Vector3d direction(const Argument& arg) {
+  if (!py::isinstance<py::str>(arg.given)) return vector(arg);
+  const auto word = arg.given.cast<std::string>();
   const std::size_t sign = word.starts_with("-") ? 1 : 0;
   if (word.size() != sign + 1 || word[sign] < 'x' || word[sign] > 'z')
-    throw InputError(std::string(what) + ": expected three numbers, 'x', 'y', 'z', '-x', '-y' or '-z', got " +
-                     described(given));
+    throw InputError(std::string(arg.name) +
+                     ": expected three numbers, 'x', 'y', 'z', '-x', '-y' or '-z', got " +
+                     described(arg.given));
   return (sign == 1 ? -1.0 : 1.0) * Eigen::Vector3d::Unit(word[sign] - 'x');
 }
 
-Wanted wanted(const PictureArguments& given) {
+Wanted wanted(const Given& given) {
   Wanted out;
   render::FrameSpec& f = out.frames;
   f.width = 960;
   f.height = 720;
-  if (!given.size.is_none()) {
-    if (!py::isinstance<py::sequence>(given.size) || py::len(given.size) != 2)
+  if (const Argument size = given["size"]; !size.is_none()) {
+    if (!py::isinstance<py::sequence>(size.given) || py::len(size.given) != 2)
       throw InputError("size: expected (width, height)");
-    const auto size = py::reinterpret_borrow<py::sequence>(given.size);
-    f.width = side(size[0]);
-    f.height = side(size[1]);
+    const auto sides = py::reinterpret_borrow<py::sequence>(size.given);
+    f.width = side(sides[0]);
+    f.height = side(sides[1]);
   }
   View view;
-  out.from_given = !given.view_from.is_none();
-  if (out.from_given) view.from = direction(given.view_from, "view_from");
-  if (!given.up.is_none()) view.up = direction(given.up, "up");
+  const Argument view_from = given["view_from"], up = given["up"], look_at = given["look_at"];
+  out.from_given = !view_from.is_none();
+  if (out.from_given) view.from = direction(view_from);
+  if (!up.is_none()) view.up = direction(up);
   for (const Eigen::Vector3d* v : {&view.from, &view.up})
     if (!v->allFinite() || !(v->squaredNorm() > 0))
       throw InputError(std::string(v == &view.from ? "view_from" : "up") +
                        ": expected a direction other than zero");
-  if (!given.look_at.is_none()) view.look_at = vector(given.look_at, "look_at");
-  view.zoom = number(given.zoom, "zoom", 1);
+  if (!look_at.is_none()) view.look_at = vector(look_at);
+  view.zoom = number(given["zoom"], 1);
   if (!(view.zoom > 0 && view.zoom < 1e6)) throw InputError("zoom: expected a number above 0");
-  view.orthographic = flag(given.orthographic, "orthographic");
-  view.wrapper = flag(given.wrappers, "wrappers");
-  if (flag(given.close_up, "close_up")) view.camera = render::FrameSpec::Camera::contact;
+  view.orthographic = flag(given["orthographic"]);
+  view.wrapper = flag(given["wrappers"]);
+  if (flag(given["close_up"])) view.camera = render::FrameSpec::Camera::contact;
   f.views = {view};
-  f.colour_by = word(given.colour_by, "colour_by", f.colour_by);
-  f.transparent = flag(given.transparent, "transparent");
+  f.colour_by = word(given["colour_by"], f.colour_by);
+  f.transparent = flag(given["transparent"]);
   f.at = render::FrameSpec::At::events;
   return out;
 }
@@ -97,7 +99,7 @@ py::array_t<std::uint8_t> pixels_of(const render::Image& image, bool alpha) {
 
 }  // namespace
 
-py::object draw(const Recorded& recorded, std::size_t step, const PictureArguments& given) {
+py::object draw(const Recorded& recorded, std::size_t step, const Given& given) {
   Wanted what = wanted(given);
   const bool alpha = what.frames.transparent;
   run::PaintedFrame frame;

@@ -36,49 +36,30 @@ void record(Recorded& to, const Pose& pose_a, const std::vector<Pose>& poses_b,
     for (const auto& rep : to.bodies) to.trees.emplace_back(rep->tree());
 }
 
-RecordedPtr trace_of(py::handle a, py::handle b, py::handle poses_b, py::handle pose_a, py::handle events,
-                     py::handle max_events, py::handle mode, py::handle contacts, py::handle tolerance,
-                     py::handle max_tests, py::handle separation, py::handle recursion) {
+RecordedPtr trace_of(const Given& given) {
   auto out = std::make_shared<Recorded>();
-  out->bodies = {body(a, "a").shared(), body(b, "b").shared()};
+  const TwoBodies two(given);
+  out->bodies = {two.a.shared(), two.b.shared()};
   out->title = title_of(out->bodies);
-  const Poses at = poses(poses_b, "poses_b");
-  const Pose at_a = pose(pose_a, "pose_a");
   trace::RecorderSettings settings;
-  settings.request = request_of({.mode = mode,
-                                 .tolerance = tolerance,
-                                 .max_tests = max_tests,
-                                 .separation = separation,
-                                 .recursion = recursion});
+  settings.level = word(given["events"], settings.level);
+  settings.event_cap = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(count(given["max_events"], settings.event_cap), kMaxId));
+  settings.request = request_of(given);
   // Pictures show contacts, which only a request for all pairs returns.
   settings.request.contacts =
-      flag(contacts, "contacts", settings.request.mode == Mode::all_pairs && !settings.request.is_coarse());
-  settings.level = word(events, "events", settings.level);
-  settings.event_cap = static_cast<std::uint32_t>(
-      std::min<std::uint64_t>(count(max_events, "max_events", settings.event_cap), kMaxId));
+      flag(given["contacts"], settings.request.mode == Mode::all_pairs && !settings.request.is_coarse());
   settings.sources = {out->bodies[0]->name(), out->bodies[1]->name()};
   settings.scenario = out->title;
   const py::gil_scoped_release unlocked;
-  record(*out, at_a, at.to_vector(), settings);
+  record(*out, two.pose_a, two.poses_b.to_vector(), settings);
   return out;
 }
 
 /// Views events as a numpy record array.
 py::array events_of(const py::object& self) {
   const std::vector<trace::Event>& events = self.cast<const Recorded&>().trace.events;
-  using trace::Event;
-  const py::dtype type(
-      py::list(py::make_tuple("a", "b", "cause", "boundary", "depth_a", "depth_b", "kind", "side", "meet",
-                              "detail")),
-      py::list(py::make_tuple("<u4", "<u4", "<u4", "<u4", "<u2", "<u2", "u1", "u1", "u1", "u1")),
-      py::list(py::make_tuple(offsetof(Event, a), offsetof(Event, b), offsetof(Event, cause),
-                              offsetof(Event, boundary), offsetof(Event, depth_a), offsetof(Event, depth_b),
-                              offsetof(Event, kind), offsetof(Event, side), offsetof(Event, meet),
-                              offsetof(Event, detail))),
-      static_cast<py::ssize_t>(sizeof(Event)));
-  py::array out(type, {static_cast<py::ssize_t>(events.size())}, {}, events.data(), self);
-  py::detail::array_proxy(out.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  return out;
+  return view({static_cast<py::ssize_t>(events.size())}, events.data(), self);
 }
 
 py::object steps_of(const Recorded& r) {
@@ -112,8 +93,8 @@ py::object summary_of(const Recorded& r) {
   return parsed_json(trace::summary_json(r.trace, bodies));
 }
 
-void save(const Recorded& r, py::handle file) {
-  const std::string name = path(file, "path");
+void write_trace(const Recorded& r, const Given& given) {
+  const std::string name = path(given["path"]);
   const py::gil_scoped_release unlocked;
   trace::save_trace(r.trace, name);
 }
@@ -129,24 +110,24 @@ py::str notebook_html(const Recorded& r) {
   return py::str("<iframe style=\"width:100%;height:720px;border:0\" srcdoc=\"{}\"></iframe>").format(page);
 }
 
-py::object picture(const Recorded& r, py::handle step, const PictureArguments& given) {
+py::object picture(const Recorded& r, const Given& given) {
   const std::size_t n = r.trace.steps.size();
-  const auto i = step.is_none() ? -1 : static_cast<py::ssize_t>(number(step, "step"));
+  const Argument step = given["step"];
+  const auto i = step.is_none() ? -1 : static_cast<py::ssize_t>(number(step));
   if (n == 0) throw InputError("nothing to draw: the run has no steps");
   return draw(r, checked_index(i, n), given);
 }
 
-py::object render_bodies(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a,
-                         const PictureArguments& given) {
+py::object render_bodies(const Given& given) {
   Recorded r;
-  r.bodies.push_back(body(a, "a").shared());
-  const Pose at_a = pose(pose_a, "pose_a");
-  if (!b.is_none()) r.bodies.push_back(body(b, "b").shared());
+  const Argument b = given["b"];
+  r.bodies.push_back(body(given["a"]).shared());
+  if (!b.is_none()) r.bodies.push_back(body(b).shared());
+  const Pose at_b = b.is_none() ? Pose() : pose(given["pose_b"]), at_a = pose(given["pose_a"]);
   r.title = title_of(r.bodies);
   trace::RecorderSettings settings;
   settings.request.contacts = true;
   if (r.bodies.size() == 2) {
-    const Pose at_b = pose(pose_b, "pose_b");
     const py::gil_scoped_release unlocked;
     record(r, at_a, {at_b}, settings);
   } else {
@@ -158,6 +139,7 @@ py::object render_bodies(py::handle a, py::handle b, py::handle pose_b, py::hand
 }
 
 void bind_trace(py::module_& m) {
+  PYBIND11_NUMPY_DTYPE(trace::Event, a, b, cause, boundary, depth_a, depth_b, kind, side, meet, detail);
   py::class_<Recorded, RecordedPtr> c(
       m, "Trace",
       R"(A recorded run: every event of its queries. Made by trace() and Scenario.record(). In a notebook: a page
@@ -195,10 +177,9 @@ that shows the bodies, rotatable, after any event.)");
          "json()\n\nReturns the trace as text that ui.perfetto.dev opens (trace/schema/trace.schema.json).",
          &json_of);
   define(c, "summary()\n\nReturns the run's statistics, a dict with the keys of summary.json.", &summary_of);
-  define(c, "save(path)\n\nWrites json(), gzip-compressed if the path ends in .gz.", &save);
-  c.def(
-      "html", [](const Recorded& r) { return printable(html_of(r)); },
-      "html()\n\nReturns the run's page: one file that opens in any browser.");
+  define(c, "save(path)\n\nWrites json(), gzip-compressed if the path ends in .gz.", &write_trace);
+  define(c, "html()\n\nReturns the run's page: one file that opens in any browser.",
+         [](const Recorded& r) { return printable(html_of(r)); });
   c.def("_repr_html_", &notebook_html);
   c.def("__len__", [](const Recorded& r) { return r.trace.events.size(); });
   c.def("__repr__", [](const Recorded& r) {
@@ -212,13 +193,50 @@ that shows the bodies, rotatable, after any event.)");
         wrappers=False, close_up=False, colour_by='kind', transparent=False)
 
 Draws the end of a step, counted from the end if negative. Options and result as in render().)",
-      [](const Recorded& r, py::handle step, py::handle size, py::handle view_from, py::handle up,
-         py::handle look_at, py::handle zoom, py::handle orthographic, py::handle wrappers,
-         py::handle close_up, py::handle colour_by, py::handle transparent) {
-        return picture(
-            r, step,
-            {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent});
-      });
+      &picture);
+}
+
+/// The results that a run wrote.
+struct Outcome {
+  std::string folder;
+  run::RunOutcome run;
+};
+
+std::shared_ptr<Recorded> record_scenario(const spec::Scenario& scenario, const Given& given) {
+  const Progress report(given["progress"].given);
+  const py::gil_scoped_release unlocked;
+  return recorded_of(run::record(scenario, std::ref(report)), scenario);
+}
+
+Outcome run_into(const spec::Scenario& scenario, const Given& given) {
+  Outcome outcome{path(given["out"]), {}};
+  const Progress report(given["progress"].given);
+  const py::gil_scoped_release unlocked;
+  outcome.run =
+      run::run_scenario(scenario, outcome.folder, "lrbscope run " + scenario.name, std::ref(report));
+  return outcome;
+}
+
+py::list shipped() {
+  py::list out;
+  for (const std::string& name : spec::shipped_names(spec::kScenarioEnding)) out.append(name);
+  return out;
+}
+
+void bind_outcome(py::module_& m) {
+  py::class_<Outcome> c(m, "Outcome", "What Scenario.run() wrote.");
+  property(c, "folder", "str", [](const Outcome& o) { return path_of(o.folder); });
+  property(c, "page", "str: path of the run's page.",
+           [](const Outcome& o) { return path_of(o.folder + "/index.html"); });
+  property(c, "frames", "int: the number of pictures in frames/.",
+           [](const Outcome& o) { return o.run.frames; });
+  property(c, "mismatches", "list of str: expectations that were not met.",
+           [](const Outcome& o) { return printable(o.run.mismatches); });
+  property(c, "notes", "list of str: notes as text.",
+           [](const Outcome& o) { return printable(o.run.notes); });
+  property(c, "summary", "dict: the run's statistics, summary.json.",
+           [](const Outcome& o) { return parsed_json(o.run.summary); });
+  c.def("__repr__", [](const Outcome& o) { return printable("<lrbscope.Outcome in '" + o.folder + "'>"); });
 }
 
 }  // namespace
@@ -249,6 +267,7 @@ std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scen
 
 void bind_recorded(py::module_& m) {
   bind_trace(m);
+  bind_outcome(m);
   define(m, R"(trace(a, b, poses_b=None, pose_a=None, *, events='faces', max_events=1000000, mode='all',
       contacts=None, tolerance=0, max_tests=0, separation=False, recursion='complete')
 
@@ -282,64 +301,7 @@ Returns a Picture, (height, width, 3) uint8; transparent: (height, width, 4).
 
 >>> render(cube, cube, shifted(0.5, 0.25, 0.125), size=(320, 240)).shape
 (240, 320, 3))",
-         [](py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle size,
-            py::handle view_from, py::handle up, py::handle look_at, py::handle zoom, py::handle orthographic,
-            py::handle wrappers, py::handle close_up, py::handle colour_by, py::handle transparent) {
-           return render_bodies(a, b, pose_b, pose_a,
-                                {size, view_from, up, look_at, zoom, orthographic, wrappers, close_up,
-                                 colour_by, transparent});
-         });
-}
-
-namespace {
-
-/// The results that a run wrote.
-struct Outcome {
-  std::string folder;
-  run::RunOutcome run;
-};
-
-std::shared_ptr<Recorded> record_scenario(const spec::Scenario& scenario, const py::object& progress) {
-  const Progress report(progress);
-  const py::gil_scoped_release unlocked;
-  return recorded_of(run::record(scenario, std::ref(report)), scenario);
-}
-
-Outcome run_into(const spec::Scenario& scenario, py::handle out, const py::object& progress) {
-  Outcome outcome{path(out, "out"), {}};
-  const Progress report(progress);
-  const py::gil_scoped_release unlocked;
-  outcome.run =
-      run::run_scenario(scenario, outcome.folder, "lrbscope run " + scenario.name, std::ref(report));
-  return outcome;
-}
-
-py::list shipped() {
-  py::list out;
-  for (const std::string& name : spec::shipped_names(spec::kScenarioEnding)) out.append(name);
-  return out;
-}
-
-void bind_outcome(py::module_& m) {
-  py::class_<Outcome> c(m, "Outcome", "What Scenario.run() wrote.");
-  property(c, "folder", "str", [](const Outcome& o) { return path_of(o.folder); });
-  property(c, "page", "str: path of the run's page.",
-           [](const Outcome& o) { return path_of(o.folder + "/index.html"); });
-  property(c, "frames", "int: the number of pictures in frames/.",
-           [](const Outcome& o) { return o.run.frames; });
-  property(c, "mismatches", "list of str: expectations that were not met.",
-           [](const Outcome& o) { return printable(o.run.mismatches); });
-  property(c, "notes", "list of str: notes as text.",
-           [](const Outcome& o) { return printable(o.run.notes); });
-  property(c, "summary", "dict: the run's statistics, summary.json.",
-           [](const Outcome& o) { return parsed_json(o.run.summary); });
-  c.def("__repr__", [](const Outcome& o) { return printable("<lrbscope.Outcome in '" + o.folder + "'>"); });
-}
-
-}  // namespace
-
-void bind_scenario(py::module_& m) {
-  bind_outcome(m);
+         &render_bodies);
   py::class_<spec::Scenario> c(
       m, "Scenario",
       R"(Two bodies (or one), their motion, the query and the pictures: a shipped scenario, or one from a file.
@@ -347,12 +309,13 @@ void bind_scenario(py::module_& m) {
 >>> s = Scenario('collision')
 >>> s.name, len(s.purpose) > 0
 ('collision', True))");
-  c.def(py::init([](py::handle given) {
-          return spec::open_scenario(py::isinstance<py::str>(given) ? text(given, "scenario")
-                                                                    : path(given, "scenario"));
-        }),
-        Signature("Scenario(path_or_name)\n\n"
-                  "Opens a shipped scenario by its name (see scenarios()), or a file by its path."));
+  define_constructor(c,
+                     "Scenario(path_or_name)\n\n"
+                     "Opens a shipped scenario by its name (see scenarios()), or a file by its path.",
+                     [](const Given& given) {
+                       const Argument arg = given["path_or_name"];
+                       return spec::open_scenario(py::isinstance<py::str>(arg.given) ? text(arg) : path(arg));
+                     });
   property(c, "name", "str", &spec::Scenario::name);
   property(c, "purpose", "str: the expected content of the pictures.", &spec::Scenario::purpose);
   define(c,

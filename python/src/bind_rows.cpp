@@ -10,12 +10,9 @@
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/point_distance.hpp>
 #include <lrbscope/self_intersections.hpp>
+#include <lrbscope/trace/answer_fields.hpp>
 
 namespace lrb::python {
-
-void members(Archive& archive, ContactManifold& x) {
-  archive(x.normal, x.points, x.pairs, x.region, x.intersects);
-}
 
 namespace {
 
@@ -23,31 +20,26 @@ struct NearPairs : NearPairsResult {
   std::vector<std::array<FaceId, 2>> faces;
 };
 void members(Archive& archive, NearPairs& x) {
-  archive(x.pairs, x.found, x.counters, x.faces);
+  archive(static_cast<NearPairsResult&>(x), x.faces);
 }
 
-py::object near_pairs(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a, py::handle within,
-                      py::handle nearest, py::handle max_pairs, py::handle threads) {
-  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
-  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+NearPairs near_pairs(const Given& given) {
+  const TwoBodies two(given);
+  const Argument within = given["within"];
   if (within.is_none()) throw InputError("within: expected a finite number of at least 0, got None");
   NearPairsRequest request;
-  request.within = size(within, "within");
-  request.nearest = count(nearest, "nearest");
-  request.max_pairs = count(max_pairs, "max_pairs");
-  const unsigned n = threads_of(count(threads, "threads"));
-  NearPairs found;
-  {
-    const py::gil_scoped_release unlocked;
-    static_cast<NearPairsResult&>(found) =
-        lrb::near_pairs(body_a.rep(), at_a, body_b.rep(), at_b, request, n);
-  }
+  request.within = size(within);
+  request.nearest = count(given["nearest"]);
+  request.max_pairs = count(given["max_pairs"]);
+  const unsigned threads = threads_of(given);
+  const py::gil_scoped_release unlocked;
+  NearPairs found{lrb::near_pairs(two.a.rep(), two.pose_a, two.b.rep(), two.pose_b(), request, threads), {}};
   for (const NearPair& pair : found.pairs)
-    found.faces.push_back({body_a.rep().face_of_simplex(pair.a), body_b.rep().face_of_simplex(pair.b)});
-  return py::cast(std::move(found));
+    found.faces.push_back({two.a.rep().face_of_simplex(pair.a), two.b.rep().face_of_simplex(pair.b)});
+  return found;
 }
 
-void bind_near_pairs_result(py::module_& m) {
+void bind_near_pairs(py::module_& m) {
   py::class_<NearPairs> c(
       m, "NearPairs",
       R"(Pairs of triangles (2D: segments) within a distance: arrays with a row for each pair. Made by near_pairs().)");
@@ -64,15 +56,7 @@ void bind_near_pairs_result(py::module_& m) {
   of_pair("points",
           "(n, 2, 3) float64: the closest points of A and of B, world frame; equal if the pair intersects.",
           &NearPair::point);
-  property(c, "counters", kCountersText, [](const NearPairs& p) {
-    return dict_of(p.counters, {"node_pairs", "box_tests", "candidates", "pairs_exact"});
-  });
-}
-
-}  // namespace
-
-void bind_near_pairs(py::module_& m) {
-  bind_near_pairs_result(m);
+  property(c, "counters", kCountersText, [](const NearPairs& p) { return dict_of(p.counters); });
   define(m, R"(near_pairs(a, b, pose_b=None, pose_a=None, *, within, nearest=0, max_pairs=0, threads=0)
 
 Finds all pairs of triangles (2D: segments) whose distance is at most `within`, exactly.
@@ -88,8 +72,6 @@ Returns NearPairs.
 (62, 2.0, [1.0, 3.0]))",
          &near_pairs);
 }
-
-namespace {
 
 struct Manifolds : ManifoldResult {
   std::vector<const ManifoldPoint*> points;
@@ -109,33 +91,28 @@ void members(Archive& archive, Manifolds& x) {
   if (archive.reads()) x.list_points();
 }
 
-py::object contact_manifolds(py::handle a, py::handle b, py::handle pose_b, py::handle pose_a,
-                             py::handle margin, py::handle previous, py::handle max_pairs,
-                             py::handle threads) {
-  const Body &body_a = body(a, "a"), &body_b = body(b, "b");
-  const Pose at_a = pose(pose_a, "pose_a"), at_b = pose(pose_b, "pose_b");
+Manifolds contact_manifolds(const Given& given) {
+  const TwoBodies two(given);
   ManifoldRequest request;
-  request.margin = size(margin, "margin");
-  request.max_pairs = count(max_pairs, "max_pairs");
-  const unsigned n = threads_of(count(threads, "threads"));
-  const ManifoldResult* before = nullptr;
-  if (!previous.is_none()) {
-    if (!py::isinstance<Manifolds>(previous))
-      throw InputError("previous: expected the Manifolds of the previous step or None, got " +
-                       described(previous));
-    before = &previous.cast<const Manifolds&>();
-  }
-  Manifolds found;
-  {
-    const py::gil_scoped_release unlocked;
-    static_cast<ManifoldResult&>(found) =
-        lrb::contact_manifolds(body_a.rep(), at_a, body_b.rep(), at_b, request, before, n);
-  }
+  request.margin = size(given["margin"]);
+  const Argument previous = given["previous"];
+  if (!previous.is_none() && !py::isinstance<Manifolds>(previous.given))
+    throw InputError("previous: expected the Manifolds of the previous step or None, got " +
+                     described(previous.given));
+  const ManifoldResult* const before =
+      previous.is_none() ? nullptr : &previous.given.cast<const Manifolds&>();
+  request.max_pairs = count(given["max_pairs"]);
+  const unsigned threads = threads_of(given);
+  const py::gil_scoped_release unlocked;
+  Manifolds found{
+      lrb::contact_manifolds(two.a.rep(), two.pose_a, two.b.rep(), two.pose_b(), request, before, threads),
+      {},
+      {}};
   found.list_points();
-  return py::cast(std::move(found));
+  return found;
 }
 
-void bind_contact_manifolds_result(py::module_& m) {
+void bind_contact_manifolds(py::module_& m) {
   py::class_<Manifolds> c(
       m, "Manifolds",
       R"(Contact manifolds: arrays with a row for each manifold, point or pair. Made by contact_manifolds().)");
@@ -175,12 +152,6 @@ void bind_contact_manifolds_result(py::module_& m) {
              for (const ContactManifold& each : x.manifolds) out.append(column(each.pairs, std::identity()));
              return out;
            });
-}
-
-}  // namespace
-
-void bind_contact_manifolds(py::module_& m) {
-  bind_contact_manifolds_result(m);
   define(
       m,
       R"(contact_manifolds(a, b, pose_b=None, pose_a=None, *, margin=0, previous=None, max_pairs=0, threads=0)
@@ -199,24 +170,12 @@ Returns Manifolds.
       &contact_manifolds);
 }
 
-namespace {
-
-py::object self_intersections(py::handle of, py::handle max_pairs, py::handle threads) {
-  const Body& given = body(of, "body");
-  const std::uint64_t most = count(max_pairs, "max_pairs");
-  const unsigned n = threads_of(count(threads, "threads"));
-  SelfIntersections found;
-  {
-    const py::gil_scoped_release unlocked;
-    found = lrb::self_intersections(given.rep(), n, most > 0 ? most : kMaxSelfIntersections);
-  }
-  return py::cast(std::move(found));
-}
-
-}  // namespace
-
-void members(Archive& archive, SelfIntersections& x) {
-  archive(x.pairs, x.segments, x.curves);
+SelfIntersections self_intersections(const Given& given) {
+  const Body& of = body(given["body"]);
+  const std::uint64_t most = count(given["max_pairs"]);
+  const unsigned threads = threads_of(given);
+  const py::gil_scoped_release unlocked;
+  return lrb::self_intersections(of.rep(), threads, most > 0 ? most : kMaxSelfIntersections);
 }
 
 void bind_self_intersections(py::module_& m) {
@@ -249,37 +208,31 @@ Returns SelfIntersections.
          &self_intersections);
 }
 
-namespace {
-
 using PointDistances = Sequence<PointDistance>;
 
-py::object signed_distance(py::handle of, py::handle points, py::handle at, py::handle tolerance,
-                           py::handle relative_tolerance, py::handle threads) {
-  const Body& given = body(of, "body");
-  const Pose placed = pose(at, "pose");
-  const std::vector<Eigen::Vector3d> all = python::points(points, "points", given.rep().dim());
+PointDistances signed_distance(const Given& given) {
+  const Body& of = body(given["body"]);
+  const std::vector<Eigen::Vector3d> all = points(given["points"], of.rep().dim());
+  const Pose placed = pose(given["pose"]);
   for (std::size_t i = 0; i < all.size(); ++i)
     if (!all[i].allFinite())
       throw InputError("points: point " + std::to_string(i) + " is not finite; expected finite coordinates");
   PointDistanceRequest request;
-  request.tolerance = size(tolerance, "tolerance");
-  request.relative_tolerance = size(relative_tolerance, "relative_tolerance");
+  request.tolerance = size(given["tolerance"]);
+  request.relative_tolerance = size(given["relative_tolerance"]);
   PointDistances found;
   found.all.resize(all.size());
   // Batches, because Ctrl-C is noticed between two of them.
   constexpr std::size_t kBatch = 256;
-  run_batch(
-      (all.size() + kBatch - 1) / kBatch, threads_of(count(threads, "threads")),
-      [&](std::size_t i, unsigned) {
-        const auto batch = std::span(all).subspan(i * kBatch, std::min(kBatch, all.size() - i * kBatch));
-        const std::vector<PointDistance> of_batch = point_distances(given.rep(), placed, batch, request, 1);
-        std::copy(of_batch.begin(), of_batch.end(),
-                  found.all.begin() + static_cast<std::ptrdiff_t>(i * kBatch));
-      });
-  return py::cast(std::move(found));
+  run_batch((all.size() + kBatch - 1) / kBatch, threads_of(given), [&](std::size_t i, unsigned) {
+    const auto batch = std::span(all).subspan(i * kBatch, std::min(kBatch, all.size() - i * kBatch));
+    const std::vector<PointDistance> of_batch = point_distances(of.rep(), placed, batch, request, 1);
+    std::copy(of_batch.begin(), of_batch.end(), found.all.begin() + static_cast<std::ptrdiff_t>(i * kBatch));
+  });
+  return found;
 }
 
-void bind_point_distances(py::module_& m) {
+void bind_signed_distance(py::module_& m) {
   py::class_<PointDistances> c(
       m, "PointDistances",
       R"(Signed distances of n points to a body, as proven intervals. Made by signed_distance().)");
@@ -297,12 +250,6 @@ void bind_point_distances(py::module_& m) {
            [](const PointDistance& p) { return p.closest.point; });
   of_point("faces", "(n,) uint32: the faces of these points; 4294967295 for a body without faces.",
            [](const PointDistance& p) { return p.closest.face; });
-}
-
-}  // namespace
-
-void bind_signed_distance(py::module_& m) {
-  bind_point_distances(m);
   define(m, R"(signed_distance(body, points, pose=None, *, tolerance=0, relative_tolerance=0, threads=0)
 
 Finds the signed distance of points to the surface of a body, as proven intervals, negative inside.
@@ -318,6 +265,15 @@ Returns PointDistances.
 >>> d.side.tolist(), d.upper.round(9).tolist()
 ([-1, 1], [-0.25, 1.0]))",
          &signed_distance);
+}
+
+}  // namespace
+
+void bind_rows(py::module_& m) {
+  bind_near_pairs(m);
+  bind_contact_manifolds(m);
+  bind_self_intersections(m);
+  bind_signed_distance(m);
 }
 
 }  // namespace lrb::python

@@ -29,18 +29,20 @@ struct Others {
   Pose pose;
 };
 
-Others others_of(const SceneHandle& self, py::handle given, py::handle pose_of_body) {
+/// Reads the arguments other and pose.
+Others others_of(const SceneHandle& self, const Given& given) {
   Others out;
-  if (py::isinstance<SceneHandle>(given)) {
-    const auto& scene = given.cast<const SceneHandle&>();
-    out.scene = given.cast<ScenePtr>();
+  const Argument other = given["other"], at = given["pose"];
+  if (py::isinstance<SceneHandle>(other.given)) {
+    const auto& scene = other.given.cast<const SceneHandle&>();
+    out.scene = other.given.cast<ScenePtr>();
     if (&scene == &self)
       throw InputError("other: expected another scene, got the scene itself; leave it out");
-  } else if (!given.is_none()) {
-    out.body = shared_body(given, "other", "a Scene or a Body");
+  } else if (!other.is_none()) {
+    out.body = shared_body(other, "a Scene or a Body");
   }
-  if (!out.body && !pose_of_body.is_none()) throw InputError("pose: only allowed if `other` is a Body");
-  out.pose = pose(pose_of_body, "pose");
+  if (!out.body && !at.is_none()) throw InputError("pose: only allowed if `other` is a Body");
+  out.pose = pose(at);
   return out;
 }
 
@@ -71,40 +73,45 @@ auto with_others(const Others& others, const Ask& ask) {
 }
 
 BodyKey key_of(const SceneHandle& self, py::handle given) {
-  const auto key = BodyKey{count(given, "key")};
+  const auto key = BodyKey{count({given, "key"})};
   if (given.is_none() || !self.scene.has(key))
     throw InputError("key: no body " + std::string(py::str(given)) + " in the scene");
   return key;
+}
+
+/// Reads the argument key.
+BodyKey key_of(const SceneHandle& self, const Given& given) {
+  return key_of(self, given["key"].given);
 }
 
 std::int64_t number_of(BodyKey key) {
   return static_cast<std::int64_t>(key);
 }
 
-std::int64_t add(SceneHandle& self, py::handle given, py::handle at) {
-  const BodyPtr body = shared_body(given, "body");
-  const Pose where = pose(at, "pose");
+std::int64_t add(SceneHandle& self, const Given& given) {
+  const BodyPtr body = shared_body(given["body"]);
+  const Pose where = pose(given["pose"]);
   const Locked lock(self);
   const BodyKey key = self.scene.add(lrb::Body::from(body->shared()), where);
   self.bodies[key] = body;
   return number_of(key);
 }
 
-void remove(SceneHandle& self, py::handle given) {
+void remove(SceneHandle& self, const Given& given) {
   const Locked lock(self);
   const BodyKey key = key_of(self, given);
   self.scene.remove(key);
   self.bodies.erase(key);
 }
 
-void move(SceneHandle& self, const py::object& keys, py::handle given) {
-  const Poses at = poses(given, "pose");
+void move(SceneHandle& self, const Given& given) {
+  const Poses at = poses(given["pose"]);
   const Locked lock(self);
   if (at.one) {
-    self.scene.move(key_of(self, keys), at.first);
+    self.scene.move(key_of(self, given), at.first);
     return;
   }
-  const Integers all = integers(keys, "keys", {static_cast<py::ssize_t>(at.many.size())});
+  const Integers all = integers({given["key"].given, "keys"}, {static_cast<py::ssize_t>(at.many.size())});
   std::vector<BodyKey> found;  // all of them, before any body moves
   for (py::ssize_t i = 0; i < all.size(); ++i) found.push_back(key_of(self, py::int_(all.at(i))));
   for (std::size_t i = 0; i < found.size(); ++i) self.scene.move(found[i], at.many[i]);
@@ -126,12 +133,12 @@ bool contains(SceneHandle& self, py::handle given) {
   return self.scene.has(BodyKey{key});
 }
 
-BodyPtr body_at(SceneHandle& self, py::handle given) {
+BodyPtr body_at(SceneHandle& self, const Given& given) {
   const Locked lock(self);
   return self.bodies.at(key_of(self, given));
 }
 
-py::array_t<double> pose_at(SceneHandle& self, py::handle given) {
+py::array_t<double> pose_at(SceneHandle& self, const Given& given) {
   const Locked lock(self);
   const Pose& p = self.scene.pose(key_of(self, given));
   std::array<std::array<double, 4>, 4> m{};
@@ -144,14 +151,14 @@ py::array_t<double> pose_at(SceneHandle& self, py::handle given) {
 using Keys = std::vector<std::array<std::int64_t, 2>>;
 
 /// The pairs of bodies with nearby boxes.
-struct NearPairs {
+struct NearBoxes {
   Keys keys;
   std::vector<double> gaps;
 };
 
-NearPairs near_of(SceneHandle& self, const Others& others, double within) {
+NearBoxes near_of(SceneHandle& self, const Others& others, double within) {
   return with_others(others, [&](auto&&... whose) {
-    NearPairs out;
+    NearBoxes out;
     for (const ScenePair& p : self.scene.near(whose..., within)) {
       out.keys.push_back({others.body ? -1 : number_of(p.a), number_of(p.b)});
       out.gaps.push_back(p.gap);
@@ -160,18 +167,19 @@ NearPairs near_of(SceneHandle& self, const Others& others, double within) {
   });
 }
 
-py::tuple near(SceneHandle& self, py::handle within, py::handle other, py::handle at) {
-  const Others others = others_of(self, other, at);
-  const double limit = within.is_none() ? 0 : number(within, "within");
+py::tuple near(SceneHandle& self, const Given& given) {
+  const Argument within = given["within"];
+  const double limit = number(within);
   if (!(limit >= 0))
-    throw InputError("within: expected a number of at least 0, got " + std::string(py::str(within)));
+    throw InputError("within: expected a number of at least 0, got " + std::string(py::str(within.given)));
+  const Others others = others_of(self, given);
   const Locked lock(self, others);
-  const NearPairs found = near_of(self, others, limit);
+  const NearBoxes found = near_of(self, others, limit);
   return py::make_tuple(to_python(found.keys), to_python(found.gaps));
 }
 
-py::object nearest_boxes(SceneHandle& self, py::handle other, py::handle at) {
-  const Others others = others_of(self, other, at);
+py::object nearest_boxes(SceneHandle& self, const Given& given) {
+  const Others others = others_of(self, given);
   const Locked lock(self, others);
   const auto found = with_others(others, [&](auto&&... whose) { return self.scene.nearest_boxes(whose...); });
   if (!found) return py::none();
@@ -199,13 +207,11 @@ std::vector<Answer> questions_of(const SceneHandle& self, const Others& others,
   return out;
 }
 
-Meetings collide(SceneHandle& self, py::handle other, py::handle at, py::handle mode, py::handle contacts,
-                 py::handle interiors_overlap, py::handle max_pairs) {
-  const Others others = others_of(self, other, at);
-  const CollideRequest request = request_of(
-      {.mode = mode, .contacts = contacts, .interiors_overlap = interiors_overlap, .max_pairs = max_pairs});
+Meetings collide_all(SceneHandle& self, const Given& given) {
+  const Others others = others_of(self, given);
+  const CollideRequest request = request_of(given);
   const Locked lock(self, others);
-  const NearPairs near = near_of(self, others, 0);
+  const NearBoxes near = near_of(self, others, 0);
   const std::vector<Answer> questions = questions_of(self, others, near.keys);
   std::vector<CollideResult> results = results_of(questions, request, threads_of(self.threads));
   Meetings out;
@@ -218,13 +224,13 @@ Meetings collide(SceneHandle& self, py::handle other, py::handle at, py::handle 
   return out;
 }
 
-bool any_meet(SceneHandle& self, py::handle other, py::handle at) {
+bool any_meet(SceneHandle& self, const Given& given) {
   constexpr std::size_t kAtATime = 1024;  // pairs per block; a hit ends the search
-  const Others others = others_of(self, other, at);
+  const Others others = others_of(self, given);
   CollideRequest request;
   request.mode = Mode::any_pair;
   const Locked lock(self, others);
-  const NearPairs near = near_of(self, others, 0);
+  const NearBoxes near = near_of(self, others, 0);
   const std::span<const Keys::value_type> keys = near.keys;
   for (std::size_t begin = 0; begin < keys.size(); begin += kAtATime) {
     const auto some = keys.subspan(begin, std::min(kAtATime, keys.size() - begin));
@@ -235,13 +241,12 @@ bool any_meet(SceneHandle& self, py::handle other, py::handle at) {
   return false;
 }
 
-py::object nearest(SceneHandle& self, py::handle other, py::handle at, py::handle solids,
-                   py::handle relative_tolerance, py::handle tolerance) {
-  const Others others = others_of(self, other, at);
-  const Apart apart = flag(solids, "solids") ? Apart::solids : Apart::surfaces;
+py::object nearest(SceneHandle& self, const Given& given) {
+  const Others others = others_of(self, given);
+  const Apart apart = flag(given["solids"]) ? Apart::solids : Apart::surfaces;
   DistanceRequest request;
-  request.tolerance = size(tolerance, "tolerance");
-  request.relative_tolerance = size(relative_tolerance, "relative_tolerance");
+  request.relative_tolerance = size(given["relative_tolerance"]);
+  request.tolerance = size(given["tolerance"]);
   const Locked lock(self, others);
   auto found =
       with_others(others, [&](auto&&... whose) { return self.scene.nearest(whose..., request, apart); });
@@ -276,8 +281,9 @@ outside the scene. The outside body is A of the pair, with key -1.
 using SceneClass = py::class_<SceneHandle, ScenePtr>;
 
 void bind_bodies(SceneClass& c) {
-  c.def(py::init([](py::handle threads) { return std::make_shared<SceneHandle>(count(threads, "threads")); }),
-        Signature("Scene(*, threads=0)\n\nMakes an empty scene. threads: of queries; 0: all cores."));
+  define_constructor(
+      c, "Scene(*, threads=0)\n\nMakes an empty scene. threads: of queries; 0: all cores.",
+      [](const Given& given) { return std::make_shared<SceneHandle>(count(given["threads"])); });
   define(c,
          "add(body, pose=None)\n\n"
          "Adds a Body at a pose, (4, 4); None: the identity. The same Body may be added "
@@ -314,7 +320,7 @@ void bind_questions(SceneClass& c) {
 
 Finds all pairs of bodies that intersect or contain one another, in ascending order of their keys. For the
 options see collide(). Returns Meetings.)",
-      &collide);
+      &collide_all);
   define(c,
          "any_meet(other=None, pose=None)\n\n"
          "Returns True if collide() would find a pair; stops at the first.",

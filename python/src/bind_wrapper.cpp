@@ -12,37 +12,37 @@ struct BodyWrapper {
   Wrapper wrapper;
 };
 
-BodyWrapper made(py::handle given, py::handle mode) {
-  BodyPtr body = shared_body(given, "body");
-  const WrapperMode how = word(mode, "mode", WrapperMode::regularised);
+BodyWrapper made(const Given& given) {
+  BodyPtr body = shared_body(given["body"]);
+  const WrapperMode how = word(given["mode"], WrapperMode::regularised);
   const LrbRep& rep = body->rep();
   return {std::move(body), Wrapper(rep, how)};
 }
 
-BodyWrapper at(py::handle given, py::handle tolerance, py::handle threads) {
-  BodyPtr body = shared_body(given, "body");
-  const double within = size(tolerance, "tolerance");
-  const unsigned n = threads_of(count(threads, "threads"));
+BodyWrapper at(const Given& given) {
+  BodyPtr body = shared_body(given["body"]);
+  const double within = size(given["tolerance"]);
+  const unsigned n = threads_of(given);
   const py::gil_scoped_release unlocked;
   const LrbRep& rep = body->rep();
   return {std::move(body), bodies::wrapper_at(rep, within, n)};
 }
 
-std::uint32_t checked(py::handle given, const char* what, std::uint32_t n) {
-  const std::uint64_t i = count(given, what);
+std::uint32_t checked(const Argument& arg, std::uint32_t n) {
+  const std::uint64_t i = count(arg);
   if (i >= n)
-    throw InputError(std::string(what) + ": expected a number below " + std::to_string(n) + ", got " +
+    throw InputError(std::string(arg.name) + ": expected a number below " + std::to_string(n) + ", got " +
                      std::to_string(i));
   return static_cast<std::uint32_t>(i);
 }
-RegionId region(const BodyWrapper& w, py::handle given) {
-  return RegionId(checked(given, "region", w.body->rep().region_count()));
+RegionId region(const BodyWrapper& w, const Given& given) {
+  return RegionId(checked(given["region"], w.body->rep().region_count()));
 }
-FaceId face(const BodyWrapper& w, py::handle given) {
-  return FaceId(checked(given, "face", w.body->rep().face_count()));
+FaceId face(const BodyWrapper& w, const Given& given) {
+  return FaceId(checked(given["face"], w.body->rep().face_count()));
 }
 
-py::array_t<std::uint32_t> triangles_of(const BodyWrapper& w) {
+py::array_t<std::uint32_t> wrapper_triangles(const BodyWrapper& w) {
   const LrbRep& rep = w.body->rep();
   std::vector<VertexId> corners;
   for (const FaceId f : w.wrapper.boundary()) {
@@ -57,7 +57,7 @@ py::array_t<std::uint32_t> triangles_of(const BodyWrapper& w) {
 }
 
 /// Returns the wrapper's region behind a face of its boundary, on either side, or None.
-py::object region_behind(const BodyWrapper& w, py::handle given) {
+py::object region_behind(const BodyWrapper& w, const Given& given) {
   const FaceId f = face(w, given);
   const LrbRep& rep = w.body->rep();
   if (w.wrapper.on_boundary(f))
@@ -77,25 +77,27 @@ void bind_wrapper(py::module_& m) {
 >>> w.refine_all()
 >>> len(w) == cube.real_face_count
 True)");
-  c.def(py::init(&made), Signature(R"(Wrapper(body, mode='regularised')
+  define_constructor(c, R"(Wrapper(body, mode='regularised')
 
-Makes the outermost wrapper. mode 'unregularised': refining a face discards that face alone.)"));
-  c.def_static("at", &at, Signature(R"(at(body, tolerance, *, threads=0)
+Makes the outermost wrapper. mode 'unregularised': refining a face discards that face alone.)",
+                     &made);
+  define_static(c, R"(at(body, tolerance, *, threads=0)
 
-Makes the coarsest wrapper whose maximum deviation from the body is within a tolerance (the mesh's unit).)"));
+Makes the coarsest wrapper whose maximum deviation from the body is within a tolerance (the mesh's unit).)",
+                &at);
   define(c, "refine(region)\n\nExcludes a region. Returns False if it was already excluded.",
-         [](BodyWrapper& w, py::handle r) { return w.wrapper.refine(region(w, r)); });
+         [](BodyWrapper& w, const Given& given) { return w.wrapper.refine(region(w, given)); });
   define(c, R"(refine_face(face)
 
 Refines the region behind a face. Returns False if the face is real or not on the boundary.)",
-         [](BodyWrapper& w, py::handle f) { return w.wrapper.refine_face(face(w, f)); });
+         [](BodyWrapper& w, const Given& given) { return w.wrapper.refine_face(face(w, given)); });
   define(c, "coarsen(region)\n\nIncludes a region again. Returns False if it is already included.",
-         [](BodyWrapper& w, py::handle r) { return w.wrapper.coarsen(region(w, r)); });
+         [](BodyWrapper& w, const Given& given) { return w.wrapper.coarsen(region(w, given)); });
   define(c, "refine_all()\n\nExcludes all regions: only the real faces remain.",
          [](BodyWrapper& w) { w.wrapper.refine_all(); });
   define(c, "reset()\n\nResets to the outermost wrapper.", [](BodyWrapper& w) { w.wrapper.reset(); });
   define(c, "includes(region)\n\nReturns True if a region is included in the wrapper.",
-         [](const BodyWrapper& w, py::handle r) { return w.wrapper.included(region(w, r)); });
+         [](const BodyWrapper& w, const Given& given) { return w.wrapper.included(region(w, given)); });
   define(c, R"(region_behind(face)
 
 Returns the region behind a face of the boundary, or None if the face is real or not on the boundary.)",
@@ -110,7 +112,7 @@ Returns the region behind a face of the boundary, or None if the face is real or
              return column(w.wrapper.boundary(), [&](FaceId f) { return w.body->rep().is_real(f); });
            });
   property(c, "triangles", "(t, 3) uint32: the boundary's triangles, as indices into body.all_vertices.",
-           &triangles_of);
+           &wrapper_triangles);
   property(c, "excluded", "(r,) uint32: the excluded regions, in order of refinement.",
            [](const BodyWrapper& w) { return w.wrapper.excluded(); });
   c.def("__len__", [](const BodyWrapper& w) { return w.wrapper.boundary_size(); });

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "python/src/arguments.hpp"
+#include "python/src/functions.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/frames/frames.hpp"
 #include "scenarios/record/recorded_run.hpp"
@@ -43,8 +43,19 @@ using BodyPtr = std::shared_ptr<Body>;
 
 /// Returns the body of an argument: a Body, or an object with vertices and faces, whose body lives until the
 /// call from Python ends. Throws TypeError for any other object.
-const Body& body(py::handle given, const char* what);
-BodyPtr shared_body(py::handle given, const char* what, const char* expected = "a Body");
+const Body& body(const Argument& arg);
+BodyPtr shared_body(const Argument& arg, const char* expected = "a Body");
+
+/// The arguments a, b, pose_a, and pose_b or poses_b of a query.
+struct TwoBodies {
+  explicit TwoBodies(const Given& given);
+
+  const Body &a, &b;
+  Pose pose_a;
+  Poses poses_b;
+
+  const Pose& pose_b() const { return poses_b.first; }
+};
 
 /// The Python class Trace: the input of the pictures and pages of scenarios/run, with shared bodies.
 class Recorded {
@@ -63,14 +74,9 @@ class Recorded {
 /// Takes ownership of a recording.
 std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scenario& scenario);
 
-/// Picture options as given in Python. None: the default of render().
-struct PictureArguments {
-  py::handle size, view_from, up, look_at, zoom, orthographic, wrappers, close_up, colour_by, transparent;
-};
-
-/// Draws the end of a step of a run as a lrbscope.Picture. The GIL must be held, and is released while
-/// drawing.
-py::object draw(const Recorded& recorded, std::size_t step, const PictureArguments& given);
+/// Draws the end of a step of a run as a lrbscope.Picture, with the options of render(). The GIL must be
+/// held, and is released while drawing.
+py::object draw(const Recorded& recorded, std::size_t step, const Given& given);
 
 /// Encodes an (h, w, 3) or (h, w, 4) array as PNG.
 py::bytes png_of(const py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>& pixels);
@@ -78,18 +84,11 @@ py::bytes png_of(const py::array_t<std::uint8_t, py::array::c_style | py::array:
 // Each binds one subject. module.cpp calls them in an order that defines each class before its first use.
 void bind_answers(py::module_& m);
 void bind_body(py::module_& m);
-void bind_clash(py::module_& m);
-void bind_coherent(py::module_& m);
 void bind_collide(py::module_& m);
-void bind_distance(py::module_& m);
-void bind_signed_distance(py::module_& m);
-void bind_near_pairs(py::module_& m);
-void bind_contact_manifolds(py::module_& m);
-void bind_self_intersections(py::module_& m);
+void bind_distances(py::module_& m);
 void bind_explain(py::module_& m);
-void bind_first_contact(py::module_& m);
 void bind_recorded(py::module_& m);
-void bind_scenario(py::module_& m);
+void bind_rows(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_wrapper(py::module_& m);
 

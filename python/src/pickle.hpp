@@ -7,11 +7,45 @@
 #include <vector>
 
 #include "python/src/arguments.hpp"
+#include <lrbscope/core/fields.hpp>
 
 namespace lrb::python {
 
-/// Appends values to bytes, or reads them back. A class that owns memory needs a function
-/// members(Archive&, Class&), which calls the archive with its members; of other classes the bytes are kept.
+/// Calls visit(members...) for a record without bases.
+template <class Record, class Visit>
+void with_members(Record& record, const Visit& visit) {
+  constexpr std::size_t n = lrb::detail::member_count<Record>();
+  if constexpr (n == 2) {
+    auto& [a, b] = record;
+    visit(a, b);
+  } else if constexpr (n == 3) {
+    auto& [a, b, c] = record;
+    visit(a, b, c);
+  } else if constexpr (n == 5) {
+    auto& [a, b, c, d, e] = record;
+    visit(a, b, c, d, e);
+  } else if constexpr (n == 7) {
+    auto& [a, b, c, d, e, f, g] = record;
+    visit(a, b, c, d, e, f, g);
+  } else if constexpr (n == 9) {
+    auto& [a, b, c, d, e, f, g, h, i] = record;
+    visit(a, b, c, d, e, f, g, h, i);
+  } else if constexpr (n == 11) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k] = record;
+    visit(a, b, c, d, e, f, g, h, i, j, k);
+  } else if constexpr (n == 13) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = record;
+    visit(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  } else {
+    static_assert(n == 16, "add a line for this number of members");
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = record;
+    visit(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q);
+  }
+}
+
+/// Appends values to bytes, or reads them back: all members of records that own memory, unless there is a
+/// function members(Archive&, Class&), which calls the archive with some; of other classes the bytes are
+/// kept.
 class Archive {
  public:
   Archive() = default;  ///< for writing
@@ -37,6 +71,8 @@ class Archive {
       one(is_set);
       if (reads_ && is_set) value.emplace();
       if (is_set) one(*value);
+    } else if constexpr (!requires { value.begin(); }) {
+      with_members(value, [this](auto&... all) { (one(all), ...); });
     } else {  // a list
       if constexpr (requires { value.resize(1); }) {
         std::size_t n = value.size();

@@ -1,45 +1,14 @@
 #include "python/src/properties.hpp"
 
 #include <cstring>
-#include <stdexcept>
 
 #include "python/src/pickle.hpp"
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb::python {
 
-Signature::Signature(const char* text) : text_(text) {
-  const std::string_view all = text;
-  const std::size_t open = all.find('(');
-  name_ = all.substr(0, open);
-  bool has_star = false;
-  int depth = 0;  // of parentheses within the signature
-  std::string argument;
-  for (std::size_t i = open + 1; depth >= 0; ++i) {
-    const char c = all.at(i);
-    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
-    if (depth >= 0 && (depth > 0 || c != ',')) {
-      if (c != ' ' && c != '\n') argument += c;
-      continue;
-    }
-    if (argument == "*")
-      has_star = true;
-    else if (const std::size_t equals = argument.find('='); !argument.empty())
-      arguments_.push_back({argument.substr(0, equals), equals != std::string::npos});
-    if (!has_star) positional_ = arguments_.size();
-    argument.clear();
-  }
-}
-
-void Signature::apply(py::detail::function_record& function) const {
-  if (function.nargs_pos != arguments_.size() + (function.is_method ? 1 : 0))
-    throw std::logic_error(name_ + ": the text and the function have different arguments");
-  function.doc = const_cast<char*>(text_);  // pybind11 copies it, and the names
-  if (function.is_method) function.args.emplace_back("self", nullptr, py::handle(), true, false);
-  function.nargs_pos = static_cast<std::uint16_t>(function.args.size() + positional_);
-  for (const Argument& each : arguments_)
-    function.args.emplace_back(each.name.c_str(), nullptr,
-                               each.is_optional ? py::none().release() : py::handle(), true, true);
+py::array array_of(const std::vector<std::string>& texts) {
+  return py::module_::import("numpy").attr("array")(texts, py::arg("dtype") = "U16");
 }
 
 py::object parsed_json(const std::string& json) {
@@ -68,6 +37,12 @@ void Archive::bytes(char* at, std::size_t n) {
 
 void Archive::check(std::size_t n) const {
   if (n > all_.size() - next_) throw InputError("the pickle is damaged: it ends early");
+}
+
+std::size_t checked_index(const py::object& i, std::size_t n) {
+  const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(i.ptr()));
+  if (!index) throw py::error_already_set();
+  return checked_index(index.cast<py::ssize_t>(), n);
 }
 
 std::size_t checked_index(py::ssize_t i, std::size_t n) {

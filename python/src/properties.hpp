@@ -1,8 +1,7 @@
 #pragma once
-/// How functions and classes are bound: signatures from their texts, properties from members of answers.
+/// How classes are bound: properties from members of answers.
 
 #include <array>
-#include <bit>
 #include <concepts>
 #include <functional>
 #include <ranges>
@@ -15,35 +14,10 @@
 #include "python/src/pickle.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/core/fields.hpp>
 #include <lrbscope/ids.hpp>
 
 namespace lrb::python {
-
-/// The text of a function, which begins with its signature: "name(a, b=None, *, c=0)", an empty line, the
-/// description. Arguments that have a default are None in C++ if they are not given.
-class Signature {
- public:
-  explicit Signature(const char* text);
-  const char* name() const { return name_.c_str(); }
-  void apply(py::detail::function_record& function) const;
-
- private:
-  struct Argument {
-    std::string name;
-    bool is_optional;
-  };
-  const char* text_;
-  std::string name_;
-  std::vector<Argument> arguments_;
-  std::size_t positional_ = 0;  ///< number of arguments before "*"
-};
-
-/// Defines a function of a module, or a method of a class.
-template <class Scope, class Function>
-void define(Scope& scope, const char* text, Function&& function) {
-  const Signature signature(text);
-  scope.def(signature.name(), std::forward<Function>(function), signature);
-}
 
 /// The numbers of a value in an array: their type and the value's own dimensions.
 template <class Value>
@@ -74,16 +48,26 @@ struct Numbers<std::array<Value, n>> {
 template <class Value, std::size_t n>
 struct Numbers<Value[n]> : Numbers<std::array<Value, n>> {};
 
+/// Returns an array of str.
+py::array array_of(const std::vector<std::string>& texts);
+
 /// Returns an array with get(item) for each item: a member, or a function of it.
 template <class Items, class Get>
 auto column(const Items& items, const Get& get) {
-  using Value = Numbers<std::remove_cvref_t<decltype(std::invoke(get, *std::begin(items)))>>;
-  std::vector<py::ssize_t> shape = Value::shape();
-  shape.insert(shape.begin(), static_cast<py::ssize_t>(std::size(items)));
-  py::array_t<typename Value::Type> out(shape);
-  auto* to = out.mutable_data();
-  for (const auto& item : items) Value::write(std::invoke(get, item), to);
-  return out;
+  using Item = std::remove_cvref_t<decltype(std::invoke(get, *std::begin(items)))>;
+  if constexpr (std::same_as<Item, std::string>) {
+    std::vector<std::string> all;
+    for (const auto& item : items) all.push_back(std::invoke(get, item));
+    return array_of(all);
+  } else {
+    using Value = Numbers<Item>;
+    std::vector<py::ssize_t> shape = Value::shape();
+    shape.insert(shape.begin(), static_cast<py::ssize_t>(std::size(items)));
+    py::array_t<typename Value::Type> out(shape);
+    auto* to = out.mutable_data();
+    for (const auto& item : items) Value::write(std::invoke(get, item), to);
+    return out;
+  }
 }
 
 /// True for lists of numbers, ids or vectors, and of arrays of these.
@@ -170,13 +154,11 @@ auto rows_of(Class& c, const std::string& what, const Items& items) {
   return columns_of(c, items);
 }
 
-/// Returns counters, a record of numbers, as a dict.
-template <class Counters, std::size_t n>
-py::dict dict_of(const Counters& counters, const char* const (&names)[n]) {
-  static_assert(sizeof(Counters) == n * sizeof(std::uint64_t));
-  const auto numbers = std::bit_cast<std::array<std::uint64_t, n>>(counters);
+/// Returns counters, a record with a table of fields, as a dict.
+template <class Counters>
+py::dict dict_of(const Counters& counters) {
   py::dict d;
-  for (std::size_t i = 0; i < n; ++i) d[names[i]] = numbers[i];
+  for_each_field<Counters>([&](const auto& field) { d[field.name.data()] = counters.*field.member; });
   return d;
 }
 inline constexpr const char* kCountersText = "dict of int: the work, in numbers of operations.";
@@ -186,6 +168,7 @@ py::object parsed_json(const std::string& json);
 
 /// Returns an index as Python counts, from the end if negative. Throws IndexError if it is out of range.
 std::size_t checked_index(py::ssize_t i, std::size_t n);
+std::size_t checked_index(const py::object& i, std::size_t n);
 
 /// Adds an iterator to a list-like class. Type checkers and isinstance() require one for iterables.
 template <class Class>
@@ -206,22 +189,21 @@ void members(Archive& archive, Sequence<Result>& x) {
   archive(x.all);
 }
 
-/// Defines a sequence of answers; rows_of() defines its length.
-template <class Result>
-py::class_<Sequence<Result>> bind_sequence(py::module_& m, const char* name, const char* text) {
-  using All = Sequence<Result>;
+/// Defines a sequence of answers, with an item or a list of them by slices; rows_of() defines its length.
+template <class All>
+py::class_<All> bind_sequence(py::module_& m, const char* name, const char* text) {
   py::class_<All> c(m, name, text);
-  c.def("__getitem__", [](const All& s, py::ssize_t i) { return s.all[checked_index(i, s.all.size())]; });
+  c.def("__getitem__", [](const All& s, const py::object& which) -> py::object {
+    if (!py::isinstance<py::slice>(which)) return py::cast(s.all[checked_index(which, s.all.size())]);
+    std::size_t begin, end, step, n;
+    if (!which.cast<py::slice>().compute(s.all.size(), &begin, &end, &step, &n))
+      throw py::error_already_set();
+    py::list out;
+    for (; n > 0; --n, begin += step) out.append(s.all[begin]);
+    return out;
+  });
   bind_iterator(c);
   return c;
 }
 
 }  // namespace lrb::python
-
-template <>
-struct pybind11::detail::process_attribute<lrb::python::Signature>
-    : process_attribute_default<lrb::python::Signature> {
-  static void init(const lrb::python::Signature& signature, function_record* function) {
-    signature.apply(*function);
-  }
-};
