@@ -35,17 +35,6 @@ void members(Archive& archive, Answer& x) {
 
 namespace {
 
-/// A contact region, whose result owns its memory.
-struct Region {
-  std::shared_ptr<const ContactRegion> region;
-  RegionDepth found;
-};
-void members(Archive& archive, Region& x) {
-  ContactRegion read;
-  archive(archive.reads() ? read : const_cast<ContactRegion&>(*x.region), x.found);
-  if (archive.reads()) x.region = std::make_shared<const ContactRegion>(std::move(read));
-}
-
 py::array_t<std::uint32_t> pairs_of(const py::object& self) {
   const auto& pairs = self.cast<const Answer&>().result->pairs;
   static_assert(sizeof(SimplexPair) == 2 * sizeof(std::uint32_t));
@@ -164,36 +153,33 @@ void bind_results(py::module_& m) {
            &all_pairs);
 }
 
-py::list curves_of(const Region& r) {
+py::list curves_of(const ContactRegion& r) {
   py::list out;
-  for (const ContactLoop& loop : r.region->loops)
-    out.append(py::make_tuple(to_python(loop.points), loop.closed));
+  for (const ContactLoop& loop : r.loops) out.append(py::make_tuple(to_python(loop.points), loop.closed));
   return out;
 }
 
 void bind_region(py::module_& m) {
-  py::class_<Region> c(
+  py::class_<ContactRegion> c(
       m, "ContactRegion",
       "A connected part of the intersection of two surfaces; world frame, the meshes' unit.");
-  const auto of_region = properties_of(
-      c, [](const Region& r) -> const auto& { return *r.region; });
-  of_region("pairs", "(i,) uint32: indices into Result.pairs, ascending.", &ContactRegion::pairs);
+  property(c, "pairs", "(i,) uint32: indices into Result.pairs, ascending.", &ContactRegion::pairs);
   property(c, "curves", "list of ((q, 3) float64, bool): the points of each curve, and whether it is closed.",
            &curves_of);
-  of_region("length", "float: of all curves.", &ContactRegion::length);
-  of_region("area", "float: of the coplanar contact or the area spanned by closed curves; unit squared.",
-            &ContactRegion::area);
-  of_region("centroid", "(3,) float64", &ContactRegion::centroid);
+  property(c, "length", "float: of all curves.", &ContactRegion::length);
+  property(c, "area", "float: of the coplanar contact or the area spanned by closed curves; unit squared.",
+           &ContactRegion::area);
+  property(c, "centroid", "(3,) float64", &ContactRegion::centroid);
   property(
       c, "normal",
       "(3,) float64: unit, from A to B, of the contact manifold of the region's pairs that overlaps least; "
       "zero if undefined.",
-      [](const Region& r) { return r.found.normal; });
+      &ContactRegion::normal);
   property(c, "depth_estimate",
            "float: the depth of this manifold, along `normal`; 0 if the bodies only touch.",
-           [](const Region& r) { return r.found.depth; });
-  c.def("__repr__", [](const Region& r) {
-    return "<lrbscope.ContactRegion of " + std::to_string(r.region->pairs.size()) + " pairs>";
+           &ContactRegion::depth_estimate);
+  c.def("__repr__", [](const ContactRegion& r) {
+    return "<lrbscope.ContactRegion of " + std::to_string(r.pairs.size()) + " pairs>";
   });
   make_picklable(c);
 }
@@ -246,8 +232,12 @@ py::list regions_of(Answer& answer) {
   }
   answer.depths = std::move(copy.depths);
   py::list out;
-  for (std::size_t i = 0; i < answer.depths.size(); ++i)
-    out.append(Region{{answer.result, &answer.result->regions[i]}, answer.depths[i]});
+  for (std::size_t i = 0; i < answer.depths.size(); ++i) {
+    ContactRegion region = answer.result->regions[i];
+    region.normal = answer.depths[i].normal;
+    region.depth_estimate = answer.depths[i].depth;
+    out.append(std::move(region));
+  }
   return out;
 }
 

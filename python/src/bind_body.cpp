@@ -64,24 +64,13 @@ BodyPtr load(const Given& given) {
                                     : bodies::load_faces(name, bodies::Corners::joined, options.threads));
 }
 
-Mesh real_mesh(const Body& body) {
-  const LrbRep& rep = body.rep();
-  Mesh mesh;
-  mesh.dim = rep.dim();
-  mesh.name = rep.name();
-  const auto all = rep.vertices();
-  mesh.vertices.assign(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(body.vertex_count()));
-  for (FaceId f = 0; f < rep.real_face_count(); ++f) mesh.add_face(rep.face(f));
-  return mesh;
-}
-
 void save_body(const Body& body, const Given& given) {
   const std::string name = path(given["path"]);
   const py::gil_scoped_release unlocked;
   if (std::filesystem::path(name).extension() == ".lrb")
     save_lrb(body.rep(), name);
   else
-    write_mesh(real_mesh(body), name);
+    write_mesh(body.rep().real_mesh(), name);
 }
 
 /// Views the first n vertices, with as many coordinates as the constructor takes: (n, 3), or (n, 2) for a 2D

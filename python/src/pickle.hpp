@@ -72,7 +72,7 @@ class Archive {
       if (reads_ && is_set) value.emplace();
       if (is_set) one(*value);
     } else if constexpr (!requires { value.begin(); }) {
-      with_members(value, [this](auto&... all) { (one(all), ...); });
+      with_members(value, [this](auto&... all) { (this->one(all), ...); });
     } else {  // a list
       if constexpr (requires { value.resize(1); }) {
         std::size_t n = value.size();

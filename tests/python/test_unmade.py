@@ -9,7 +9,7 @@ import textwrap
 import pytest
 
 import lrbscope
-from lrbscope import Body, InputError
+from lrbscope import Body
 from shapes import cube_arrays, shifted
 
 # Runs in a process of its own: what this is about once ended the interpreter.
@@ -118,11 +118,3 @@ def test_f6_a_file_name_that_is_no_utf8_loads(odd_file, cube):
     saved = os.path.dirname(odd_file) + "/b\udcff.lrb"
     body.save(saved)
     assert Body.load(saved).hash == body.hash
-
-
-@pytest.mark.parametrize("name", ["a\udcff", b"a\xff", "no\udcff/folder.lrb"])
-def test_f6_an_error_names_a_file_whose_name_is_no_utf8(name):
-    with pytest.raises(InputError, match=r"\\xff"):
-        Body.load(name)
-    with pytest.raises(InputError, match="name: expected a valid Unicode string"):
-        Body(*cube_arrays(), name="a\udcff")
