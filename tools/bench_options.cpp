@@ -48,22 +48,18 @@ Contest make_contest(const std::string& a, const std::string& b, std::vector<std
                      double timeout) {
   if (names.empty()) names = {"ours"};
   const std::string kCommand = "command:";
-  const bool others = std::any_of(names.begin(), names.end(), [&](const std::string& n) {
-    return n != "ours" && !n.starts_with(kCommand);
-  });
+  const bool others =
+      std::any_of(names.begin(), names.end(), [&](const std::string& n) { return !n.starts_with(kCommand); });
   const std::vector<workers::WorkerMethod> known =
       others ? workers::find_methods() : std::vector<workers::WorkerMethod>{};
   auto bodies = std::make_unique<std::array<bodies::LoadedBody, 2>>(bodies::load_faces_of_two(a, b));
   for (std::size_t i = 0; i < 2; ++i)
     if ((*bodies)[i].rep.dim() != 3)
       throw InputError(printable_name(i == 0 ? a : b) + ": expected a 3D body, found a 2D body");
-  const LrbRep &rep_a = (*bodies)[0].rep, &rep_b = (*bodies)[1].rep;
   const std::chrono::duration<double> limit(timeout);
   std::vector<std::unique_ptr<engines::Engine>> engines;
   for (const std::string& name : names) {
-    if (name == "ours") {
-      engines.push_back(engines::our_engine(rep_a, rep_b));
-    } else if (name.starts_with(kCommand)) {
+    if (name.starts_with(kCommand)) {
       engines.push_back(engines::command_engine(name.substr(kCommand.size()), a, b, limit));
     } else {
       const workers::WorkerMethod method = chosen_methods(known, {name}).front();
@@ -72,8 +68,8 @@ Contest make_contest(const std::string& a, const std::string& b, std::vector<std
       engines.push_back(engines::worker_engine(method, a, b, limit));
     }
   }
-  return {std::move(bodies), engines::PoseSpace(shapes::box_of(rep_a), shapes::box_of(rep_b)),
-          std::move(engines)};
+  const engines::PoseSpace space(shapes::box_of((*bodies)[0].rep), shapes::box_of((*bodies)[1].rep));
+  return {std::move(bodies), space, std::move(engines)};
 }
 
 void write_scenario(const Contest& contest, const std::array<std::string, 2>& files,

@@ -93,7 +93,7 @@ void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& metho
   page.file("settings.csv", report::csv(settings), "which setting for which error");
   if (o.tex) page.file("settings.tex", report::booktabs(settings), "the same, for LaTeX with booktabs");
   for (const auto& [key, target] : scenes)
-    page.link({target, "scene, trace and pictures", key.first + ", " + bench::title(key.second)});
+    page.link({target, "scene, trace and pictures", key.first + ", " + bench::info_of(key.second).title});
   page.print("chart", "for print", bench::accuracy_print(o.set.quantity, sets, missing, charts));
   if (o.print.width > 0)
     page.print("figure", figure::length_text(o.print.width * figure::kPointsPerMm) + " wide",

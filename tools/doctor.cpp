@@ -79,22 +79,22 @@ render::Finding optional(const std::string& what, bool is_found, const std::stri
 /// Returns a finding for each worker program and each method of other engines.
 std::vector<render::Finding> check_engines() {
   std::vector<render::Finding> out;
-  const auto add_program = [&](const std::string& name, const std::string& use) {
-    out.push_back(optional(
-        name, !workers::program_beside(name).empty(),
-        "needed by " + use + "; build it: cmake --build --preset release --target lrbscope-workers"));
+  const auto add_program = [&](bool is_found) {
+    out.push_back(optional("lrbscope-methods", is_found,
+                           "needed by bench, chart and stability; build it: cmake --build --preset release "
+                           "--target lrbscope-workers"));
   };
-  add_program("lrbscope-methods", "bench, chart and stability");
-  add_program("lrbscope-quantities", "chart --quantity and stability --quantity");
   try {
-    for (const workers::WorkerMethod& m : workers::find_methods()) {
+    const std::vector<workers::WorkerMethod> methods = workers::find_methods();
+    add_program(true);
+    for (const workers::WorkerMethod& m : methods) {
       const bool is_own = m.info.name.starts_with("ours");
       if (!is_own)
         out.push_back({m.info.present ? Level::ok : Level::warning, "method " + m.info.name,
                        m.info.present ? m.info.title : m.info.title + ": " + m.info.remark});
     }
   } catch (const EnvironmentError&) {
-    // No worker program: reported above.
+    add_program(false);
   }
   return out;
 }

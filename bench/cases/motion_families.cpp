@@ -48,8 +48,8 @@ Case make_slide(RandomEngine& random, double difficulty) {
   return c;
 }
 
-/// B near a sheet that its motion (query_of() of numbers) passes through. B and the thickness shrink: between
-/// two steps B is on either side.
+/// B near a sheet that its motion (question_of() of numbers) passes through. B and the thickness shrink:
+/// between two steps B is on either side.
 Case make_tunnel(RandomEngine& random, double difficulty) {
   static const Mesh kBullets[] = {shapes::tetrahedron(), shapes::box(), shapes::icosphere(0, 0.5)};
   const double size = 0.3 * deterministic::pow10(-4 * difficulty);

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/methods/triangles.hpp"
 #include "bench/speed/metrics.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/io/poses.hpp"
@@ -22,6 +23,7 @@
 namespace lrb::engines {
 namespace {
 
+using methods::Answer;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxShown = 8;
@@ -32,7 +34,7 @@ std::string line_of(const ordered_json& value) {
 }
 
 /// Adds the tests of an answer, as far as they are known.
-void add_tests(ordered_json& line, const EngineAnswer& answer) {
+void add_tests(ordered_json& line, const Answer& answer) {
   if (answer.tests) line["tests"] = *answer.tests;
   if (!answer.kinds) return;
   line["box_tests"] = answer.kinds->boxes;
@@ -45,10 +47,10 @@ std::vector<double> least_times(Engine& engine, std::span<const Pose> poses,
   std::vector<double> least(poses.size(), std::numeric_limits<double>::infinity());
   for (int round = 0; round < kRounds; ++round) {
     const std::size_t before = static_cast<std::size_t>(round) * poses.size();
-    const std::vector<EngineAnswer> answers =
+    const std::vector<Answer> answers =
         engine.ask(poses, {}, [&](std::size_t done) { progress(before + done); });
     for (std::size_t i = 0; i < poses.size(); ++i)
-      if (answers[i].answered()) least[i] = std::min(least[i], answers[i].us);
+      if (answers[i].answered()) least[i] = std::min(least[i], answers[i].microseconds);
   }
   return least;
 }
@@ -78,8 +80,8 @@ Samples measure(Engine& engine, std::span<const Pose> poses, const run::Progress
       least_times(engine, poses, [&](std::size_t done) { progress(out.engine, poses.size() + done, total); });
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (out.answers[i].answered() && !std::isfinite(least[i]))
-      out.answers[i].failure = "answered once, but not again";
-    out.answers[i].us = least[i];
+      workers::note_failure(out.answers[i], {false, "answered once, but not again"});
+    out.answers[i].microseconds = least[i];
   }
   return out;
 }
@@ -93,7 +95,7 @@ Samples samples_of(const capture::Capture& capture, const std::string& file) {
     if (!q.ended) continue;
     out.with_events = out.with_events || !q.events.empty();
     const auto [it, is_new] = known.emplace(bytes_of(q), out.answers.size());
-    EngineAnswer answer = answer_of(q, capture.names, false);
+    Answer answer = answer_of(q, capture.names, false);
     if (is_new) {
       rounds.push_back(1);
       const Eigen::Matrix3d back = q.poses[0].r.transpose();
@@ -102,10 +104,10 @@ Samples samples_of(const capture::Capture& capture, const std::string& file) {
       continue;
     }
     ++rounds[it->second];
-    EngineAnswer& kept = out.answers[it->second];
-    const double least = std::min(kept.us, answer.us);
+    Answer& kept = out.answers[it->second];
+    const double least = std::min(kept.microseconds, answer.microseconds);
     if (!kept.tests) kept = std::move(answer);  // the repeat of a query without events may have them
-    kept.us = least;
+    kept.microseconds = least;
   }
   if (out.answers.empty())
     throw InputError(printable_name(file) + ": expected queries that ended, found none");
@@ -119,7 +121,7 @@ std::vector<Percentiles> percentiles(const Samples& samples) {
   // A quantity that an answered pose does not have has no percentiles.
   const auto add = [&](const std::string& what, const auto& value) {
     std::vector<double> all;
-    for (const EngineAnswer& a : samples.answers) {
+    for (const Answer& a : samples.answers) {
       if (!a.answered()) continue;
       const Value x = value(a);
       if (!x) return;
@@ -130,15 +132,15 @@ std::vector<Percentiles> percentiles(const Samples& samples) {
                    bench::quantile(all, 0.99), bench::quantile(all, 1)});
   };
   const auto number = [](std::uint64_t n) { return Value(static_cast<double>(n)); };
-  add("us", [](const EngineAnswer& a) { return Value(a.us); });
-  add("tests", [&](const EngineAnswer& a) { return a.tests ? number(*a.tests) : Value(); });
-  add("box_tests", [&](const EngineAnswer& a) { return a.kinds ? number(a.kinds->boxes) : Value(); });
-  add("face_tests", [&](const EngineAnswer& a) { return a.kinds ? number(a.kinds->faces) : Value(); });
+  add("us", [](const Answer& a) { return Value(a.microseconds); });
+  add("tests", [&](const Answer& a) { return a.tests ? number(*a.tests) : Value(); });
+  add("box_tests", [&](const Answer& a) { return a.kinds ? number(a.kinds->boxes) : Value(); });
+  add("face_tests", [&](const Answer& a) { return a.kinds ? number(a.kinds->faces) : Value(); });
   std::set<std::string> phases;
-  for (const EngineAnswer& a : samples.answers)
+  for (const Answer& a : samples.answers)
     for (const auto& [name, tests] : a.phases) phases.insert(name);
   for (const std::string& phase : phases)
-    add("tests in phase " + phase, [&](const EngineAnswer& a) {
+    add("tests in phase " + phase, [&](const Answer& a) {
       const auto it = a.phases.find(phase);
       return number(it == a.phases.end() ? 0 : it->second);
     });
@@ -150,7 +152,7 @@ Rows rows_of(const std::vector<Samples>& engines) {
   std::vector<std::vector<std::string>> rows = {{"engine", "", "p50", "p90", "p99", "max", "poses"}};
   for (const Samples& samples : engines) {
     const auto failed = std::count_if(samples.answers.begin(), samples.answers.end(),
-                                      [](const EngineAnswer& a) { return !a.answered(); });
+                                      [](const Answer& a) { return !a.answered(); });
     for (const Percentiles& p : percentiles(samples)) {
       rows.push_back({samples.engine, p.what.ends_with("_tests") ? io::in_words(p.what) : p.what});
       for (const double x : {p.p50, p.p90, p.p99, p.max})
@@ -174,12 +176,12 @@ std::vector<std::string> notes_of(const std::vector<Samples>& engines) {
   std::vector<std::string> out;
   for (const Samples& samples : engines) {
     const auto& all = samples.answers;
-    const auto has_failed = [](const EngineAnswer& a) { return !a.answered(); };
+    const auto has_failed = [](const Answer& a) { return !a.answered(); };
     const std::string name = printable_name(samples.engine);
     if (const auto first = std::find_if(all.begin(), all.end(), has_failed); first != all.end())
       out.push_back(name + ": no answer at " + std::to_string(std::count_if(first, all.end(), has_failed)) +
                     " of " + std::to_string(all.size()) + " poses; pose " +
-                    std::to_string(first - all.begin()) + ": " + first->failure);
+                    std::to_string(first - all.begin()) + ": " + first->message);
     if (samples.with_events)
       out.push_back(name +
                     ": events were recorded, which adds to the times; for times, record with "
@@ -194,31 +196,30 @@ namespace {
 
 constexpr double kNoCost = -1;
 
-double cost_of(const EngineAnswer& answer, Goal goal) {
+double cost_of(const Answer& answer, Goal goal) {
   if (!answer.answered()) return kNoCost;
-  if (goal == Goal::time) return answer.us;
+  if (goal == Goal::time) return answer.microseconds;
   if (goal == Goal::wasted) return static_cast<double>(answer.wasted.value());
   const auto tests = static_cast<double>(answer.tests.value());
-  return goal == Goal::tests ? tests : tests / (1 + static_cast<double>(answer.pairs));
+  return goal == Goal::tests ? tests : tests / (1 + static_cast<double>(answer.count));
 }
 
 }  // namespace
 
 Found find_costly(Engine& engine, const PoseSpace& space, Goal goal, const SearchOptions& options,
                   const run::ProgressReport& progress) {
-  std::vector<EngineAnswer> all;  // in the order of the trials
+  std::vector<Answer> all;  // in the order of the trials
   const auto costs = [&](std::span<const Placement> placements) {
     std::vector<Pose> poses;
     for (const Placement& at : placements) poses.push_back(space.pose(at));
-    std::vector<EngineAnswer> answers =
-        engine.ask(poses, {.tests = true, .waste = goal == Goal::wasted}, kSilent);
+    std::vector<Answer> answers = engine.ask(poses, {.tests = true, .waste = goal == Goal::wasted}, kSilent);
     if (goal == Goal::time) {
       const std::vector<double> least = least_times(engine, poses, kSilent);
       for (std::size_t i = 0; i < poses.size(); ++i)
-        if (std::isfinite(least[i])) answers[i].us = least[i];
+        if (std::isfinite(least[i])) answers[i].microseconds = least[i];
     }
     std::vector<double> out;
-    for (EngineAnswer& answer : answers) {
+    for (Answer& answer : answers) {
       const bool counted = goal == Goal::wasted ? answer.wasted.has_value() : answer.tests.has_value();
       if (goal != Goal::time && answer.answered() && !counted)
         throw InputError(
@@ -237,12 +238,12 @@ Found find_costly(Engine& engine, const PoseSpace& space, Goal goal, const Searc
       {goal == Goal::time ? "us" : "cost", "tests", "box tests", "face tests", "pairs", "query"}};
   for (const Trial& t : search.worst(kMaxShown)) {
     if (t.cost < 0) continue;
-    const EngineAnswer& answer = all[t.number - 1];
+    const Answer& answer = all[t.number - 1];
     const Pose pose = space.pose(t.at);
     out.poses.push_back(pose);
     ordered_json line = {{"engine", engine.name()}, {"goal", name_of(goal)}, {"cost", t.cost}};
     add_tests(line, answer);
-    line["pairs"] = answer.pairs;
+    line["pairs"] = answer.count;
     line["query"] = t.number;
     line["b"] = io::rows_of(pose);
     rows.push_back({t.cost >= 1000 ? io::fixed_text(t.cost, 0) : io::number_text(t.cost, 4)});
@@ -252,8 +253,8 @@ Found find_costly(Engine& engine, const PoseSpace& space, Goal goal, const Searc
   }
   out.rows.table = report::in_columns(rows, 0);
   for (const Trial& t : search.trials)
-    if (const EngineAnswer& answer = all[t.number - 1]; !answer.answered())
-      out.failures.push_back("query " + std::to_string(t.number) + ": " + answer.failure);
+    if (const Answer& answer = all[t.number - 1]; !answer.answered())
+      out.failures.push_back("query " + std::to_string(t.number) + ": " + answer.message);
   return out;
 }
 
@@ -286,28 +287,21 @@ namespace {
 /// An answer beside the exact one.
 struct Judged {
   HardPose at;
-  EngineAnswer answer;
+  Answer answer;
   std::uint64_t exact_pairs = 0, missed = 0, extra = 0;
   double error = 0;  ///< the gap of a false pair, or the depth of a missed one; the largest
 
-  bool wrong_contact() const { return answer.answered() && (answer.pairs > 0) != (exact_pairs > 0); }
+  bool wrong_contact() const { return answer.answered() && (answer.count > 0) != (exact_pairs > 0); }
 };
-
-profile::Triangle corners_of(const LrbRep& rep, SimplexId s, const Pose& pose) {
-  VertexId v[3] = {};
-  rep.simplex(s, v);
-  return {pose.apply(rep.vertices()[v[0]]), pose.apply(rep.vertices()[v[1]]),
-          pose.apply(rep.vertices()[v[2]])};
-}
 
 void judge(Judged& judged, const LrbRep& a, const LrbRep& b, const std::vector<SimplexPair>& exact,
            double unit) {
-  const std::vector<SimplexPair> missed = methods::without(exact, judged.answer.list),
-                                 extra = methods::without(judged.answer.list, exact);
+  const std::vector<SimplexPair> missed = methods::without(exact, judged.answer.pairs),
+                                 extra = methods::without(judged.answer.pairs, exact);
   judged.missed = missed.size();
   judged.extra = extra.size();
   const auto corners = [&](const SimplexPair& p) {
-    return std::pair(corners_of(a, p.a, Pose{}), corners_of(b, p.b, judged.at.pose));
+    return std::pair(methods::corners_of(a, Pose{}, p.a), methods::corners_of(b, judged.at.pose, p.b));
   };
   for (const SimplexPair& p : missed) {
     const auto [f, g] = corners(p);
@@ -348,7 +342,7 @@ Found find_wrong(Engine& engine, const LrbRep& a, const LrbRep& b, const PoseSpa
   const std::vector<HardPose> hard = hard_poses(a, b, space, options.budget, options.seed);
   std::vector<Pose> poses;
   for (const HardPose& h : hard) poses.push_back(h.pose);
-  std::vector<EngineAnswer> answers = engine.ask(
+  std::vector<Answer> answers = engine.ask(
       poses, {.list = true}, [&](std::size_t done) { progress(engine.name(), done, poses.size()); });
   std::vector<Judged> all(hard.size());
   Found out;
@@ -362,10 +356,10 @@ Found find_wrong(Engine& engine, const LrbRep& a, const LrbRep& b, const PoseSpa
         std::move(collide(a, Pose{}, b, poses[i], CollideRequest{}, workspace).value().pairs);
     judged.exact_pairs = exact.size();
     if (!judged.answer.answered()) {
-      out.failures.push_back("query " + std::to_string(i + 1) + ": " + judged.answer.failure);
+      out.failures.push_back("query " + std::to_string(i + 1) + ": " + judged.answer.message);
       continue;
     }
-    for (const SimplexPair& p : judged.answer.list)
+    for (const SimplexPair& p : judged.answer.pairs)
       if (p.a >= a.real_simplex_count() || p.b >= b.real_simplex_count())
         throw InputError(printable_name(engine.name()) +
                          ": expected pairs of faces of the two bodies, found one of others; does it read the "
@@ -384,7 +378,7 @@ Found find_wrong(Engine& engine, const LrbRep& a, const LrbRep& b, const PoseSpa
                                       {"goal", "wrong"},
                                       {"poses", name_of(j.at.kind)},
                                       {"ulps", j.at.ulps},
-                                      {"pairs", j.answer.pairs},
+                                      {"pairs", j.answer.count},
                                       {"exact_pairs", j.exact_pairs},
                                       {"missed", j.missed},
                                       {"false", j.extra},

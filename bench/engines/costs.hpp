@@ -25,10 +25,10 @@ struct Rows {
 /// Answers at poses, with the least time of some rounds.
 struct Samples {
   std::string engine;
-  std::vector<Pose> poses;            ///< of B relative to A
-  std::vector<EngineAnswer> answers;  ///< (|poses|)
-  int rounds = 0;                     ///< least number of queries of a pose
-  bool with_events = false;           ///< events were recorded during the timed queries
+  std::vector<Pose> poses;               ///< of B relative to A
+  std::vector<methods::Answer> answers;  ///< (|poses|)
+  int rounds = 0;                        ///< least number of queries of a pose
+  bool with_events = false;              ///< events were recorded during the timed queries
 };
 
 inline constexpr int kRounds = 3;
@@ -58,7 +58,7 @@ std::vector<std::string> notes_of(const std::vector<Samples>& engines);
 enum class Goal : std::uint8_t {
   tests_per_answer,  ///< tests / (1 + pairs)
   tests,
-  wasted,  ///< EngineAnswer::wasted
+  wasted,  ///< methods::Answer::wasted
   time,    ///< microseconds, the least of kRounds
   wrong,   ///< wrong pairs, which are not searched but tried, at hard poses
 };

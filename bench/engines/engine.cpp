@@ -4,116 +4,49 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/methods/triangles.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/profile/check.hpp"
-#include <lrbscope/collide.hpp>
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/workspace.hpp>
 
 namespace lrb::engines {
 
-// lrbscope itself.
-
-namespace {
-
-class OurEngine : public Engine {
- public:
-  OurEngine(const LrbRep& a, const LrbRep& b) : a_(a), b_(b) {}
-
-  std::string name() const override { return "ours"; }
-
-  std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
-                                const Progress& progress) override {
-    std::vector<EngineAnswer> out;
-    for (const Pose& pose : poses) {
-      const methods::Stopwatch watch;
-      CollideResult result = std::move(collide(a_, Pose{}, b_, pose, CollideRequest{}, workspace_).value());
-      EngineAnswer& answer = out.emplace_back();
-      answer.us = watch.microseconds();
-      answer.pairs = result.pairs.size();
-      // All pairs of faces that a pair of leaves compares count, as in other engines.
-      answer.kinds = {result.counters.box_tests,
-                      std::max(result.counters.prefilter_tests, result.counters.face_tests)};
-      answer.tests = answer.kinds->boxes + answer.kinds->faces;
-      if (wanted.list) answer.list = std::move(result.pairs);
-      progress(out.size());
-    }
-    return out;
-  }
-
- private:
-  const LrbRep &a_, &b_;
-  Workspace workspace_;
-};
-
-}  // namespace
-
-std::unique_ptr<Engine> our_engine(const LrbRep& a, const LrbRep& b) {
-  return std::make_unique<OurEngine>(a, b);
-}
+using methods::Answer;
 
 // Methods in worker programs.
 
 namespace {
 
-using Clock = workers::Worker::Clock;
-
 class WorkerEngine : public Engine {
  public:
   WorkerEngine(const workers::WorkerMethod& method, const std::string& a, const std::string& b,
                std::chrono::duration<double> limit)
-      : program_(method.program), name_(method.info.name), bodies_{{"bodies", {a, b}}}, limit_(limit) {}
+      : name_(method.info.name),
+        bodies_{{"bodies", {a, b}}},
+        limit_(limit),
+        worker_({method.program, "--method", name_},
+                {bodies_.dump(), kBuild, "method '" + name_ + "': cannot build the two bodies: "}) {}
 
   std::string name() const override { return name_; }
 
-  std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
-                                const Progress& progress) override {
-    std::vector<EngineAnswer> out;
-    std::size_t requested = 0;
-    int late = 0;  // consecutive poses without an answer in time
-    while (out.size() < poses.size()) {
-      if (!worker_) {
-        start();
-        requested = out.size();
-      }
-      for (; requested < poses.size() && requested < out.size() + kAhead; ++requested)
-        worker_->ask(question(poses[requested], wanted));
-      workers::WorkerFailure failure;
-      if (const auto line = worker_->answer(limit_, failure)) {
-        out.push_back(answer_from(*line));
-        late = 0;
-      } else {
-        worker_.reset();  // with its unanswered questions
-        out.emplace_back().failure = failure.message;
-        late = failure.timed_out ? late + 1 : 0;
-      }
-      if (late == kMaxLate)
-        while (out.size() < poses.size())
-          out.emplace_back().failure = "skipped after three poses in a row without an answer in time";
-      progress(out.size());
-    }
+  std::vector<Answer> ask(std::span<const Pose> poses, Wanted wanted, const Progress& progress) override {
+    std::vector<Answer> out;
+    worker_.run({0, poses.size(), [&](std::uint64_t k) { return question(poses[k], wanted); }, limit_,
+                 [&](std::uint64_t, const std::string& line) {
+                   out.push_back(workers::answer_from(nlohmann::json::parse(line)));
+                   progress(out.size());
+                 },
+                 [&](std::uint64_t, const workers::WorkerFailure& failure) {
+                   workers::note_failure(out.emplace_back(), failure);
+                   progress(out.size());
+                 }});
     return out;
   }
 
  private:
-  /// Questions sent ahead of their answers, so that the worker does not wait between two queries. They fit
-  /// the buffer of a pipe.
-  static constexpr std::size_t kAhead = 16;
-  static constexpr int kMaxLate = 3;
   static constexpr std::chrono::seconds kBuild{600};  // time to read and build the bodies
-
-  void start() {
-    worker_.emplace(std::vector<std::string>{program_, "--method", name_});
-    worker_->ask(bodies_.dump());
-    workers::WorkerFailure failure;
-    const auto line = worker_->answer(kBuild, failure);
-    const std::string why = line ? workers::error_in(*line) : failure.message;
-    if (!why.empty()) throw InputError("method '" + name_ + "': cannot build the two bodies: " + why);
-  }
 
   std::string question(const Pose& pose, Wanted wanted) const {
     nlohmann::json out = bodies_;
@@ -123,25 +56,10 @@ class WorkerEngine : public Engine {
     return out.dump();
   }
 
-  static EngineAnswer answer_from(const std::string& line) {
-    EngineAnswer out;
-    const auto value = nlohmann::json::parse(line);
-    out.failure = value.value("failure", workers::error_in(line));
-    if (!out.answered()) return out;
-    out.us = value.at("us");
-    out.pairs = value.at("pairs");
-    if (value.contains("boxes")) {
-      out.kinds = methods::TestCounts{value.at("boxes"), value.at("faces")};
-      out.tests = out.kinds->boxes + out.kinds->faces;
-    }
-    if (value.contains("list")) out.list = workers::PairsJson::read(value.at("list"));
-    return out;
-  }
-
-  std::string program_, name_;
+  std::string name_;
   nlohmann::json bodies_;
   std::chrono::duration<double> limit_;
-  std::optional<workers::Worker> worker_;
+  workers::Worker worker_;
 };
 
 }  // namespace
@@ -162,12 +80,11 @@ class CommandEngine : public Engine {
 
   std::string name() const override { return "command:" + command_; }
 
-  std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
-                                const Progress& progress) override {
-    std::vector<EngineAnswer> out;
+  std::vector<Answer> ask(std::span<const Pose> poses, Wanted wanted, const Progress& progress) override {
+    std::vector<Answer> out;
     while (out.size() < poses.size()) {
       const auto some = poses.subspan(out.size(), std::min(kPosesAtOnce, poses.size() - out.size()));
-      for (EngineAnswer& answer : answers(some, wanted)) out.push_back(std::move(answer));
+      for (Answer& answer : answers(some, wanted)) out.push_back(std::move(answer));
       progress(out.size());
     }
     return out;
@@ -179,7 +96,7 @@ class CommandEngine : public Engine {
   }
 
   /// Runs the program once for these poses.
-  std::vector<EngineAnswer> answers(std::span<const Pose> poses, Wanted wanted) const {
+  std::vector<Answer> answers(std::span<const Pose> poses, Wanted wanted) const {
     const workers::MemoryFile requested("poses"), capture("capture");
     std::string text;
     for (const Pose& pose : poses) {
@@ -191,7 +108,7 @@ class CommandEngine : public Engine {
     return read(read_file(capture.path()), poses, wanted);
   }
 
-  std::vector<EngineAnswer> read(const std::string& bytes, std::span<const Pose> poses, Wanted wanted) const {
+  std::vector<Answer> read(const std::string& bytes, std::span<const Pose> poses, Wanted wanted) const {
     if (bytes.empty())
       complain("expected a capture in $LRBCAP_OUT, found nothing; was it compiled with -DLRBCAP_ENABLE?");
     const capture::Capture c = [&] {
@@ -205,7 +122,7 @@ class CommandEngine : public Engine {
       complain("expected " + std::to_string(poses.size()) + " queries, one for each pose, found " +
                std::to_string(c.queries.size()));
     for (std::size_t i = 0; i < poses.size(); ++i) check(c.queries[i], poses[i]);
-    std::vector<EngineAnswer> out;
+    std::vector<Answer> out;
     for (const capture::Query& q : c.queries) out.push_back(answer_of(q, c.names, wanted.list));
     if (!wanted.waste) return out;
     const profile::Check checked = profile::check(c, {.precision = {}, .split = false});
@@ -222,6 +139,7 @@ class CommandEngine : public Engine {
     const std::string script = "export LRBCAP_OUT=\"$1\" LRBCAP_EVENTS=\"$2\"; shift 2; exec " + command_ +
                                " \"$@\" 2>&1 >/dev/null";
     workers::Child child({"/bin/sh", "-c", script, "sh", capture, events ? "1" : "0", a_, b_, poses}, -1);
+    using Clock = workers::Worker::Clock;
     const Clock::time_point deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit_);
     std::string last;
     auto next = workers::Child::Next::line;
@@ -260,11 +178,11 @@ std::unique_ptr<Engine> command_engine(const std::string& command, const std::st
   return std::make_unique<CommandEngine>(command, a, b, limit);
 }
 
-EngineAnswer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list) {
+Answer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list) {
   using capture::EventKind;
-  EngineAnswer out;
-  out.us = query.duration_ns / 1e3;
-  out.pairs = query.pairs;
+  Answer out;
+  out.microseconds = query.duration_ns / 1e3;
+  out.count = query.pairs;
   if (query.complete()) {
     methods::TestCounts counts;
     std::uint64_t* phase = nullptr;
@@ -276,7 +194,7 @@ EngineAnswer answer_of(const capture::Query& query, const std::vector<std::strin
         phase = &out.phases[e.a < names.size() ? names[e.a] : "phase " + std::to_string(e.a)];
       if (phase != nullptr) *phase += tests;
       if (list && e.kind == EventKind::triangles && e.met != 0)
-        out.list.push_back({SimplexId(e.a), SimplexId(e.b)});
+        out.pairs.push_back({SimplexId(e.a), SimplexId(e.b)});
     }
     // Every query tests something: without tests, they were not recorded.
     if (counts.boxes + counts.faces > 0) {
@@ -285,7 +203,7 @@ EngineAnswer answer_of(const capture::Query& query, const std::vector<std::strin
     } else {
       out.phases.clear();
     }
-    std::sort(out.list.begin(), out.list.end());
+    std::sort(out.pairs.begin(), out.pairs.end());
   } else if (query.events_seen > 0) {
     out.tests = query.events_seen;
   }

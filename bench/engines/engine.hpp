@@ -1,11 +1,10 @@
 #pragma once
 /// One interface to collision engines, which finds all intersecting pairs of two bodies at many poses:
-/// lrbscope itself, methods in worker programs, and other programs that record captures.
+/// methods in worker programs, and other programs that record captures.
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,34 +13,16 @@
 
 #include "bench/methods/method.hpp"
 #include "bench/workers/workers.hpp"
-#include "scenarios/bodies/loaded_body.hpp"
-#include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/trace/capture.hpp>
 
 namespace lrb::engines {
 
-/// Results requested in addition to the time and the number of pairs.
+/// Members of an answer that are requested in addition to the time and the number of pairs.
 struct Wanted {
   bool tests = false;
-  bool list = false;  ///< the pairs themselves
+  bool list = false;  ///< the pairs
   bool waste = false;
-};
-
-/// The answer at one pose.
-struct EngineAnswer {
-  std::string failure;  ///< why there is no answer; empty: there is one
-  double us = 0;        ///< time of the query
-  std::uint64_t pairs = 0;
-  std::optional<std::uint64_t> tests;           ///< of bounding volumes and of faces; nullopt: not counted
-  std::optional<methods::TestCounts> kinds;     ///< the same by kind; nullopt: not known
-  std::map<std::string, std::uint64_t> phases;  ///< tests by the engine's own phases, if it reports them
-  std::vector<SimplexPair> list;                ///< ascending
-  /// Visits of nodes that perfect volumes or another order of descent would save (profile::Prices::wasted()),
-  /// and tests of triangles that do not intersect; nullopt: not known.
-  std::optional<std::uint64_t> wasted;
-
-  bool answered() const { return failure.empty(); }
 };
 
 /// An engine with two bodies; A is at the identity.
@@ -56,12 +37,9 @@ class Engine {
 
   virtual std::string name() const = 0;
   /// Returns the answer for B at each pose, in order. Every pose is queried once.
-  virtual std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
-                                        const Progress& progress) = 0;
+  virtual std::vector<methods::Answer> ask(std::span<const Pose> poses, Wanted wanted,
+                                           const Progress& progress) = 0;
 };
-
-/// Returns lrbscope's exact query in this process. The bodies must outlive it.
-std::unique_ptr<Engine> our_engine(const LrbRep& a, const LrbRep& b);
 
 /// Returns a method in a worker program, which reads the bodies' files again. A crash, and an answer that
 /// takes longer than `limit`, is the failure of that pose, after which the worker is started again; after
@@ -82,6 +60,6 @@ std::unique_ptr<Engine> command_engine(const std::string& command, const std::st
 inline constexpr std::size_t kPosesAtOnce = 256;
 
 /// Returns the answer of a captured query, without waste. `names`: of phases.
-EngineAnswer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list);
+methods::Answer answer_of(const capture::Query& query, const std::vector<std::string>& names, bool list);
 
 }  // namespace lrb::engines

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/methods/triangles.hpp"
 #include <lrbscope/first_contact.hpp>
 #include <lrbscope/workspace.hpp>
 
@@ -123,12 +124,6 @@ using Eigen::Vector3d;
 
 constexpr double kUlp = 0x1p-52;
 
-Corners corners_of(const LrbRep& rep, SimplexId s) {
-  VertexId v[3] = {};
-  rep.simplex(s, v);
-  return {rep.vertices()[v[0]], rep.vertices()[v[1]], rep.vertices()[v[2]]};
-}
-
 class Maker {
  public:
   Maker(const LrbRep& a, const LrbRep& b, const PoseSpace& space, std::uint64_t seed)
@@ -178,7 +173,7 @@ class Maker {
   }
 
   Corners random_face(const LrbRep& rep) {
-    return corners_of(rep, SimplexId(random_.below(rep.real_simplex_count())));
+    return methods::corners_of(rep, Pose{}, SimplexId(random_.below(rep.real_simplex_count())));
   }
 
   /// Returns a rotation that maps a direction to another, followed by a random one about that.

@@ -52,7 +52,7 @@ struct Gatherer : btCollisionWorld::ContactResultCallback {
   std::vector<SimplexPair> pairs;
 };
 
-class Bullet : public Method {
+class Bullet : public MethodOf<BulletBody> {
  public:
   Bullet() : dispatcher_(&configuration_), world_(&dispatcher_, &broadphase_, &configuration_) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
@@ -79,15 +79,11 @@ class Bullet : public Method {
     return body;
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    check_rigid(pose_a);
-    check_rigid(pose_b);
-    btCollisionObject* object_a = static_cast<const BulletBody&>(a).object.get();
-    btCollisionObject* object_b = static_cast<const BulletBody&>(b).object.get();
-    object_a->setWorldTransform(transform(pose_a));
-    object_b->setWorldTransform(transform(pose_b));
-    MethodAnswer answer;
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    btCollisionObject *object_a = a.body.object.get(), *object_b = b.body.object.get();
+    object_a->setWorldTransform(transform(a.pose));
+    object_b->setWorldTransform(transform(b.pose));
+    Answer answer;
     const Stopwatch watch;
     Gatherer gatherer(object_a);
     world_.contactPairTest(object_a, object_b, gatherer);

@@ -77,7 +77,7 @@ struct MeshBody : MethodBody {
   std::size_t id;
 };
 
-class Rigid : public Method {
+class Rigid : public MethodOf<MeshBody, false> {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
     const Triangles t = triangles_of(rep);
@@ -93,16 +93,15 @@ class Rigid : public Method {
     });
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode) override {
-    const std::size_t id_a = static_cast<const MeshBody&>(a).id;
-    const std::array<std::size_t, 1> id_b = {static_cast<const MeshBody&>(b).id};
+  Answer ask(const Posed& a, const Posed& b, Mode) override {
+    const std::size_t id_a = a.body.id;
+    const std::array<std::size_t, 1> id_b = {b.body.id};
     return run_cgal([&] {
       const Stopwatch watch;
-      set_->detection.set_transformation(id_a, transform(pose_a));
-      set_->detection.set_transformation(id_b[0], transform(pose_b));
+      set_->detection.set_transformation(id_a, transform(a.pose));
+      set_->detection.set_transformation(id_b[0], transform(b.pose));
       const auto found = set_->detection.get_all_intersections_and_inclusions(id_a, id_b);
-      MethodAnswer answer;
+      Answer answer;
       answer.microseconds = watch.microseconds();
       answer.contact = !found.empty() && !found.front().second;
       answer.inside = !found.empty() && found.front().second;
@@ -119,7 +118,7 @@ struct TreeBody : MethodBody {
   Tree tree;
 };
 
-class Pairs : public Method {
+class Pairs : public MethodOf<TreeBody, false> {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
     const Triangles t = triangles_of(rep);
@@ -135,26 +134,23 @@ class Pairs : public Method {
   }
 
   /// Moves A's triangles into B's frame and queries B's tree with each.
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    const auto& body_a = static_cast<const TreeBody&>(a);
-    const auto& body_b = static_cast<const TreeBody&>(b);
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
     return run_cgal([&] {
       const Stopwatch watch;
-      const auto relative = transform(pose_b).inverse() * transform(pose_a);
-      MethodAnswer answer;
+      const auto relative = transform(b.pose).inverse() * transform(a.pose);
+      Answer answer;
       std::vector<TriangleIterator> met;
-      for (std::size_t i = 0; i < body_a.triangles.size(); ++i) {
-        const Triangle t = body_a.triangles[i].transform(relative);
+      for (std::size_t i = 0; i < a.body.triangles.size(); ++i) {
+        const Triangle t = a.body.triangles[i].transform(relative);
         if (mode == Mode::first_pair) {
-          const auto any = body_b.tree.any_intersected_primitive(t);
+          const auto any = b.body.tree.any_intersected_primitive(t);
           if (any) met.push_back(*any);
         } else {
-          body_b.tree.all_intersected_primitives(t, std::back_inserter(met));
+          b.body.tree.all_intersected_primitives(t, std::back_inserter(met));
         }
         for (const TriangleIterator j : met)
           answer.pairs.push_back(
-              {static_cast<SimplexId>(i), static_cast<SimplexId>(j - body_b.triangles.cbegin())});
+              {static_cast<SimplexId>(i), static_cast<SimplexId>(j - b.body.triangles.cbegin())});
         met.clear();
         if (mode == Mode::first_pair && !answer.pairs.empty()) break;
       }

@@ -111,7 +111,7 @@ struct Candidates {
 };
 
 template <bool kRebuilds>
-class Embree : public Method {
+class Embree : public MethodOf<EmbreeBody, false> {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
     Triangles t = triangles_of(rep);
@@ -120,16 +120,15 @@ class Embree : public Method {
                                         kRebuilds ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_REFIT);
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
     // Only the method's own copies of the bodies are moved.
-    auto& body_a = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(a));
-    auto& body_b = const_cast<EmbreeBody&>(static_cast<const EmbreeBody&>(b));
-    body_a.move_to(pose_a);
-    MethodAnswer answer;
+    auto& body_a = const_cast<EmbreeBody&>(a.body);
+    auto& body_b = const_cast<EmbreeBody&>(b.body);
+    body_a.move_to(a.pose);
+    Answer answer;
     Candidates candidates{&body_a, &body_b, {}};
     const Stopwatch watch;
-    body_b.move(pose_b);
+    body_b.move(b.pose);
     rtcCollide(body_a.scene, body_b.scene, Candidates::add, &candidates);
     answer.microseconds = watch.microseconds();
     sort_pairs(candidates.pairs);

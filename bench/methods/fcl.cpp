@@ -11,6 +11,8 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
+
+#include "bench/methods/fcl_models.hpp"
 #define LRB_FCL "FCL " FCL_VERSION ", OBBRSS, "
 #else
 #define LRB_FCL "FCL, OBBRSS, "
@@ -26,45 +28,27 @@ class Fcl;
 
 template <class S>
 struct FclBody : MethodBody {
+  explicit FclBody(const Triangles& t) : model(model_of<fcl::OBBRSS<S>>(t)) {}
   fcl::BVHModel<fcl::OBBRSS<S>> model;
 };
 
 template <class S>
-fcl::Transform3<S> transform(const Pose& pose) {
-  fcl::Transform3<S> t = fcl::Transform3<S>::Identity();
-  t.linear() = pose.r.template cast<S>();
-  t.translation() = pose.t.template cast<S>();
-  return t;
-}
-
-template <class S>
-class Fcl : public Method {
+class Fcl : public MethodOf<FclBody<S>> {
  public:
+  using typename MethodOf<FclBody<S>>::Posed;
+
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
     const Triangles t = triangles_of(rep);
     if constexpr (std::is_same_v<S, float>) check_fits_float(t);
-    std::vector<fcl::Vector3<S>> vertices;
-    std::vector<fcl::Triangle> triangles;
-    for (const Eigen::Vector3d& v : t.vertices) vertices.push_back(v.cast<S>());
-    for (const auto& c : t.triangles) triangles.emplace_back(c[0], c[1], c[2]);
-    auto body = std::make_unique<FclBody<S>>();
-    body->model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
-    body->model.addSubModel(vertices, triangles);
-    if (body->model.endModel() != fcl::BVH_OK) throw InputError("FCL cannot build its tree");
-    return body;
+    return std::make_unique<FclBody<S>>(t);
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    check_rigid(pose_a);
-    check_rigid(pose_b);
-    const auto& model_a = static_cast<const FclBody<S>&>(a).model;
-    const auto& model_b = static_cast<const FclBody<S>&>(b).model;
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
     const fcl::CollisionRequest<S> request(mode == Mode::all_pairs ? kAll : 1, false);
     const Stopwatch watch;
     fcl::CollisionResult<S> result;
-    fcl::collide(&model_a, transform<S>(pose_a), &model_b, transform<S>(pose_b), request, result);
-    MethodAnswer answer;
+    fcl::collide(&a.body.model, transform<S>(a.pose), &b.body.model, transform<S>(b.pose), request, result);
+    Answer answer;
     answer.microseconds = watch.microseconds();
     for (std::size_t i = 0; i < result.numContacts(); ++i) {
       const fcl::Contact<S>& c = result.getContact(i);
@@ -76,15 +60,12 @@ class Fcl : public Method {
   }
 
   /// Runs the traversal as fcl::collide() does, with FCL's own statistics.
-  std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
-                                        const Pose& pose_b) override {
-    const auto& model_a = static_cast<const FclBody<S>&>(a).model;
-    const auto& model_b = static_cast<const FclBody<S>&>(b).model;
+  std::optional<TestCounts> tests_of(const Posed& a, const Posed& b) override {
     const fcl::CollisionRequest<S> request(kAll, false);
     fcl::CollisionResult<S> result;
     fcl::detail::MeshCollisionTraversalNodeOBBRSS<S> node;
-    if (!fcl::detail::initialize(node, model_a, transform<S>(pose_a), model_b, transform<S>(pose_b), request,
-                                 result))
+    if (!fcl::detail::initialize(node, a.body.model, transform<S>(a.pose), b.body.model, transform<S>(b.pose),
+                                 request, result))
       return std::nullopt;
     node.enableStatistics(true);
     fcl::detail::collide(&node);

@@ -20,6 +20,8 @@
 #include <fcl/geometry/octree/octree.h>
 #include <fcl/geometry/shape/convex.h>
 #include <fcl/narrowphase/collision.h>
+
+#include "bench/methods/fcl_models.hpp"
 #endif
 
 namespace lrb::methods {
@@ -30,22 +32,15 @@ class Gjk;
 
 #if defined(LRB_HAS_FCL) && FCL_HAVE_OCTOMAP
 
-fcl::Transform3d transform(const Pose& pose) {
-  fcl::Transform3d t = fcl::Transform3d::Identity();
-  t.linear() = pose.r;
-  t.translation() = pose.t;
-  return t;
-}
-
 /// Queries FCL for contacts of two geometries, with their positions.
-MethodAnswer ask(const fcl::CollisionGeometryd& a, const Pose& pose_a, const fcl::CollisionGeometryd& b,
-                 const Pose& pose_b, Mode mode) {
+Answer contacts_of(const fcl::CollisionGeometryd& a, const Pose& pose_a, const fcl::CollisionGeometryd& b,
+                   const Pose& pose_b, Mode mode) {
   static constexpr std::size_t kMax = std::size_t{1} << 40;
   const fcl::CollisionRequestd request(mode == Mode::all_pairs ? kMax : 1, mode == Mode::all_pairs);
-  MethodAnswer answer;
+  Answer answer;
   const Stopwatch watch;
   fcl::CollisionResultd result;
-  fcl::collide(&a, transform(pose_a), &b, transform(pose_b), request, result);
+  fcl::collide(&a, transform<double>(pose_a), &b, transform<double>(pose_b), request, result);
   answer.microseconds = watch.microseconds();
   answer.contact = result.isCollision();
   if (mode == Mode::all_pairs)
@@ -77,7 +72,7 @@ std::shared_ptr<octomap::OcTree> cells_of(const Triangles& t, double cell) {
   return tree;
 }
 
-class Octree : public Method {
+class Octree : public MethodOf<OctreeBody> {
  public:
   void set(double cells) override { cells_ = cells; }
 
@@ -90,22 +85,13 @@ class Octree : public Method {
       for (const VertexId v : c) box.extend(t.vertices[v]);
     body->cells = std::make_unique<fcl::OcTreed>(cells_of(t, box.diagonal().norm() / cells_));
     body->cells->computeLocalAABB();
-    std::vector<fcl::Vector3d> vertices(t.vertices.begin(), t.vertices.end());
-    std::vector<fcl::Triangle> triangles;
-    for (const auto& c : t.triangles) triangles.emplace_back(c[0], c[1], c[2]);
-    body->mesh.beginModel();
-    body->mesh.addSubModel(vertices, triangles);
-    body->mesh.endModel();
+    body->mesh = model_of<fcl::OBBRSSd>(t);
     return body;
   }
 
   /// Queries A's cells against B's mesh.
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    check_rigid(pose_a);
-    check_rigid(pose_b);
-    return ask(*static_cast<const OctreeBody&>(a).cells, pose_a, static_cast<const OctreeBody&>(b).mesh,
-               pose_b, mode);
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    return contacts_of(*a.body.cells, a.pose, b.body.mesh, b.pose, mode);
   }
 
  private:
@@ -116,7 +102,7 @@ struct HullBody : MethodBody {
   std::unique_ptr<fcl::Convexd> hull;
 };
 
-class Gjk : public Method {
+class Gjk : public MethodOf<HullBody> {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
     const Triangles t = triangles_of(rep);
@@ -140,12 +126,8 @@ class Gjk : public Method {
     return body;
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    check_rigid(pose_a);
-    check_rigid(pose_b);
-    return ask(*static_cast<const HullBody&>(a).hull, pose_a, *static_cast<const HullBody&>(b).hull, pose_b,
-               mode);
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    return contacts_of(*a.body.hull, a.pose, *b.body.hull, b.pose, mode);
   }
 };
 

@@ -1,13 +1,14 @@
 #pragma once
-/// One interface for every method that finds the intersecting triangle pairs of two bodies: lrbscope, brute
-/// force, and other engines. Bodies are built once and queried at many poses; other data that a query needs
-/// are kept between queries.
+/// One interface for every method that finds the intersecting triangle pairs of two bodies, or a number or
+/// another list of pairs: lrbscope, brute force, and other engines.
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,8 +18,35 @@
 #include <lrbscope/collide.hpp>
 #include <lrbscope/enum_names.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/lrb_rep.hpp>
 
 namespace lrb::methods {
+
+/// What methods are compared on.
+enum class Quantity : std::uint8_t {
+  pairs,               ///< intersecting pairs, and the relation of the bodies
+  distance,            ///< of the surfaces
+  first_contact,       ///< the time of first contact of B, which moves on a straight line, with A
+  depth,               ///< length of the shortest translation that separates the bodies
+  near_pairs,          ///< pairs of triangles within a distance
+  self_intersections,  ///< pairs of triangles of one mesh, made of both bodies
+};
+constexpr auto enum_names(Quantity) {
+  return std::to_array<EnumName<Quantity>>({{Quantity::pairs, "pairs"},
+                                            {Quantity::distance, "distance"},
+                                            {Quantity::first_contact, "first_contact"},
+                                            {Quantity::depth, "depth"},
+                                            {Quantity::near_pairs, "near_pairs"},
+                                            {Quantity::self_intersections, "self_intersections"}});
+}
+
+/// Returns true if the answer is a list of pairs, not a number.
+constexpr bool is_list(Quantity q) {
+  return q == Quantity::pairs || q == Quantity::near_pairs || q == Quantity::self_intersections;
+}
+
+/// Value of a first contact that does not exist: motions end at 1.
+inline constexpr double kNever = 2;
 
 /// The answer of a method about two bodies whose surfaces do not intersect.
 enum class Says : std::uint8_t {
@@ -46,6 +74,7 @@ enum class Trait : std::uint8_t {
   convex,                  ///< answers for the bodies' convex hulls
   knows_poses_in_advance,  ///< answers a different query
   own_rep,                 ///< uses the given LRB-rep directly: building a body means building the LRB-rep
+  proves,                  ///< its interval must contain the number
 };
 /// Names are JSON keys in lists of methods.
 constexpr auto enum_names(Trait) {
@@ -56,7 +85,8 @@ constexpr auto enum_names(Trait) {
                                          {Trait::approximate, "approximate"},
                                          {Trait::convex, "convex"},
                                          {Trait::knows_poses_in_advance, "told_more"},
-                                         {Trait::own_rep, "own_rep"}});
+                                         {Trait::own_rep, "own_rep"},
+                                         {Trait::proves, "proves"}});
 }
 
 class Traits {
@@ -67,12 +97,12 @@ class Traits {
   }
   constexpr bool has(Trait t) const { return (bits_ & bit(t)) != 0; }
   constexpr void set(Trait t, bool on = true) {
-    bits_ = static_cast<std::uint8_t>(on ? bits_ | bit(t) : bits_ & ~bit(t));
+    bits_ = static_cast<std::uint16_t>(on ? bits_ | bit(t) : bits_ & ~bit(t));
   }
 
  private:
   static constexpr unsigned bit(Trait t) { return 1U << static_cast<unsigned>(t); }
-  std::uint8_t bits_ = 0;
+  std::uint16_t bits_ = 0;
 };
 
 /// Role of a method in comparisons.
@@ -114,6 +144,7 @@ struct MethodInfo {
   MethodStyle style = {};
   Role role = Role::peer;
   int rank = 1000;  ///< the methods' order in tables and charts: by rank, then by file
+  Quantity quantity = Quantity::pairs;
 
   bool has(Trait t) const { return traits.has(t); }
 };
@@ -124,18 +155,58 @@ class MethodBody {
   virtual ~MethodBody() = default;
 };
 
-struct MethodAnswer {
+/// What came of a question.
+enum class Outcome : std::uint8_t {
+  answered,   ///< and not judged
+  right,      ///< all that the method answers is right
+  wrong,      ///< missed or extra pairs, a wrong relation, or a wrong number
+  rejected,   ///< the method reported that it cannot answer
+  crashed,    ///< its process died
+  timed_out,  ///< it did not answer in time
+};
+constexpr auto enum_names(Outcome) {
+  return std::to_array<EnumName<Outcome>>({{Outcome::answered, "answered"},
+                                           {Outcome::right, "right"},
+                                           {Outcome::wrong, "wrong"},
+                                           {Outcome::rejected, "refused"},
+                                           {Outcome::crashed, "crashed"},
+                                           {Outcome::timed_out, "timed_out"}});
+}
+
+/// Number of tests of a query for all pairs.
+struct TestCounts {
+  std::uint64_t boxes = 0;  ///< of two bounding volumes
+  std::uint64_t faces = 0;  ///< of two faces
+  friend bool operator==(const TestCounts&, const TestCounts&) = default;
+};
+
+struct Answer {
   bool contact = false;              ///< the surfaces intersect
   std::vector<SimplexPair> pairs;    ///< ascending, each once; in Mode::first_pair at most one
+  std::uint64_t count = 0;           ///< number of pairs, if only that was requested
+  std::vector<double> distances;     ///< of near pairs, if reported; of an interval the upper end
   std::optional<bool> inside;        ///< no contact, and one body is inside the other; nullopt: not reported
   std::optional<Relation> relation;  ///< nullopt: not reported
+  double lower = 0, upper = 0;       ///< the number, if that is the quantity; equal, unless it is an interval
   double microseconds = 0;           ///< time of the query alone, without sorting the result
-  std::uint64_t face_tests = 0;      ///< number of comparisons of two faces (or spheres), if it counts them
+  std::optional<std::uint64_t> tests;  ///< of bounding volumes and of faces, if requested and counted
+  std::optional<TestCounts> kinds;     ///< the same by kind; nullopt: not known
+  std::uint64_t face_tests = 0;        ///< number of comparisons of two faces (or spheres), if it counts them
   /// Proven bound: for any point of the answer, the sum of the distances to both bodies; world units.
   /// nullopt: not proven.
   std::optional<double> error_bound;
   /// World frame; if it reports the location of the contact but not the intersecting faces.
   std::vector<Eigen::Vector3d> points;
+  std::map<std::string, std::uint64_t> phases;  ///< tests by the engine's own phases, if it reports them
+  /// Visits of nodes that perfect volumes or another order of descent would save (profile::Prices::wasted()),
+  /// and tests of triangles that do not intersect; nullopt: not known.
+  std::optional<std::uint64_t> wasted;
+  Outcome outcome = Outcome::answered;  ///< or why there is no answer: rejected, crashed, timed_out
+  std::string message;                  ///< the reason if there is none
+  std::vector<Answer>
+      exchanged;  ///< if requested, one: the answer to the same question with A and B exchanged
+
+  bool answered() const { return outcome == Outcome::answered; }
 };
 
 /// Returns the pairs of an ascending list that another one does not have.
@@ -146,13 +217,8 @@ inline std::vector<SimplexPair> without(const std::vector<SimplexPair>& list,
   return out;
 }
 
-/// Number of tests of a query for all pairs.
-struct TestCounts {
-  std::uint64_t boxes = 0;  ///< of two bounding volumes
-  std::uint64_t faces = 0;  ///< of two faces
-};
-
-/// A method. Not thread-safe.
+/// A method for pairs. Bodies are built once and queried at many poses; other data that a query needs are
+/// kept between queries. Not thread-safe.
 class Method {
  public:
   virtual ~Method() = default;
@@ -163,8 +229,8 @@ class Method {
   virtual std::unique_ptr<MethodBody> build(const LrbRep& rep) = 0;
   /// Answers for two bodies, different objects, built by this method. Most methods reject poses that are not
   /// rigid (InputError).
-  virtual MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                             Mode mode) = 0;
+  virtual Answer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+                       Mode mode) = 0;
   /// Runs the query for all pairs again, untimed, and counts its tests. Returns nullopt if the method does
   /// not count them.
   virtual std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
@@ -174,10 +240,27 @@ class Method {
   }
 };
 
+/// A question about another quantity. Both bodies are in world coordinates, so that all methods get the same
+/// doubles.
+struct Question {
+  LrbRep a, b;
+  /// Translation of B at t = 0 and t = 1.
+  Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
+  double size = 0;    ///< diagonal of the larger body's box
+  double within = 0;  ///< for near pairs: the distance
+};
+
+/// The value of a method's parameter. nullopt: the setting for tests of correctness.
+using Setting = std::optional<double>;
+
+/// A method for another quantity. Throws InputError if it has no answer, which counts as a rejection.
+using Ask = std::function<Answer(const Question&, Setting)>;
+
 /// A method that may or may not be available in this program.
 struct MethodEntry {
   MethodInfo info;
-  std::unique_ptr<Method> (*make)() = nullptr;  ///< null if not available
+  std::unique_ptr<Method> (*make)() = nullptr;  ///< for pairs; null if not available
+  Ask ask = {};                                 ///< for other quantities
 };
 inline int rank_of(const MethodEntry& e) {
   return e.info.rank;
@@ -201,37 +284,11 @@ MethodEntry entry_of(MethodInfo info, const char* package = "") {
 std::vector<MethodEntry> registered_methods();
 
 /// Returns the method of that name. Throws InputError if it is unknown or absent.
-inline const MethodEntry& find_method(const std::vector<MethodEntry>& methods, const std::string& name) {
+inline const MethodEntry& find_method(const std::vector<MethodEntry>& methods, const std::string& name,
+                                      Quantity quantity = Quantity::pairs) {
   for (const MethodEntry& e : methods)
-    if (e.info.name == name && e.info.present) return e;
+    if (e.info.name == name && e.info.quantity == quantity && e.info.present) return e;
   throw InputError("unknown method '" + name + "', or not installed here");
 }
-
-// The quantity that methods are compared on: intersecting pairs, or a number.
-
-enum class Quantity : std::uint8_t {
-  pairs,               ///< intersecting pairs, and the relation of the bodies
-  distance,            ///< of the surfaces
-  first_contact,       ///< the time of first contact of B, which moves on a straight line, with A
-  depth,               ///< length of the shortest translation that separates the bodies
-  near_pairs,          ///< pairs of triangles within a distance
-  self_intersections,  ///< pairs of triangles of one mesh, made of both bodies
-};
-constexpr auto enum_names(Quantity) {
-  return std::to_array<EnumName<Quantity>>({{Quantity::pairs, "pairs"},
-                                            {Quantity::distance, "distance"},
-                                            {Quantity::first_contact, "first_contact"},
-                                            {Quantity::depth, "depth"},
-                                            {Quantity::near_pairs, "near_pairs"},
-                                            {Quantity::self_intersections, "self_intersections"}});
-}
-
-/// Returns true if the answer is a list of pairs, not a number.
-constexpr bool is_list(Quantity q) {
-  return q == Quantity::pairs || q == Quantity::near_pairs || q == Quantity::self_intersections;
-}
-
-/// Value of a first contact that does not exist: motions end at 1.
-inline constexpr double kNever = 2;
 
 }  // namespace lrb::methods

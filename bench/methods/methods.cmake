@@ -50,8 +50,10 @@ set(cgal_library "")
 if(CGAL_FOUND)
   set(cgal_library CGAL::CGAL)
 endif()
-lrb_add_peer(cgal HAS LRB_HAS_CGAL LIBRARIES ${cgal_library})
-target_compile_definitions(lrb_peer_cgal PRIVATE NDEBUG)  # as its manual requires for release builds
+foreach(name IN ITEMS cgal cgal_numbers)
+  lrb_add_peer(${name} HAS LRB_HAS_CGAL LIBRARIES ${cgal_library})
+  target_compile_definitions(lrb_peer_${name} PRIVATE NDEBUG)  # as its manual requires for release builds
+endforeach()
 
 find_package(embree 3.13 QUIET)
 set(embree_library "")
@@ -70,6 +72,7 @@ if(fcl_FOUND)
 endif()
 lrb_add_peer(fcl HAS LRB_HAS_FCL LIBRARIES ${fcl_library})
 lrb_add_peer(fcl_solids HAS LRB_HAS_FCL LIBRARIES ${fcl_library})
+lrb_add_peer(fcl_numbers HAS LRB_HAS_FCL LIBRARIES ${fcl_library})
 if(LRB_NATIVE)  # as packaged, and not half of it for another processor; the file's options come after the target's
   set_source_files_properties(methods/fcl.cpp methods/fcl_solids.cpp PROPERTIES COMPILE_OPTIONS -march=x86-64)
 endif()
@@ -89,8 +92,8 @@ lrb_need("other engines" libode-dev ode_library)
 lrb_add_peer(ode HAS LRB_HAS_ODE LIBRARIES ${ode_library})
 
 # lrbscope's own methods.
-set_property(GLOBAL PROPERTY lrb_own_methods ours plain_double structures)
-add_library(lrb_own_methods STATIC methods/ours.cpp methods/structures.cpp)
+set_property(GLOBAL PROPERTY lrb_own_methods ours plain_double structures own_numbers)
+add_library(lrb_own_methods STATIC methods/ours.cpp methods/structures.cpp methods/own_numbers.cpp)
 target_link_libraries(lrb_own_methods PUBLIC lrb::methods)
 
 # lrb_register_methods(TARGET [PEER...]): links a program with the methods of the given engines and, unless it
@@ -112,7 +115,7 @@ get_property(LRB_WORKER_PROGRAMS GLOBAL PROPERTY lrb_worker_programs)
 list(APPEND LRB_WORKER_PROGRAMS lrbscope-methods)
 list(REMOVE_DUPLICATES LRB_WORKER_PROGRAMS)
 add_library(lrb_worker OBJECT programs/methods.cpp)
-target_link_libraries(lrb_worker PUBLIC lrb::stability lrb::speed)
+target_link_libraries(lrb_worker PUBLIC lrb::quantities lrb::speed)
 foreach(program IN LISTS LRB_WORKER_PROGRAMS)
   get_property(names GLOBAL PROPERTY lrb_peers_of_${program})
   add_executable(${program})

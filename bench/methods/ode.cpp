@@ -46,7 +46,7 @@ struct OdeBody : MethodBody {
   dGeomID geom = nullptr;
 };
 
-class Ode : public Method {
+class Ode : public MethodOf<OdeBody> {
  public:
   Ode() : contacts_(kMaxContacts) { dInitODE2(0); }
   ~Ode() override { dCloseODE(); }
@@ -57,21 +57,17 @@ class Ode : public Method {
     return std::make_unique<OdeBody>(t);
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    check_rigid(pose_a);
-    check_rigid(pose_b);
-    const auto &body_a = static_cast<const OdeBody&>(a), &body_b = static_cast<const OdeBody&>(b);
-    body_a.move(pose_a);
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    a.body.move(a.pose);
     const int flags = mode == Mode::all_pairs ? kMaxContacts : static_cast<int>(CONTACTS_UNIMPORTANT | 1U);
-    MethodAnswer answer;
+    Answer answer;
     const Stopwatch watch;
-    body_b.move(pose_b);
-    const int n = dCollide(body_a.geom, body_b.geom, flags, contacts_.data(), sizeof(dContactGeom));
+    b.body.move(b.pose);
+    const int n = dCollide(a.body.geom, b.body.geom, flags, contacts_.data(), sizeof(dContactGeom));
     answer.microseconds = watch.microseconds();
     for (int i = 0; i < n; ++i) {
       const dContactGeom& c = contacts_[static_cast<std::size_t>(i)];
-      const bool in_order = c.g1 == body_a.geom;
+      const bool in_order = c.g1 == a.body.geom;
       if (c.side1 < 0 || c.side2 < 0) continue;  // represents several pairs
       answer.pairs.push_back({static_cast<SimplexId>(in_order ? c.side1 : c.side2),
                               static_cast<SimplexId>(in_order ? c.side2 : c.side1)});

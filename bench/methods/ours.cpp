@@ -21,9 +21,7 @@ struct OurBody : MethodBody {
   LrbRep rep;
 };
 
-const LrbRep& rep_of(const MethodBody& body) {
-  return static_cast<const OurBody&>(body).rep;
-}
+using OurMethod = MethodOf<OurBody, false>;
 
 /// Returns the request put to all methods: all pairs, or one.
 CollideRequest request_for(Mode mode) {
@@ -33,13 +31,13 @@ CollideRequest request_for(Mode mode) {
 }
 
 /// Answers a query with its own memory, whose allocation is part of the measured time.
-CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                  const CollideRequest& request, Workspace& workspace) {
-  return std::move(collide(a, pose_a, b, pose_b, request, workspace).value());
+template <class Posed>
+CollideResult result_of(const Posed& a, const Posed& b, const CollideRequest& request, Workspace& workspace) {
+  return std::move(collide(a.body.rep, a.pose, b.body.rep, b.pose, request, workspace).value());
 }
 
-MethodAnswer answer_from(CollideResult result, double microseconds) {
-  MethodAnswer answer;
+Answer answer_from(CollideResult result, double microseconds) {
+  Answer answer;
   answer.microseconds = microseconds;
   answer.contact = !result.pairs.empty();
   answer.pairs = std::move(result.pairs);
@@ -49,7 +47,7 @@ MethodAnswer answer_from(CollideResult result, double microseconds) {
   return answer;
 }
 
-class Ours : public Method {
+class Ours : public OurMethod {
  public:
   Ours(Recursion recursion, Predicates predicates) : recursion_(recursion), predicates_(predicates) {}
 
@@ -64,24 +62,22 @@ class Ours : public Method {
     return std::make_unique<OurBody>(rep);
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
     CollideRequest request = request_for(mode);
     request.recursion = recursion_;
     request.predicates = predicates_;
     const Stopwatch watch;
-    CollideResult result = ask(rep_of(a), pose_a, rep_of(b), pose_b, request, workspace_);
-    MethodAnswer answer = answer_from(std::move(result), watch.microseconds());
+    CollideResult result = result_of(a, b, request, workspace_);
+    Answer answer = answer_from(std::move(result), watch.microseconds());
     if (recursion_ == Recursion::complete && predicates_ == Predicates::exact) answer.error_bound = 0;
     return answer;
   }
 
-  std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
-                                        const Pose& pose_b) override {
+  std::optional<TestCounts> tests_of(const Posed& a, const Posed& b) override {
     CollideRequest request;
     request.recursion = recursion_;
     request.predicates = predicates_;
-    const Counters counters = ask(rep_of(a), pose_a, rep_of(b), pose_b, request, workspace_).counters;
+    const Counters counters = result_of(a, b, request, workspace_).counters;
     return TestCounts{counters.box_tests, std::max(counters.prefilter_tests, counters.face_tests)};
   }
 
@@ -99,21 +95,20 @@ double diagonal_of(const LrbRep& rep) {
 
 /// Runs the coherent query, which caches results between steps: the pose is the last of a few small steps.
 /// Only that one is timed.
-class OursCoherent : public Method {
+class OursCoherent : public OurMethod {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    CoherentQuery coherent(rep_of(a), rep_of(b), request_for(mode));
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    CoherentQuery coherent(a.body.rep, b.body.rep, request_for(mode));
     constexpr int kSteps = 8;
     constexpr double kStep = 1e-3;  // as a share of A's diagonal
-    const Eigen::Vector3d step = kStep * diagonal_of(rep_of(a)) * Eigen::Vector3d(1, 2, 2) / 3;
-    for (int i = kSteps; i > 0; --i) coherent.collide(pose_a, {pose_b.r, pose_b.t + i * step});
+    const Eigen::Vector3d step = kStep * diagonal_of(a.body.rep) * Eigen::Vector3d(1, 2, 2) / 3;
+    for (int i = kSteps; i > 0; --i) coherent.collide(a.pose, {b.pose.r, b.pose.t + i * step});
     const Stopwatch watch;
-    const CollideResult& result = coherent.collide(pose_a, pose_b);
+    const CollideResult& result = coherent.collide(a.pose, b.pose);
     const double microseconds = watch.microseconds();
-    MethodAnswer answer = answer_from(result, microseconds);
+    Answer answer = answer_from(result, microseconds);
     answer.error_bound = 0;
     return answer;
   }
@@ -124,7 +119,7 @@ enum class Content : std::uint8_t { one_pair, tolerance, tests };
 
 /// Stops early: after one pair of faces, within a tolerance, or after a number of face tests. Its pairs may
 /// be faces of wrappers; it answers with the points of their intersection.
-class OursCoarse : public Method {
+class OursCoarse : public OurMethod {
  public:
   explicit OursCoarse(Content content) : content_(content) {}
   void set(double setting) override { setting_ = setting; }
@@ -134,35 +129,28 @@ class OursCoarse : public Method {
     return std::make_unique<OurBody>(rep);
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    const LrbRep &rep_a = rep_of(a), &rep_b = rep_of(b);
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
     CollideRequest request = request_for(mode);
     if (content_ == Content::one_pair) request.mode = Mode::first_pair;
-    if (content_ == Content::tolerance) request.tolerance = setting_ * diagonal_of(rep_a);
+    if (content_ == Content::tolerance) request.tolerance = setting_ * diagonal_of(a.body.rep);
     if (content_ == Content::tests) request.max_tests = static_cast<std::uint64_t>(setting_);
     const Stopwatch watch;
-    const CollideResult result = ask(rep_a, pose_a, rep_b, pose_b, request, workspace_);
-    MethodAnswer answer;
+    const CollideResult result = result_of(a, b, request, workspace_);
+    Answer answer;
     answer.microseconds = watch.microseconds();
     answer.contact = !result.pairs.empty();
     answer.face_tests = result.counters.face_tests;
     if (std::isfinite(result.error_bound)) answer.error_bound = result.error_bound;
     if (mode == Mode::all_pairs)
-      for (const SimplexPair& p : result.pairs) add_points(rep_a, pose_a, rep_b, pose_b, p, answer.points);
+      for (const SimplexPair& p : result.pairs) add_points(a, b, p, answer.points);
     return answer;
   }
 
  private:
   /// Returns corners of the intersection; for faces within rounding of each other, the midpoint.
-  static void add_points(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-                         const SimplexPair& pair, std::vector<Eigen::Vector3d>& points) {
-    Eigen::Vector3d p[3], q[3];
-    VertexId v[3] = {};
-    a.simplex(pair.a, v);
-    for (int k = 0; k < 3; ++k) p[k] = pose_a.apply(a.vertices()[v[k]]);
-    b.simplex(pair.b, v);
-    for (int k = 0; k < 3; ++k) q[k] = pose_b.apply(b.vertices()[v[k]]);
+  static void add_points(const Posed& a, const Posed& b, const SimplexPair& pair,
+                         std::vector<Eigen::Vector3d>& points) {
+    const auto p = corners_of(a.body.rep, a.pose, pair.a), q = corners_of(b.body.rep, b.pose, pair.b);
     const double* const pp[3] = {p[0].data(), p[1].data(), p[2].data()};
     const double* const qq[3] = {q[0].data(), q[1].data(), q[2].data()};
     const exact::PairContact c = exact::contact_of_triangles(pp, qq);
@@ -280,7 +268,7 @@ std::vector<Eigen::Vector3d> in_world(const PlainBody& body, const Pose& pose) {
   return out;
 }
 
-class PlainDouble : public Method {
+class PlainDouble : public MethodOf<PlainBody, false> {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
     auto body = std::make_unique<PlainBody>();
@@ -294,14 +282,11 @@ class PlainDouble : public Method {
     return body;
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    const auto& body_a = static_cast<const PlainBody&>(a);
-    const auto& body_b = static_cast<const PlainBody&>(b);
-    const std::size_t n = static_cast<std::size_t>(body_a.dim);
-    MethodAnswer answer;
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    const std::size_t n = static_cast<std::size_t>(a.body.dim);
+    Answer answer;
     const Stopwatch watch;
-    const std::vector<Eigen::Vector3d> p = in_world(body_a, pose_a), q = in_world(body_b, pose_b);
+    const std::vector<Eigen::Vector3d> p = in_world(a.body, a.pose), q = in_world(b.body, b.pose);
     for (std::size_t i = 0; i < p.size() && !(mode == Mode::first_pair && answer.contact); i += n)
       for (std::size_t j = 0; j < q.size(); j += n) {
         const bool meet = n == 3 ? plain_triangles_meet(&p[i], &q[j]) : plain_segments_meet(&p[i], &q[j]);

@@ -26,8 +26,6 @@ std::size_t size_of(const List& list) {
 
 /// Returns the pose of B in A's frame.
 Pose relative(const Pose& a, const Pose& b) {
-  check_rigid(a);
-  check_rigid(b);
   return {a.r.transpose() * b.r, a.r.transpose() * (b.t - a.t)};
 }
 
@@ -72,7 +70,7 @@ struct SphereBody : SizedBody {
   std::vector<Sphere> spheres;  ///< around its nodes
 };
 
-class Spheres : public Method {
+class Spheres : public MethodOf<SphereBody> {
  public:
   void set(double level) override { level_ = static_cast<int>(level); }
 
@@ -80,12 +78,10 @@ class Spheres : public Method {
     return std::make_unique<SphereBody>(triangles_of(rep));
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    const auto &body_a = static_cast<const SphereBody&>(a), &body_b = static_cast<const SphereBody&>(b);
-    MethodAnswer answer;
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    Answer answer;
     const Stopwatch watch;
-    const Pose b_in_a = relative(pose_a, pose_b);
+    const Pose b_in_a = relative(a.pose, b.pose);
     struct Item {
       std::uint32_t a, b;
       int level;
@@ -94,20 +90,20 @@ class Spheres : public Method {
     while (!stack.empty()) {
       const Item item = stack.back();
       stack.pop_back();
-      const Sphere &p = body_a.spheres[item.a], &q = body_b.spheres[item.b];
+      const Sphere &p = a.body.spheres[item.a], &q = b.body.spheres[item.b];
       const Eigen::Vector3d way = b_in_a.apply(q.centre) - p.centre;
       ++answer.face_tests;
       const double reach = p.radius + q.radius;
       if (way.squaredNorm() > reach * reach) continue;
-      const std::uint32_t right_a = body_a.tree.nodes()[item.a].right,
-                          right_b = body_b.tree.nodes()[item.b].right;
+      const std::uint32_t right_a = a.body.tree.nodes()[item.a].right,
+                          right_b = b.body.tree.nodes()[item.b].right;
       const bool leaf_a = right_a == 0, leaf_b = right_b == 0;
       if (item.level >= level_ || (leaf_a && leaf_b)) {
         // On average, the midpoint between the points where the line of centres leaves one sphere and enters
         // the other.
         const double length = way.norm();
         const double at = length > 0 ? (p.radius + length - q.radius) / (2 * length) : 0;
-        answer.points.push_back(pose_a.apply(p.centre + at * way));
+        answer.points.push_back(a.pose.apply(p.centre + at * way));
         if (mode == Mode::first_pair) break;
         continue;
       }
@@ -284,36 +280,50 @@ class Grids {
 };
 
 template <class Index>
-class Indexed : public Method {
+struct IndexedBody : SizedBody {
+  explicit IndexedBody(Triangles t) : faces(std::move(t)), index(boxes_of(faces)) {}
+  static std::vector<Box> boxes_of(const Triangles& t) {
+    std::vector<Box> boxes(t.triangles.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      for (const VertexId v : t.triangles[i]) boxes[i].extend(t.vertices[v]);
+    return boxes;
+  }
+  std::size_t bytes() const override { return index.bytes(); }
+  Triangles faces;
+  Index index;
+};
+
+template <class Index>
+class Indexed : public MethodOf<IndexedBody<Index>> {
  public:
+  using typename MethodOf<IndexedBody<Index>>::Posed;
+
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
-    return std::make_unique<Body>(triangles_of(rep));
+    return std::make_unique<IndexedBody<Index>>(triangles_of(rep));
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    const auto &body_a = static_cast<const Body&>(a), &body_b = static_cast<const Body&>(b);
-    MethodAnswer answer;
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    Answer answer;
     const Stopwatch watch;
-    const Pose b_in_a = relative(pose_a, pose_b);
-    std::vector<std::uint32_t> tested_with(body_a.faces.triangles.size(), kNull);
+    const Pose b_in_a = relative(a.pose, b.pose);
+    std::vector<std::uint32_t> tested_with(a.body.faces.triangles.size(), kNull);
     cells_ = 0;
-    for (std::uint32_t j = 0; j < body_b.faces.triangles.size(); ++j) {
+    for (std::uint32_t j = 0; j < b.body.faces.triangles.size(); ++j) {
       Box box;
       Eigen::Vector3d q[3];
       for (int k = 0; k < 3; ++k) {
-        const Eigen::Vector3d& x = body_b.faces.vertices[body_b.faces.triangles[j][k]];
+        const Eigen::Vector3d& x = b.body.faces.vertices[b.body.faces.triangles[j][k]];
         box.extend(b_in_a.apply(x));
-        q[k] = pose_b.apply(x);
+        q[k] = b.pose.apply(x);
       }
       box.extend((box.min().array() - kUsualEpsilon).matrix())
           .extend((box.max().array() + kUsualEpsilon).matrix());
-      cells_ += body_a.index.visit_near(box, [&](std::uint32_t i) {
+      cells_ += a.body.index.visit_near(box, [&](std::uint32_t i) {
         if (tested_with[i] == j || (mode == Mode::first_pair && answer.contact)) return;
         tested_with[i] = j;
         ++answer.face_tests;
         Eigen::Vector3d p[3];
-        for (int k = 0; k < 3; ++k) p[k] = pose_a.apply(body_a.faces.vertices[body_a.faces.triangles[i][k]]);
+        for (int k = 0; k < 3; ++k) p[k] = a.pose.apply(a.body.faces.vertices[a.body.faces.triangles[i][k]]);
         if (!plain_triangles_meet(p, q)) return;
         answer.contact = true;
         answer.pairs.push_back({SimplexId(i), SimplexId(j)});
@@ -325,26 +335,12 @@ class Indexed : public Method {
     return answer;
   }
 
-  std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
-                                        const Pose& pose_b) override {
-    const std::uint64_t faces = query(a, pose_a, b, pose_b, Mode::all_pairs).face_tests;
+  std::optional<TestCounts> tests_of(const Posed& a, const Posed& b) override {
+    const std::uint64_t faces = ask(a, b, Mode::all_pairs).face_tests;
     return TestCounts{cells_, faces};
   }
 
  private:
-  struct Body : SizedBody {
-    explicit Body(Triangles t) : faces(std::move(t)), index(boxes_of(faces)) {}
-    static std::vector<Box> boxes_of(const Triangles& t) {
-      std::vector<Box> boxes(t.triangles.size());
-      for (std::size_t i = 0; i < boxes.size(); ++i)
-        for (const VertexId v : t.triangles[i]) boxes[i].extend(t.vertices[v]);
-      return boxes;
-    }
-    std::size_t bytes() const override { return index.bytes(); }
-    Triangles faces;
-    Index index;
-  };
-
   std::uint64_t cells_ = 0;  ///< visited by the last query
 };
 
@@ -455,23 +451,21 @@ struct BspBody : SizedBody {
   }
 };
 
-class Bsp : public Method {
+class Bsp : public MethodOf<BspBody> {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
     if (!rep.closed()) throw InputError("skipped: a body that is not closed has no solid side");
     return std::make_unique<BspBody>(triangles_of(rep));
   }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    const auto &body_a = static_cast<const BspBody&>(a), &body_b = static_cast<const BspBody&>(b);
-    MethodAnswer answer;
+  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
+    Answer answer;
     const Stopwatch watch;
-    const Pose b_in_a = relative(pose_a, pose_b);
-    for (const auto& c : body_b.faces.triangles) {
+    const Pose b_in_a = relative(a.pose, b.pose);
+    for (const auto& c : b.body.faces.triangles) {
       BspBody::Polygon face;
-      for (const VertexId v : c) face.push_back(b_in_a.apply(body_b.faces.vertices[v]));
-      answer.contact |= leaves_of(body_a, body_a.root, face, answer.face_tests) == 3;
+      for (const VertexId v : c) face.push_back(b_in_a.apply(b.body.faces.vertices[v]));
+      answer.contact |= leaves_of(a.body, a.body.root, face, answer.face_tests) == 3;
       if (mode == Mode::first_pair && answer.contact) break;
     }
     answer.microseconds = watch.microseconds();

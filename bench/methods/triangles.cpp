@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -62,6 +63,47 @@ LrbRep at_pose(const LrbRep& rep, const Pose& pose) {
   Mesh m = real_mesh(rep);
   for (Eigen::Vector3d& v : m.vertices) v = pose.apply(v);
   return LrbRep::without_regions(m, rep.closed(), rep.self_intersecting());
+}
+
+Mesh joined(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
+  Mesh out;
+  out.dim = a.dim();
+  for (const auto& [rep, pose] : {std::pair{&a, &pose_a}, std::pair{&b, &pose_b}}) {
+    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    for (const Eigen::Vector3d& v : rep->vertices()) out.vertices.push_back(pose->apply(v));
+    for (SimplexId s = 0; s < rep->real_simplex_count(); ++s) {
+      VertexId v[3] = {};
+      rep->simplex(s, v);
+      for (VertexId& corner : v) corner = VertexId(first + corner);
+      out.add_face({v, static_cast<std::size_t>(out.dim)});
+    }
+  }
+  return out;
+}
+
+LrbRep union_of(const Question& question) {
+  const LrbRep &a = question.a, &b = question.b;
+  return LrbRep::without_regions(joined(a, Pose{}, b, Pose{}), a.closed() && b.closed(), true);
+}
+
+std::array<Eigen::Vector3d, 3> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s) {
+  VertexId v[3] = {};
+  rep.simplex(s, v);
+  return {pose.apply(rep.vertices()[v[0]]), pose.apply(rep.vertices()[v[1]]),
+          pose.apply(rep.vertices()[v[2]])};
+}
+
+void add_near(Answer& answer, SimplexPair pair, double distance) {
+  answer.pairs.push_back(pair);
+  answer.distances.push_back(distance);
+}
+
+void sort_near(Answer& answer) {
+  std::vector<std::pair<SimplexPair, double>> both;
+  for (std::size_t i = 0; i < answer.pairs.size(); ++i)
+    both.emplace_back(answer.pairs[i], answer.distances[i]);
+  std::sort(both.begin(), both.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  for (std::size_t i = 0; i < both.size(); ++i) std::tie(answer.pairs[i], answer.distances[i]) = both[i];
 }
 
 void sort_pairs(std::vector<SimplexPair>& pairs) {

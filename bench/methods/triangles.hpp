@@ -1,5 +1,5 @@
 #pragma once
-/// Converts an LRB-rep to the input of methods.
+/// Converts an LRB-rep to the input of methods, and their results to answers.
 
 #include <array>
 #include <chrono>
@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "bench/methods/method.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
@@ -35,8 +36,55 @@ Mesh real_mesh(const LrbRep& rep);
 /// Returns the body with its world coordinates as its own. It has no regions.
 LrbRep at_pose(const LrbRep& rep, const Pose& pose);
 
+/// Returns one mesh of the real simplices of two posed bodies, A's first.
+Mesh joined(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
+/// Returns the triangles of both bodies as one body without regions; those of A come first.
+LrbRep union_of(const Question& question);
+
+/// Returns the corners of a real triangle in the world.
+std::array<Eigen::Vector3d, 3> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s);
+
 /// Sorts pairs and removes duplicates.
 void sort_pairs(std::vector<SimplexPair>& pairs);
+
+inline Answer number_answer(double lower, double upper, double microseconds) {
+  Answer out;
+  out.lower = lower;
+  out.upper = upper;
+  out.microseconds = microseconds;
+  return out;
+}
+/// Adds a near pair, or sorts all of them by their triangles.
+void add_near(Answer& answer, SimplexPair pair, double distance);
+void sort_near(Answer& answer);
+
+/// A method whose bodies are of class Body. `kRigid`: it rejects poses that are not rigid.
+template <class Body, bool kRigid = true>
+class MethodOf : public Method {
+ public:
+  Answer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+               Mode mode) final {
+    return ask(posed(a, pose_a), posed(b, pose_b), mode);
+  }
+  std::optional<TestCounts> count_tests(const MethodBody& a, const Pose& pose_a, const MethodBody& b,
+                                        const Pose& pose_b) final {
+    return tests_of(posed(a, pose_a), posed(b, pose_b));
+  }
+
+ protected:
+  struct Posed {
+    const Body& body;
+    const Pose& pose;
+  };
+  virtual Answer ask(const Posed& a, const Posed& b, Mode mode) = 0;
+  virtual std::optional<TestCounts> tests_of(const Posed&, const Posed&) { return std::nullopt; }
+
+ private:
+  static Posed posed(const MethodBody& body, const Pose& pose) {
+    if (kRigid) check_rigid(pose);
+    return {static_cast<const Body&>(body), pose};
+  }
+};
 
 class Stopwatch {
  public:

@@ -1,32 +1,57 @@
-/// The worker: a program beside lrbscope that answers questions (serve.hpp) with methods that are not linked
-/// into lrbscope and may crash or hang.
+/// The worker: a program beside lrbscope that answers questions with methods that are not linked into
+/// lrbscope and may crash or hang. It is started with
+///   --list [--quantity Q]           prints its methods, a line of JSON each
+///   [--method M] [--quantity Q]     answers each line of file descriptor 3, until its end, with a line on
+///   stdout
+/// Questions and answers are JSON objects. An answer {"error": "..."} ends the worker with exit code 2.
+/// Questions:
+///   {"family", "seed", "difficulty", "case"}
+///                         a methods::Answer; without a method, the stability::RightAnswer
+///   {"saved": FILE}       the same for the case of a file (bench/stability/case_meshes.hpp)
+///   {"set": FILE, "question": K, ["setting"], ["errors"]}
+///                         a bench::Record for a query of a data set; with errors also those of the answer
+///   {"build": FILE.lrb}   a bench::BuildTime; the method may also be one of bench::own_structures()
+///   {"bodies": [A, B], ["b": POSE, "tests", "list"]}
+///                         reads and builds two bodies of files; at a pose of B, a methods::Answer with the
+///                         number of pairs, and tests and pairs on request (bench/engines/engine.hpp)
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "bench/methods/method.hpp"
-#include "bench/programs/serve.hpp"
+#include "bench/quantities/truth.hpp"
 #include "bench/speed/bench_runner.hpp"
 #include "bench/speed/build_times.hpp"
-#include "bench/stability/outcome_grid.hpp"
+#include "bench/stability/case_meshes.hpp"
 #include "bench/stability/stability_experiment.hpp"
+#include "bench/workers/worker_json.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/io/poses.hpp"
 #include <lrbscope/error.hpp>
 
-namespace lrb::worker_programs {
+namespace lrb {
 namespace {
+
+using methods::Quantity;
+using nlohmann::json;
+using nlohmann::ordered_json;
 
 // Methods that misbehave, to test the handling of failures. They are listed only if the environment has
 // LRBSCOPE_FAKE_METHODS.
 
+using methods::Answer;
 using methods::Method;
-using methods::MethodAnswer;
 using methods::MethodBody;
 
 enum class Vice { crash, hang, reject, raise, miss };
@@ -38,9 +63,9 @@ class Fake : public Method {
   explicit Fake(Vice vice) : vice_(vice), honest_(make_honest()) {}
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return honest_->build(rep); }
 
-  MethodAnswer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
-                     Mode mode) override {
-    MethodAnswer answer = honest_->query(a, pose_a, b, pose_b, mode);
+  Answer query(const MethodBody& a, const Pose& pose_a, const MethodBody& b, const Pose& pose_b,
+               Mode mode) override {
+    Answer answer = honest_->query(a, pose_a, b, pose_b, mode);
     if (!answer.contact) return answer;
     if (vice_ == Vice::crash) std::abort();
     while (vice_ == Vice::hang) pause();
@@ -82,36 +107,53 @@ std::vector<methods::MethodEntry> fake_methods(const std::vector<methods::Method
 /// The answers of one method, which keeps bodies between questions.
 class Answers {
  public:
-  Answers(std::string method, const std::vector<methods::MethodEntry>& entries)
-      : method_(std::move(method)), entries_(entries) {}
+  /// `method`: empty for right answers.
+  Answers(std::string method, Quantity quantity, const std::vector<methods::MethodEntry>& entries)
+      : method_(std::move(method)), quantity_(quantity), entries_(entries) {}
 
   ordered_json operator()(const json& question) {
     if (question.contains("build")) return build(question.at("build"));
     if (question.contains("bodies")) return about_bodies(question);
     if (question.contains("set")) return about_set(question);
-    return about_case(question, method_, known_, stability::expected_answer,
-                      [&](const cases::Family& family, const cases::Case& c,
-                          const stability::RightAnswer& right, stability::Record& record) {
-                        // A saved case has a new runner, so that its answer does not depend on earlier cases.
-                        if (!cases_ || question.contains("saved")) cases_.emplace(entry());
-                        cases_->ask(family, c, right, record);
-                        return cases_->pairs();
-                      });
+    if (question.contains("saved")) {
+      cases_.reset();  // so that the answer does not depend on earlier cases
+      return about_case(stability::read_case(question.at("saved")), false);
+    }
+    const cases::Family* family = cases::find_family(question.at("family"));
+    if (family == nullptr)
+      throw InputError("unknown family '" + question.at("family").get<std::string>() + "'");
+    return about_case(
+        cases::make_case(*family, question.at("seed"), question.at("difficulty"), question.at("case")),
+        family->both_ways);
   }
 
  private:
-  const methods::MethodEntry& entry() const { return methods::find_method(entries_, method_); }
+  const methods::MethodEntry& entry(Quantity quantity) const {
+    return methods::find_method(entries_, method_, quantity);
+  }
 
   ordered_json build(const std::string& file) const {
-    const auto known = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const methods::MethodEntry& e) { return e.info.name == method_; });
+    const auto known = std::find_if(entries_.begin(), entries_.end(), [&](const methods::MethodEntry& e) {
+      return e.info.name == method_ && e.make != nullptr;
+    });
     return to_json(bench::time_build(known == entries_.end() ? nullptr : &*known, method_, file));
+  }
+
+  ordered_json about_case(const cases::Case& c, bool both_ways) {
+    if (method_.empty())
+      return to_json(quantity_ == Quantity::pairs ? stability::expected_answer(c)
+                                                  : stability::true_number(quantity_, c));
+    if (quantity_ != Quantity::pairs) return workers::to_json(stability::ask_number(entry(quantity_), c));
+    if (!cases_) cases_.emplace(entry(Quantity::pairs));
+    return workers::to_json(cases_->ask(c, both_ways));
   }
 
   ordered_json about_set(const json& question) {
     if (!set_) {
       set_ = bench::read_data_set(question.at("set"));
-      queries_.emplace(entry(), setting_of(question), *set_, question.value("errors", false));
+      const auto setting =
+          question.contains("setting") ? std::optional<double>(question.at("setting")) : std::nullopt;
+      queries_.emplace(entry(set_->quantity), setting, *set_, question.value("errors", false));
     }
     return to_json(queries_->ask(question.at("question")));
   }
@@ -119,30 +161,26 @@ class Answers {
   ordered_json about_bodies(const json& question) {
     if (!method_of_bodies_) {
       const auto loaded = bodies::load_faces_of_two(question.at("bodies").at(0), question.at("bodies").at(1));
-      method_of_bodies_ = entry().make();
+      method_of_bodies_ = entry(Quantity::pairs).make();
       for (std::size_t i = 0; i < 2; ++i) bodies_[i] = method_of_bodies_->build(loaded[i].rep);
     }
     if (!question.contains("b")) return ordered_json::object();
     const Pose pose = io::pose_of(question.at("b").get<std::array<double, 12>>());
-    try {
-      const MethodAnswer found =
-          method_of_bodies_->query(*bodies_[0], Pose{}, *bodies_[1], pose, Mode::all_pairs);
-      ordered_json out = {{"us", found.microseconds}, {"pairs", found.pairs.size()}};
-      if (question.value("tests", false))
-        if (const auto tests = method_of_bodies_->count_tests(*bodies_[0], Pose{}, *bodies_[1], pose)) {
-          out["boxes"] = tests->boxes;
-          out["faces"] = tests->faces;
-        }
-      if (question.value("list", false)) out["list"] = workers::PairsJson::write(found.pairs);
-      return out;
-    } catch (const std::exception& e) {
-      return {{"failure", e.what()}};
-    }
+    methods::Answer answer;
+    workers::note_failures(answer, [&] {
+      answer = method_of_bodies_->query(*bodies_[0], Pose{}, *bodies_[1], pose, Mode::all_pairs);
+      answer.count = answer.pairs.size();
+      if (!question.at("list").get<bool>()) answer.pairs.clear();
+      if (!question.at("tests").get<bool>()) return;
+      answer.kinds = method_of_bodies_->count_tests(*bodies_[0], Pose{}, *bodies_[1], pose);
+      if (answer.kinds) answer.tests = answer.kinds->boxes + answer.kinds->faces;
+    });
+    return workers::to_json(answer);
   }
 
   std::string method_;
+  Quantity quantity_;
   const std::vector<methods::MethodEntry>& entries_;
-  KnownAnswers known_;
   std::optional<stability::StabilityRunner> cases_;
   std::optional<bench::DataSet> set_;
   std::optional<bench::BenchRunner> queries_;
@@ -150,26 +188,55 @@ class Answers {
   std::array<std::unique_ptr<MethodBody>, 2> bodies_;
 };
 
+/// Returns the exit code.
+int run_worker(int argc, char** argv) {
+  constexpr int kOk = 0, kBadInput = 2;
+  // Lines have a separate channel; libraries that print to stdout print to stderr instead.
+  std::FILE* out = fdopen(dup(STDOUT_FILENO), "w");
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+  const auto say = [out](const ordered_json& value) {
+    const std::string line = value.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+    if (out == nullptr || std::fputs(line.c_str(), out) < 0 || std::fflush(out) != 0)
+      std::_Exit(1);  // the reader has closed the channel
+  };
+  try {
+    std::vector<methods::MethodEntry> entries = methods::registered_methods();
+    if (std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)
+      for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
+    bool list = false;
+    std::string method, quantity = "pairs";
+    for (int i = 1; i < argc; ++i) {
+      const std::string word = argv[i];
+      if (word == "--list")
+        list = true;
+      else if (word == "--method" && i + 1 < argc)
+        method = argv[++i];
+      else if (word == "--quantity" && i + 1 < argc)
+        quantity = argv[++i];
+      else
+        throw InputError("unknown option '" + word + "'; see bench/programs/methods.cpp");
+    }
+    const auto requested = from_name<Quantity>(quantity);
+    if (!requested) throw InputError("unknown quantity '" + quantity + "'");
+    if (list) {
+      for (const methods::MethodEntry& e : entries)
+        if (e.info.quantity == *requested) say(workers::to_json(e.info));
+      return kOk;
+    }
+    Answers answers(method, *requested, entries);
+    std::ifstream questions("/proc/self/fd/3");
+    for (std::string line; std::getline(questions, line);) say(answers(json::parse(line)));
+    return kOk;
+  } catch (const std::exception& e) {
+    say({{"error", e.what()}});
+    return kBadInput;
+  }
+}
+
 }  // namespace
-}  // namespace lrb::worker_programs
+}  // namespace lrb
 
 // The main() of every worker program; programs differ in the linked methods (bench/methods/methods.cmake).
-
 int main(int argc, char** argv) {
-  using namespace lrb;
-  using namespace lrb::worker_programs;
-  std::vector<methods::MethodEntry> entries = methods::registered_methods();
-  if (std::getenv("LRBSCOPE_FAKE_METHODS") != nullptr)
-    for (methods::MethodEntry& fake : fake_methods(entries)) entries.push_back(std::move(fake));
-  return serve(
-      argc, argv,
-      [&](const Call&) {
-        std::vector<methods::MethodInfo> out;
-        for (const methods::MethodEntry& e : entries) out.push_back(e.info);
-        return out;
-      },
-      [&](const Call& call) {
-        const auto answers = std::make_shared<Answers>(call.method, entries);
-        return [answers](const json& question) { return (*answers)(question); };
-      });
+  return lrb::run_worker(argc, argv);
 }

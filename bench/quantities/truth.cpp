@@ -1,3 +1,5 @@
+#include "bench/quantities/truth.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,10 +10,11 @@
 #include <Eigen/Geometry>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/quantities/number_method.hpp"
-#include "bench/stability/case_meshes.hpp"
 #include "bench/stability/rational_oracles.hpp"
+#include "bench/workers/worker_json.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/collide.hpp>
+#include <lrbscope/error.hpp>
 
 namespace lrb::stability {
 
@@ -49,8 +52,8 @@ std::string why_unsupported(Quantity quantity, const cases::Case& c) {
   return "";
 }
 
-NumberQuery query_of(const cases::Case& c) {
-  NumberQuery out{methods::at_pose(*c.a, c.pose_a), methods::at_pose(*c.b, c.pose_b)};
+methods::Question question_of(const cases::Case& c) {
+  methods::Question out{methods::at_pose(*c.a, c.pose_a), methods::at_pose(*c.b, c.pose_b)};
   const Eigen::AlignedBox3d box_a = shapes::box_of(out.a), box_b = shapes::box_of(out.b);
   out.size = std::max(box_a.diagonal().norm(), box_b.diagonal().norm());
   // Not quite between the centres, because the oracle does not support faces that slide along each other.
@@ -69,14 +72,10 @@ NumberQuery query_of(const cases::Case& c) {
   return out;
 }
 
-LrbRep union_of(const NumberQuery& query) {
-  return LrbRep::without_regions(joined(query.a, Pose{}, query.b, Pose{}),
-                                 query.a.closed() && query.b.closed(), true);
-}
-
 namespace {
 
 using Eigen::AlignedBox3d;
+using methods::kNever, methods::Question;
 using oracle::Rational;
 using oracle::RationalPoint;
 using oracle::RationalPoints;
@@ -136,7 +135,7 @@ void set_root(RightAnswer& e, const Rational& square) {
   e.most = d * (1 + 4e-16);
 }
 
-Rational distance_sq(const NumberQuery& q) {
+Rational distance_sq(const Question& q) {
   const Faces a(q.a), b(q.b);
   return *least_of_pairs(
       a, b,
@@ -165,7 +164,7 @@ double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& fr
   return begin > end ? HUGE_VAL : begin;
 }
 
-std::optional<Rational> first_time(const NumberQuery& q) {
+std::optional<Rational> first_time(const Question& q) {
   const Faces a(q.a), b(q.b);
   const RationalPoint from = oracle::rational(q.from), way = oracle::minus(oracle::rational(q.to), from);
   return least_of_pairs(
@@ -184,7 +183,7 @@ RationalPoint normal_of(const RationalPoints& t) {
 
 /// Returns the squared depth of two convex bodies, or nullopt if one is not convex: the least separation
 /// along the normals of faces, and the cross products of edges.
-std::optional<Rational> depth_sq(const NumberQuery& q) {
+std::optional<Rational> depth_sq(const Question& q) {
   const Faces of[] = {Faces(q.a), Faces(q.b)};
   RationalPoints normals[2], edges[2];
   for (std::size_t side = 0; side < 2; ++side) {
@@ -310,11 +309,12 @@ RightAnswer true_number(Quantity quantity, const cases::Case& c) {
   RightAnswer e;
   e.rejection = why_unsupported(quantity, c);
   if (!e.rejection.empty()) return e;
-  const NumberQuery q = query_of(c);
+  const Question q = question_of(c);
+  e.size = q.size;
   if (quantity == Quantity::near_pairs) {
     e.pairs = true_near_pairs(q.a, q.b, q.within);
   } else if (quantity == Quantity::self_intersections) {
-    e.pairs = true_self_intersections(union_of(q));
+    e.pairs = true_self_intersections(methods::union_of(q));
   } else if (quantity == Quantity::distance) {
     const bool meet = !brute_force(q.a, Pose{}, q.b, Pose{}).pairs.empty();
     set_root(e, meet ? Rational(0) : distance_sq(q));
@@ -329,6 +329,16 @@ RightAnswer true_number(Quantity quantity, const cases::Case& c) {
     e.rejection = "a non-convex body, whose depth has no independent reference";
   }
   return e;
+}
+
+methods::Answer ask_number(const methods::MethodEntry& method, const cases::Case& c) {
+  methods::Answer out;
+  workers::note_failures(out, [&] {
+    const std::string why = why_unsupported(method.info.quantity, c);
+    if (!why.empty()) throw InputError("skipped: " + why);
+    out = method.ask(question_of(c), std::nullopt);
+  });
+  return out;
 }
 
 }  // namespace lrb::stability

@@ -26,8 +26,9 @@ double heap_bytes() {
 
 BenchRunner::BenchRunner(const methods::MethodEntry& entry, std::optional<double> setting, const DataSet& set,
                          bool judges)
-    : info_(entry.info), method_(entry.make()), setting_(setting), set_(set), judges_(judges) {
-  if (setting_) method_->set(*setting_);
+    : entry_(entry), info_(entry.info), setting_(setting), set_(set), judges_(judges) {
+  if (entry.make != nullptr) method_ = entry.make();
+  if (method_ && setting_) method_->set(*setting_);
 }
 
 const BenchRunner::Built& BenchRunner::built(std::size_t body, std::size_t side) {
@@ -47,6 +48,7 @@ Record BenchRunner::ask(std::uint64_t question) {
   Record r = blank_record(set_, question, info_.name, setting_);
   const Question& q = set_.questions[question];
   workers::note_failures(r, [&] {
+    if (!method_) return ask_number(q, r);
     Errors errors;
     r.all = ask(q, Mode::all_pairs, judges_ ? &errors : nullptr);
     if (judges_) r.errors = errors;
@@ -56,6 +58,35 @@ Record BenchRunner::ask(std::uint64_t question) {
     r.bytes = a.bytes + b.bytes;
   });
   return r;
+}
+
+void BenchRunner::ask_number(const Question& q, Record& r) const {
+  const auto placed = [&](std::size_t body, const Pose& pose) {
+    return methods::at_pose(load_lrb(set_.folder + "/" + set_.bodies.at(body).file), pose);
+  };
+  const methods::Question question = {placed(q.a, q.pose_a),
+                                      placed(q.b, q.pose_b),
+                                      q.from,
+                                      q.to,
+                                      set_.diagonal,
+                                      info_of(q.pose_class).within * set_.diagonal};
+  QueryTimes times;
+  const methods::Answer answer = ask_again_and_again([&] { return entry_.ask(question, setting_); }, times);
+  r.all.cold_us = times.cold_us;
+  r.all.hot_us = times.hot_us;
+  const Quantity quantity = info_.quantity;
+  if (methods::is_list(quantity)) {
+    r.all.count = answer.pairs.size();
+    r.all.contact = !answer.pairs.empty();
+    if (judges_) r.errors = errors_of_answer(set_, q, question.a, question.b, info_, answer);
+  } else {
+    r.all.lower = answer.lower;
+    r.all.upper = answer.upper;
+    r.all.contact = quantity == Quantity::first_contact ? answer.lower < methods::kNever
+                    : quantity == Quantity::depth       ? answer.upper > 0
+                                                        : answer.upper <= 0;
+  }
+  if (info_.has(methods::Trait::proves)) r.all.error_bound = answer.upper - answer.lower;
 }
 
 const LrbRep& BenchRunner::rep(std::size_t body) {
@@ -68,7 +99,7 @@ const LrbRep& BenchRunner::rep(std::size_t body) {
 Reply BenchRunner::ask(const Question& q, Mode mode, Errors* errors) {
   const Built &a = built(q.a, 0), &b = built(q.b, 1);
   QueryTimes times;
-  methods::MethodAnswer answer =
+  methods::Answer answer =
       ask_again_and_again([&] { return method_->query(*a.body, q.pose_a, *b.body, q.pose_b, mode); }, times);
   Reply r;
   r.cold_us = times.cold_us;
@@ -77,16 +108,11 @@ Reply BenchRunner::ask(const Question& q, Mode mode, Errors* errors) {
   r.count = answer.pairs.size();
   r.face_tests = answer.face_tests;
   r.error_bound = answer.error_bound;
-  if (info_.pairs && mode == Mode::all_pairs) {
-    r.missed = methods::without(q.expected, answer.pairs).size();
-    r.extra = methods::without(answer.pairs, q.expected).size();
-  } else if (info_.pairs && !info_.has(methods::Trait::loose)) {
-    r.missed = r.contact ? 0 : !q.expected.empty();
-    r.extra = methods::without(answer.pairs, q.expected).size();
-  } else {
-    r.missed = !r.contact && !q.expected.empty();
-    r.extra = r.contact && q.expected.empty();
-  }
+  const bool lists = info_.pairs && mode == Mode::all_pairs;
+  const bool exact = lists || (info_.pairs && !info_.has(methods::Trait::loose));
+  const bool contact = !q.expected.empty();
+  r.missed = lists ? methods::without(q.expected, answer.pairs).size() : contact && !r.contact;
+  r.extra = exact ? methods::without(answer.pairs, q.expected).size() : r.contact && !contact;
   if (errors != nullptr) *errors = errors_of_answer(set_, q, rep(q.a), rep(q.b), info_, answer);
   return r;
 }

@@ -16,8 +16,8 @@ namespace lrb::bench {
 
 class BenchRunner {
  public:
-  /// The method must be present. `judges`: records contain the errors of answers, which take longer to
-  /// compute than the answers.
+  /// The method must be present, and outlive this object. `judges`: records contain the errors of answers,
+  /// which take longer to compute than the answers.
   BenchRunner(const methods::MethodEntry& entry, std::optional<double> setting, const DataSet& set,
               bool judges);
 
@@ -32,10 +32,12 @@ class BenchRunner {
 
   const Built& built(std::size_t body, std::size_t side);
   Reply ask(const Question& q, Mode mode, Errors* errors);
+  void ask_number(const Question& q, Record& r) const;
   const LrbRep& rep(std::size_t body);
 
-  methods::MethodInfo info_;
-  std::unique_ptr<methods::Method> method_;
+  const methods::MethodEntry& entry_;
+  const methods::MethodInfo& info_;
+  std::unique_ptr<methods::Method> method_;  ///< null for numbers
   std::optional<double> setting_;
   const DataSet& set_;
   bool judges_;

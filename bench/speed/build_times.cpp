@@ -191,9 +191,7 @@ BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport&
   }
   // lrbscope's structures are measured by a worker, too.
   std::vector<workers::WorkerMethod> all;
-  const std::string program = workers::program_beside("lrbscope-methods");
-  if (program.empty()) throw EnvironmentError("bench --build: lrbscope-methods is missing beside lrbscope");
-  for (const methods::MethodInfo& info : own_structures()) all.push_back({program, info});
+  for (const methods::MethodInfo& info : own_structures()) all.push_back({workers::main_worker(), info});
   all.insert(all.end(), survey.methods.begin(), survey.methods.end());
   out.methods = workers::infos_of(all);
   const std::size_t total = survey.rounds * out.bodies.size() * all.size();
@@ -201,28 +199,19 @@ BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport&
     for (const BuiltBody& body : out.bodies)
       for (const workers::WorkerMethod& m : all) {
         progress("builds", out.times.size(), total);
-        const auto keep = [&](BuildTime t) {
-          t.body = body.name;
-          t.method = m.info.name;
-          t.round = round;
-          out.times.push_back(std::move(t));
-        };
-        workers::Job::Task task;
-        task.command = {m.program, "--method", m.info.name};
-        task.end = 1;
-        task.question = [&](std::uint64_t) {
-          return nlohmann::json{{"build", survey.folder + "/" + body.name + ".lrb"}}.dump();
-        };
-        task.limit = std::chrono::duration<double>(survey.timeout);
-        task.on_line = [&](std::uint64_t, const std::string& line) {
-          keep(io::record_from_json<BuildTime>(nlohmann::json::parse(line)));
-        };
-        task.on_failure = [&](std::uint64_t, const workers::WorkerFailure& failure) {
-          BuildTime t;
+        workers::WorkerFailure failure;
+        workers::Worker worker({m.program, "--method", m.info.name});
+        BuildTime t;
+        if (const auto line =
+                worker.ask(nlohmann::json{{"build", survey.folder + "/" + body.name + ".lrb"}}.dump(),
+                           std::chrono::duration<double>(survey.timeout), failure))
+          t = io::record_from_json<BuildTime>(nlohmann::json::parse(*line));
+        else
           workers::note_failure(t, failure);
-          keep(std::move(t));
-        };
-        workers::run_to_end(workers::Job(std::move(task)));
+        t.body = body.name;
+        t.method = m.info.name;
+        t.round = round;
+        out.times.push_back(std::move(t));
       }
   progress("builds", total, total);
   return out;

@@ -39,51 +39,20 @@ constexpr const char* kFrontier =
 
 constexpr const char* kAllSets = "all bodies";
 
-/// Purpose, definition of the error, and proof for one quantity.
-struct NumberText {
-  const char *name, *purpose, *error, *judged, *proved;
-};
-
-NumberText text_of_number(Quantity quantity) {
-  if (quantity == Quantity::first_contact)
-    return {
-        "time of first contact",
-        "B moves in a straight line, two diagonals far, past A or into it: time of a query, and error of the time of impact.",
-        "error of the time of contact / motion",
-        "The difference of the time of impact from the true one, as a share of the motion, averaged over motions. A contact "
-        "reported as none, or the reverse, counts as the whole motion, and so does a missing answer. An interval counts by "
-        "its upper end, at which contact was found.",
-        "lrbscope reports an interval: no contact before it, contact at its end."};
-  if (quantity == Quantity::depth)
-    return {
-        "penetration depth", "Two overlapping bodies: time of a query, and error of the penetration depth.",
-        "error of the depth / diagonal",
-        "The distance of the depth from the interval that is known to contain it, over the larger body's diagonal, averaged "
-        "over poses: a lower bound of the error. An interval counts by its upper end, the length of a separating "
-        "translation. A missing answer counts as one diagonal.",
-        "lrbscope reports an interval: no translation shorter than its lower end separates the bodies, one as long as its "
-        "upper end does."};
+/// `judged`: the definition of the error; `proved`: that of the interval.
+ChartText of_number(const char* name, const char* purpose, const char* error, const std::string& judged,
+                    const std::string& proved) {
   return {
-      "distance", "Two separate bodies: time of a query, and error of the distance.",
-      "error of the distance / diagonal",
-      "The difference of the distance from the true one, over the larger body's diagonal, averaged over poses. An interval "
-      "counts by its upper end, the distance of two points that were found. A missing answer counts as one diagonal.",
-      "lrbscope reports an interval that contains the distance, at every tolerance and within every budget."};
-}
-
-ChartText of_number(Quantity quantity) {
-  const NumberText n = text_of_number(quantity);
-  return {
-      std::string("Speed versus accuracy: ") + n.name,
-      n.purpose,
-      n.error,
+      std::string("Speed versus accuracy: ") + name,
+      purpose,
+      error,
       "width of the interval: proven",
       {{"Error",
-        std::string(n.judged) +
+        judged +
             " The true number is lrbscope's certified interval at its finest setting, which `lrbscope stability "
             "--quantity` checks against rational arithmetic on small bodies."},
        {"Proof",
-        std::string(n.proved) +
+        proved +
             " Its width, in the unit of the error, is a cross at the same height: an upper bound of the error. "
             "Other methods prove nothing."}}};
 }
@@ -105,7 +74,31 @@ ChartText own_text(Quantity quantity) {
          {"Proof",
           "lrbscope reports an interval that contains the distance of each pair; its list is exact. The width of the widest "
           "interval is a cross at the same height. Other methods prove nothing."}}};
-  if (quantity != Quantity::pairs) return of_number(quantity);
+  if (quantity == Quantity::first_contact)
+    return of_number(
+        "time of first contact",
+        "B moves in a straight line, two diagonals far, past A or into it: time of a query, and error of the time of impact.",
+        "error of the time of contact / motion",
+        "The difference of the time of impact from the true one, as a share of the motion, averaged over motions. A contact "
+        "reported as none, or the reverse, counts as the whole motion, and so does a missing answer. An interval counts by "
+        "its upper end, at which contact was found.",
+        "lrbscope reports an interval: no contact before it, contact at its end.");
+  if (quantity == Quantity::depth)
+    return of_number(
+        "penetration depth", "Two overlapping bodies: time of a query, and error of the penetration depth.",
+        "error of the depth / diagonal",
+        "The distance of the depth from the interval that is known to contain it, over the larger body's diagonal, averaged "
+        "over poses: a lower bound of the error. An interval counts by its upper end, the length of a separating "
+        "translation. A missing answer counts as one diagonal.",
+        "lrbscope reports an interval: no translation shorter than its lower end separates the bodies, one as long as its "
+        "upper end does.");
+  if (quantity == Quantity::distance)
+    return of_number(
+        "distance", "Two separate bodies: time of a query, and error of the distance.",
+        "error of the distance / diagonal",
+        "The difference of the distance from the true one, over the larger body's diagonal, averaged over poses. An interval "
+        "counts by its upper end, the distance of two points that were found. A missing answer counts as one diagonal.",
+        "lrbscope reports an interval that contains the distance, at every tolerance and within every budget.");
   return {
       "Speed against accuracy",
       "Every method at every setting of its parameter, on the same bodies and poses: median time of a query, and deviation of "
@@ -183,13 +176,8 @@ std::string note_of(const Point& p) {
   return out + "\nfrontier: " + frontier_text(p) + "\nworst: question " + std::to_string(p.worst_question);
 }
 
-struct Spare {
-  const char* colour;
-  const char* shape;
-};
-
 /// Styles for methods that define none, assigned in turn. They differ from the styles of lrbscope's methods.
-constexpr std::array<Spare, 8> kSpares = {{
+constexpr std::array<std::pair<const char*, const char*>, 8> kSpares = {{
     {"#2f4b7c", "triangle"},
     {"#f95d6a", "rectRot"},
     {"#4f7942", "star"},
@@ -210,8 +198,8 @@ std::vector<methods::MethodStyle> styles_of(const std::vector<methods::MethodInf
   for (const methods::MethodInfo& m : methods) {
     methods::MethodStyle style = m.style;
     if (style.title.empty()) {
-      const Spare& spare = kSpares[spares++ % kSpares.size()];
-      style = {m.name, spare.colour, spare.shape};
+      const auto& [colour, shape] = kSpares[spares++ % kSpares.size()];
+      style = {m.name, colour, shape};
     }
     const auto same = std::find_if(out.begin(), out.end(),
                                    [&](const methods::MethodStyle& s) { return s.title == style.title; });
@@ -257,11 +245,6 @@ std::vector<const Point*> frontier(const std::vector<const Point*>& panel) {
   return out;
 }
 
-/// Returns true if the point is drawn: methods that are always wrong are named, not drawn.
-bool is_drawn(const Point& p) {
-  return !p.always_wrong;
-}
-
 /// Returns a sentence that names the points that are not drawn, and those left out of the frontier.
 std::string left_out_text(const std::vector<const Point*>& panel) {
   std::map<std::string, std::string> by_reason;
@@ -290,7 +273,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   const double slowest = slowest_of(points, set.name);
   const std::vector<const Point*> here = panel(points, set.name, c);
   const ChartText words = chart_text(set.quantity);
-  report::Chart chart{set.name + ", " + title(c),
+  report::Chart chart{set.name + ", " + info_of(c).title,
                       error_axis(set.quantity, words.error),
                       {"median, \u00b5s", true, 0.05, 6 * slowest}};
   chart.note = left_out_text(here);
@@ -316,7 +299,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
     std::string last;
     for (const Point* p : here) {
       if (const auto it = series_of.find(p->method); it == series_of.end() || it->second != i) continue;
-      if (!is_drawn(*p)) continue;
+      if (p->always_wrong) continue;  // named, not drawn
       const report::Line line = p->setting ? report::Line::straight : report::Line::none;
       const std::string label = last.empty() ? style.title : "";
       if (p->method != last || !p->setting)
@@ -328,7 +311,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   report::Series proved{words.proved, {}, {}, {report::Line::none, "#0072b2", "cross"}};
   report::Series failed{"crash, refusal or time-out", {}, {}, {report::Line::none, "#d00000", "crossRot"}};
   for (const Point* p : here) {
-    if (!is_drawn(*p)) continue;
+    if (p->always_wrong) continue;
     if (p->failed() > 0) add(failed, *p, p->error());
     if (words.proved.empty() || p->proven_deviation.value_or(0) <= 0) continue;
     add(proved, *p, *p->proven_deviation);
@@ -367,7 +350,7 @@ report::Table table_of_points(const std::vector<Point>& points) {
   if (built) t.columns.insert(t.columns.end(), {"build s", "MB", "face tests"});
   for (const Point& p : points) {
     std::vector<std::string> row = {p.set,
-                                    title(p.pose_class),
+                                    info_of(p.pose_class).title,
                                     name_of(p.method, p.setting),
                                     span_text(p.median, p.least, p.most),
                                     render::short_number(p.p95),
@@ -444,7 +427,7 @@ std::string drawn_csv(const std::vector<Point>& points) {
       "",
       {"bodies", "pose", "method", "setting", "error", "proven", "us", "us_least", "us_most", "frontier"}};
   for (const Point& p : points) {
-    if (!is_drawn(p)) continue;
+    if (p.always_wrong) continue;
     std::vector<std::string>& row = t.rows.emplace_back();
     row = {p.set,
            std::string(name_of(p.pose_class)),
@@ -476,9 +459,10 @@ report::Table table_of_settings(const std::vector<DataSet>& sets, const std::vec
         const Setting* best = nullptr;
         for (const Setting& s : *settings)
           if (s.error <= bound && (best == nullptr || s.time < best->time)) best = &s;
-        row.push_back(best != nullptr ? best->name : "\u2013");
-        row.push_back(best != nullptr ? render::short_number(best->time) : "\u2013");
-        row.push_back(best != nullptr ? render::short_number(best->error) : "\u2013");
+        std::vector<std::string> cells(3, "\u2013");
+        if (best != nullptr)
+          cells = {best->name, render::short_number(best->time), render::short_number(best->error)};
+        row.insert(row.end(), cells.begin(), cells.end());
       }
       t.rows.push_back(std::move(row));
     }

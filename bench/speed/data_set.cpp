@@ -125,37 +125,6 @@ Question question_from(const json& value, Quantity quantity) {
 
 }  // namespace
 
-namespace {
-
-struct PoseInfo {
-  const char* title;
-  double depth;  ///< the motion of B beyond first contact, in diagonals; negative: separate
-  double within = 0;
-};
-
-/// By class.
-constexpr PoseInfo kPoseInfos[] = {{"0.5 % apart", -0.005},
-                                   {"shallow, 1 %", 0.01},
-                                   {"deep, 10 %", 0.1},
-                                   {"identical pose", 0.01},
-                                   {"one body small", 0.01},
-                                   {"0.1 % apart", -0.001},
-                                   {"1 % apart", -0.01},
-                                   {"10 % apart", -0.1},
-                                   {"100 % apart", -1},
-                                   {"straight in", 0.1},
-                                   {"grazing, 1 %", 0.01},
-                                   {"past, 1 % away", -0.01},
-                                   {"within 0.1 %", -0.0005, 0.001},
-                                   {"within 1 %", -0.005, 0.01},
-                                   {"within 5 %", -0.025, 0.05}};
-
-const PoseInfo& info_of(PoseClass c) {
-  return kPoseInfos[static_cast<std::size_t>(c)];
-}
-
-}  // namespace
-
 std::span<const PoseClass> classes_of(Quantity quantity) {
   static const std::vector<PoseClass> kAll = [] {
     std::vector<PoseClass> out;
@@ -171,18 +140,6 @@ std::span<const PoseClass> classes_of(Quantity quantity) {
   if (quantity == Quantity::depth) return from_to(PoseClass::shallow, PoseClass::deep);
   if (quantity == Quantity::near_pairs) return from_to(PoseClass::near_1000th, PoseClass::near_20th);
   return from_to(PoseClass::apart, PoseClass::small);
-}
-
-const char* title(PoseClass c) {
-  return info_of(c).title;
-}
-
-double depth_of(PoseClass c) {
-  return info_of(c).depth;
-}
-
-double within_of(PoseClass c) {
-  return info_of(c).within;
 }
 
 bool is_complete(const DataSet& set) {
@@ -227,25 +184,35 @@ DataSet read_data_set(const std::string& path) {
 
 void find_numbers(DataSet& set) {
   constexpr std::chrono::seconds kLimit(120);  // per query; some depths take seconds
-  workers::Job::Task task;
-  task.command = {workers::number_worker()};
   const std::string file = write_data_set(set, set.folder);
-  task.question = [&](std::uint64_t k) { return json{{"set", file}, {"question", k}}.dump(); };
+  const auto all = workers::find_methods(set.quantity);
+  const auto ours = std::find_if(all.begin(), all.end(), [](const workers::WorkerMethod& m) {
+    return m.info.role == methods::Role::ours;
+  });
+  const auto complain = [&](std::uint64_t k, const std::string& why) {
+    throw EnvironmentError(set.what + ", question " + std::to_string(k) + ": " + why);
+  };
+  workers::Worker::Task task;
+  task.question = [&](std::uint64_t k) {
+    json question = {{"set", file}, {"question", k}};
+    if (!ours->info.settings.empty()) question["setting"] = ours->info.settings.back();
+    return question.dump();
+  };
   task.end = set.questions.size();
   task.limit = kLimit;
   task.on_line = [&](std::uint64_t k, const std::string& line) {
-    const auto value = nlohmann::json::parse(line);
-    if (value.contains("refusal"))
+    const Record r = record_from(json::parse(line));
+    if (r.outcome == Outcome::rejected)
       throw InputError(set.what + ", question " + std::to_string(k) + ": its " +
-                       std::string(name_of(set.quantity)) + " is unknown (" +
-                       value.at("refusal").get<std::string>() +
+                       std::string(name_of(set.quantity)) + " is unknown (" + r.message +
                        "); leave these bodies out, or use another --seed");
-    set.questions[k].number = {value.at("least").get<double>(), value.at("most").get<double>()};
+    if (r.outcome != Outcome::answered) complain(k, r.message);
+    set.questions[k].number = {r.all.lower.value(), r.all.upper.value()};
   };
   task.on_failure = [&](std::uint64_t k, const workers::WorkerFailure& failure) {
-    throw EnvironmentError(set.what + ", question " + std::to_string(k) + ": " + failure.message);
+    complain(k, failure.message);
   };
-  workers::run_to_end(workers::Job(std::move(task)));
+  workers::Worker({ours->program, "--method", ours->info.name}).run(std::move(task));
 }
 
 // Records.

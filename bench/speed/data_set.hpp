@@ -22,50 +22,59 @@ namespace lrb::bench {
 
 using lrb::name_of;  // the overload for enums, beside those for records
 
-using methods::Quantity;
+using methods::Outcome, methods::Quantity;
 
-/// The choice of poses or motion. Distances are in diagonals of the larger body.
+/// The choice of poses or motion.
 enum class PoseClass : std::uint8_t {
   apart,
   shallow,
   deep,
   identical,
   small,
-  gap_1000th,  ///< of the diagonal, along some direction
+  gap_1000th,
   gap_100th,
   gap_10th,
   gap_whole,
-  into,         ///< B moves straight towards A and into it
-  graze,        ///< B passes A and penetrates it by a hundredth
-  past,         ///< B passes A at a hundredth, along some direction
-  near_1000th,  ///< near pairs within a thousandth; B is half of it away, along some direction
+  into,  ///< B moves straight towards A and into it
+  graze,
+  past,
+  near_1000th,  ///< near pairs; B is half of the distance away, along some direction
   near_100th,
   near_20th,
 };
+struct PoseInfo {
+  PoseClass value;
+  const char *name, *title;
+  double
+      depth;  ///< the motion of B beyond first contact, in diagonals of the larger body; negative: separate
+  double within = 0;  ///< the distance within which pairs are near, in diagonals of the larger body
+};
+inline constexpr auto kPoseInfos =
+    std::to_array<PoseInfo>({{PoseClass::apart, "apart", "0.5 % apart", -0.005},
+                             {PoseClass::shallow, "shallow", "shallow, 1 %", 0.01},
+                             {PoseClass::deep, "deep", "deep, 10 %", 0.1},
+                             {PoseClass::identical, "identical", "identical pose", 0.01},
+                             {PoseClass::small, "small", "one body small", 0.01},
+                             {PoseClass::gap_1000th, "gap_1000th", "0.1 % apart", -0.001},
+                             {PoseClass::gap_100th, "gap_100th", "1 % apart", -0.01},
+                             {PoseClass::gap_10th, "gap_10th", "10 % apart", -0.1},
+                             {PoseClass::gap_whole, "gap_whole", "100 % apart", -1},
+                             {PoseClass::into, "into", "straight in", 0.1},
+                             {PoseClass::graze, "graze", "grazing, 1 %", 0.01},
+                             {PoseClass::past, "past", "past, 1 % away", -0.01},
+                             {PoseClass::near_1000th, "near_1000th", "within 0.1 %", -0.0005, 0.001},
+                             {PoseClass::near_100th, "near_100th", "within 1 %", -0.005, 0.01},
+                             {PoseClass::near_20th, "near_20th", "within 5 %", -0.025, 0.05}});
 constexpr auto enum_names(PoseClass) {
-  return std::to_array<EnumName<PoseClass>>({{PoseClass::apart, "apart"},
-                                             {PoseClass::shallow, "shallow"},
-                                             {PoseClass::deep, "deep"},
-                                             {PoseClass::identical, "identical"},
-                                             {PoseClass::small, "small"},
-                                             {PoseClass::gap_1000th, "gap_1000th"},
-                                             {PoseClass::gap_100th, "gap_100th"},
-                                             {PoseClass::gap_10th, "gap_10th"},
-                                             {PoseClass::gap_whole, "gap_whole"},
-                                             {PoseClass::into, "into"},
-                                             {PoseClass::graze, "graze"},
-                                             {PoseClass::past, "past"},
-                                             {PoseClass::near_1000th, "near_1000th"},
-                                             {PoseClass::near_100th, "near_100th"},
-                                             {PoseClass::near_20th, "near_20th"}});
+  std::array<EnumName<PoseClass>, kPoseInfos.size()> out{};
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {kPoseInfos[i].value, kPoseInfos[i].name};
+  return out;
+}
+constexpr const PoseInfo& info_of(PoseClass c) {
+  return kPoseInfos[static_cast<std::size_t>(c)];
 }
 /// Returns the pose classes used for a quantity, in their order.
 std::span<const PoseClass> classes_of(Quantity quantity);
-const char* title(PoseClass c);  ///< "0.5 % apart"
-/// Returns the motion of B beyond first contact, in diagonals of the larger body; negative: separate.
-double depth_of(PoseClass c);
-/// Returns the distance within which pairs are near, in diagonals of the larger body; 0 for other classes.
-double within_of(PoseClass c);
 
 /// The file of an LRB-rep, and the cost of building it.
 struct BodyFile {
@@ -106,8 +115,8 @@ std::string write_data_set(const DataSet& set, const std::string& folder);
 /// Reads a data set. Throws InputError that names the file.
 DataSet read_data_set(const std::string& path);
 
-/// Computes the numbers that a data set needs: lrbscope's intervals at their narrowest, as returned by the
-/// worker of methods that return a number. Throws EnvironmentError if that program is missing, and
+/// Computes the numbers that a data set needs: lrbscope's intervals at their narrowest, as returned by a
+/// worker. Throws EnvironmentError if that program is missing, and
 /// InputError, which names the query, if a query has no answer.
 void find_numbers(DataSet& set);
 
@@ -179,14 +188,6 @@ using Errors = std::array<std::optional<double>, kMetrics>;
 
 // Records.
 
-enum class Outcome : std::uint8_t { answered, rejected, crashed, timed_out };
-constexpr auto enum_names(Outcome) {
-  return std::to_array<EnumName<Outcome>>({{Outcome::answered, "answered"},
-                                           {Outcome::rejected, "refused"},
-                                           {Outcome::crashed, "crashed"},
-                                           {Outcome::timed_out, "timed_out"}});
-}
-
 /// The answer in one mode.
 struct Reply {
   bool contact = false;
@@ -195,7 +196,7 @@ struct Reply {
   double cold_us = 0;  ///< time of the first query, after the processor's caches were flushed
   double hot_us = 0;   ///< minimum time of some repetitions
   std::uint64_t face_tests = 0;
-  std::optional<double> error_bound;   ///< as in methods::MethodAnswer; of a number: width of its interval
+  std::optional<double> error_bound;   ///< as in methods::Answer; of a number: width of its interval
   std::optional<double> lower, upper;  ///< the number, if that is the quantity; equal: no interval
   friend bool operator==(const Reply&, const Reply&) = default;
 };

@@ -125,7 +125,7 @@ class Maker {
     Approaches approaches(reps_[0], reps_[1], set_.diagonal, o_.seed);
     shapes::RandomEngine random(o_.seed);
     for (int i = 0; i < o_.poses; ++i) {
-      const Approach approach = approaches.next(depth_of(c));
+      const Approach approach = approaches.next(info_of(c).depth);
       Question q;
       q.pose_class = c;
       q.b = 1;
@@ -138,7 +138,7 @@ class Maker {
         q.to = q.from - 2 * back;
       }
       if (o_.quantity == Quantity::near_pairs)
-        q.expected = exact_pairs(reps_[0], q.pose_a, reps_[1], q.pose_b, within_of(c) * set_.diagonal);
+        q.expected = exact_pairs(reps_[0], q.pose_a, reps_[1], q.pose_b, info_of(c).within * set_.diagonal);
       set_.questions.push_back(std::move(q));
     }
   }
@@ -146,7 +146,7 @@ class Maker {
   void add_approaches(PoseClass c, std::size_t b) {
     Approaches approaches(reps_[0], reps_[b], set_.diagonal, o_.seed);
     // If one body is small the depth is 1 % of its own size, because it cannot be deeper.
-    const double depth = depth_of(c) * (c == PoseClass::small ? kSmall : 1);
+    const double depth = info_of(c).depth * (c == PoseClass::small ? kSmall : 1);
     for (int i = 0; i < o_.poses; ++i) ask(c, 0, b, Pose{}, approaches.next(depth).pose);
   }
 
@@ -275,7 +275,7 @@ std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string
   for (const Pose& pose : poses_of(set, q)) poses.push_back(io::rows_of(pose));
   ordered_json value = {
       {"name", name},
-      {"purpose", set.what + ": " + title(q.pose_class) + ", question " + std::to_string(k) + "."},
+      {"purpose", set.what + ": " + info_of(q.pose_class).title + ", question " + std::to_string(k) + "."},
       {"bodies",
        {{"a", {{"file", "../" + set.bodies[q.a].file}, {"pose", io::rows_of(q.pose_a)}}},
         {"b", {{"file", "../" + set.bodies[q.b].file}}}}},
@@ -284,7 +284,7 @@ std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string
       {"frames", {{"at", "step"}, {"size", {960, 540}}, {"views", views}}}};
   if (set.quantity == Quantity::pairs) value["expect"] = {{{"step", 0}, {"pairs", q.expected.size()}}};
   if (set.quantity == Quantity::near_pairs)
-    value["query"] = {{"near", within_of(q.pose_class) * set.diagonal}};
+    value["query"] = {{"near", info_of(q.pose_class).within * set.diagonal}};
   if (set.quantity == Quantity::depth) value["query"] = {{"clash", true}};
   if (set.quantity == Quantity::distance || set.quantity == Quantity::first_contact)
     value["query"] = {{"distance", true}};

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "bench/methods/triangles.hpp"
 #include "engine/exact/pair_distance.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
@@ -58,12 +59,8 @@ Eigen::Vector3d centroid_of(const std::vector<Eigen::Vector3d>& points) {
 
 /// A triangle of a posed body, as input of the exact predicates.
 struct WorldTriangle {
-  WorldTriangle(const LrbRep& rep, const Pose& pose, SimplexId simplex) {
-    VertexId v[3] = {};
-    rep.simplex(simplex, v);
-    for (int k = 0; k < 3; ++k) x[k] = pose.apply(rep.vertices()[v[k]]);
-  }
-  Eigen::Vector3d x[3];  ///< world frame
+  WorldTriangle(const LrbRep& rep, const Pose& pose, SimplexId s) : x(methods::corners_of(rep, pose, s)) {}
+  std::array<Eigen::Vector3d, 3> x;  ///< world frame
   const double* corners[3] = {x[0].data(), x[1].data(), x[2].data()};
 };
 
@@ -232,7 +229,7 @@ class Judge {
   Judge(const DataSet& set, const Question& q, const LrbRep& a, const LrbRep& b)
       : diagonal_(set.diagonal), q_(q), a_(a), b_(b) {}
 
-  Errors errors(const methods::MethodInfo& info, const methods::MethodAnswer& answer) const {
+  Errors errors(const methods::MethodInfo& info, const methods::Answer& answer) const {
     Errors e;
     at(e, Metric::contact) = answer.contact == q_.expected.empty() ? metric_info(Metric::contact).worst : 0;
     if (lists_pairs(info)) {
@@ -441,12 +438,10 @@ void add_points(const DataSet& set, const std::vector<methods::MethodInfo>& meth
 }  // namespace
 
 Errors errors_of_answer(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
-                        const methods::MethodInfo& info, const methods::MethodAnswer& answer) {
-  return Judge(set, question, a, b).errors(info, answer);
-}
-
-Errors errors_of_near(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
-                      const std::vector<SimplexPair>& pairs, const std::vector<double>& distances) {
+                        const methods::MethodInfo& info, const methods::Answer& answer) {
+  if (set.quantity == Quantity::pairs) return Judge(set, question, a, b).errors(info, answer);
+  const std::vector<SimplexPair>& pairs = answer.pairs;
+  const std::vector<double>& distances = answer.distances;
   Errors e;
   const std::size_t extra = without(pairs, question.expected), missed = without(question.expected, pairs);
   at(e, Metric::precision) = share(extra, pairs.size());

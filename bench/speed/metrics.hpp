@@ -57,15 +57,10 @@ std::vector<Point> measure_points(const std::vector<DataSet>& sets,
 /// them.
 void mark_frontiers(std::vector<Point>& points, const std::vector<methods::MethodInfo>& methods);
 
-/// Returns the errors of an answer with all pairs to a query of a data set of pairs; `a` and `b` are its
-/// bodies.
+/// Returns the errors of an answer with all pairs, or all near pairs, to a query of a data set; `a` and `b`
+/// are its bodies, for near pairs in world coordinates.
 Errors errors_of_answer(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
-                        const methods::MethodInfo& info, const methods::MethodAnswer& answer);
-
-/// Returns the errors of a list of near pairs, ascending; `a` and `b` are the bodies in world coordinates.
-/// `distances`: of each listed pair; or empty, if the method reports none.
-Errors errors_of_near(const DataSet& set, const Question& question, const LrbRep& a, const LrbRep& b,
-                      const std::vector<SimplexPair>& pairs, const std::vector<double>& distances);
+                        const methods::MethodInfo& info, const methods::Answer& answer);
 
 /// Returns them as JSON, one per line.
 std::string to_lines(const std::vector<Point>& points);

@@ -123,8 +123,8 @@ report::Table table_of_ratios(const PeerTable& t, Mode mode) {
     for (const PoseClass c : classes_of(Quantity::pairs)) {
       const PeerCell* ours = t.find(set, method_in(t.methods, Role::ours), c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
-      table.rows.push_back(
-          {set, title(c), text("%.0f", ours->pairs), text("%.1f", ours->hot), text("%.1f", ours->hot_p95)});
+      table.rows.push_back({set, info_of(c).title, text("%.0f", ours->pairs), text("%.1f", ours->hot),
+                            text("%.1f", ours->hot_p95)});
       for (const methods::MethodInfo& m : t.methods) {
         if (m.role == Role::ours || !m.present) continue;
         const PeerCell* cell = t.find(set, m.name, c, mode);
@@ -197,7 +197,7 @@ std::string ahead_of(const PeerTable& t) {
           if (cell->missed + cell->extra > 0) peers += ", not exact";
         }
         if (!peers.empty())
-          out += "    " + set + ", " + title(c) +
+          out += "    " + set + ", " + info_of(c).title +
                  (mode == Mode::all_pairs ? ", all pairs: " : ", boolean: ") + peers + "\n";
       }
   if (compared == 0) return "  No other engine was measured.\n";
@@ -284,7 +284,8 @@ report::Table table_of_cells(const PeerTable& t) {
                        "x ours", "cold x ours", "pairs", "missed", "extra", "no answer"}};
   for (const PeerCell& c : t.cells) {
     if (c.questions == 0) continue;
-    table.rows.push_back({c.set, title(c.pose_class), c.mode == Mode::all_pairs ? "all" : "first", c.method});
+    table.rows.push_back(
+        {c.set, info_of(c.pose_class).title, c.mode == Mode::all_pairs ? "all" : "first", c.method});
     std::vector<std::string>& row = table.rows.back();
     if (c.answered > 0) {
       for (const double x : {c.hot, c.hot_p95, c.cold, c.cold_p95}) row.push_back(text("%.1f", x));

@@ -71,8 +71,7 @@ class Survey {
 
   void run(const DataSet& set, const Contestant& c, unsigned round, std::uint64_t begin, std::uint64_t end) {
     const std::string what = set.name + ", " + name_of(c.method.info.name, c.setting);
-    workers::Job::Task task;
-    task.command = {c.method.program, "--method", c.method.info.name};
+    workers::Worker::Task task;
     task.question = [&](std::uint64_t k) {
       nlohmann::ordered_json question = {{"set", o_.folder + "/" + set.name + ".set.json"}, {"question", k}};
       if (c.setting) question["setting"] = *c.setting;
@@ -95,7 +94,7 @@ class Survey {
       keep(std::move(r));
       notify(what);
     };
-    workers::run_to_end(workers::Job(std::move(task)));
+    workers::Worker({c.method.program, "--method", c.method.info.name}).run(std::move(task));
   }
 
   void keep(Record r) {

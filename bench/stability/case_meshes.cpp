@@ -26,22 +26,6 @@ cases::Case case_of(const CaseMeshes& meshes) {
   return c;
 }
 
-Mesh joined(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  Mesh out;
-  out.dim = a.dim();
-  for (const auto& [rep, pose] : {std::pair{&a, &pose_a}, std::pair{&b, &pose_b}}) {
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    for (const Eigen::Vector3d& v : rep->vertices()) out.vertices.push_back(pose->apply(v));
-    for (SimplexId s = 0; s < rep->real_simplex_count(); ++s) {
-      VertexId v[3] = {};
-      rep->simplex(s, v);
-      for (VertexId& corner : v) corner = VertexId(first + corner);
-      out.add_face({v, static_cast<std::size_t>(out.dim)});
-    }
-  }
-  return out;
-}
-
 PosedPair::PosedPair(const cases::Case& c, const SimplexPair& pair)
     : x{run::corners_of(*c.a, c.pose_a, pair.a), run::corners_of(*c.b, c.pose_b, pair.b)} {}
 
@@ -107,21 +91,19 @@ Mesh mesh_from(const nlohmann::json& value) {
 
 }  // namespace
 
+std::string text_of(const CaseMeshes& c) {
+  return Json{{"a", mesh_json(c.a)},
+              {"b", mesh_json(c.b)},
+              {"pose_a", pose_json(c.pose_a)},
+              {"pose_b", pose_json(c.pose_b)}}
+      .dump();
+}
+
 Replay CaseWorker::ask(const CaseMeshes& meshes) {
   const RightAnswer right = expected_answer(case_of(meshes));
-  const workers::MemoryFile file("case"), answer("expected");
-  file.write(Json{{"a", mesh_json(meshes.a)},
-                  {"b", mesh_json(meshes.b)},
-                  {"pose_a", pose_json(meshes.pose_a)},
-                  {"pose_b", pose_json(meshes.pose_b)}}
-                 .dump());
-  answer.write(to_json(right).dump() + "\n");
-  if (!worker_) worker_.emplace(std::vector<std::string>{method_.program, "--method", method_.info.name});
-  Replay out;
-  out.expected = right.pairs;
-  out.record.method = method_.info.name;
-  if (!out.ask(*worker_, {{"saved", file.path()}}, answer.path(), timeout_)) worker_.reset();
-  return out;
+  const workers::MemoryFile file("case");
+  file.write(text_of(meshes));
+  return {{}, info_, workers::answer_of(worker_, {{"saved", file.path()}}, timeout_), right};
 }
 
 cases::Case read_case(const std::string& path) {

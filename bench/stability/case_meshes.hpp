@@ -33,8 +33,6 @@ CaseMeshes meshes_of(const cases::Case& c);
 /// Returns the case of two meshes. A body is closed if its mesh bounds a solid; it has no regions. Throws
 /// InputError if a mesh cannot be queried.
 cases::Case case_of(const CaseMeshes& meshes);
-/// Returns one mesh of the real simplices of two posed bodies, A's first.
-Mesh joined(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 inline bool is_identity(const Pose& pose) {
   return pose.r == Eigen::Matrix3d::Identity() && pose.t == Eigen::Vector3d::Zero();
@@ -54,11 +52,12 @@ struct PosedPair {
   Corners place() const;
 };
 
-/// A method in a worker, which is started again after a crash or a time-out.
+/// A method in a worker.
 class CaseWorker {
  public:
   /// `timeout`: seconds per case. The method must be present.
-  CaseWorker(workers::WorkerMethod method, double timeout) : method_(std::move(method)), timeout_(timeout) {}
+  CaseWorker(const workers::WorkerMethod& method, double timeout)
+      : info_(method.info), worker_({method.program, "--method", method.info.name}), timeout_(timeout) {}
 
   /// Returns the judged answer to a case. The right answer is computed in this process, by exact brute force.
   /// The record names no family. Throws InputError if a number of the case is not finite, EnvironmentError if
@@ -66,12 +65,14 @@ class CaseWorker {
   Replay ask(const CaseMeshes& meshes);
 
  private:
-  workers::WorkerMethod method_;
+  methods::MethodInfo info_;
+  workers::Worker worker_;
   std::chrono::duration<double> timeout_;
-  std::optional<workers::Worker> worker_;
 };
 
-/// The worker's side: the case of a file.
+/// Returns a case as the text of a file for workers. Throws InputError if a number is not finite.
+std::string text_of(const CaseMeshes& c);
+/// The worker's side: the case of such a file.
 cases::Case read_case(const std::string& path);
 
 }  // namespace lrb::stability

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
+#include "bench/methods/triangles.hpp"
 #include "bench/stability/case_meshes.hpp"
 #include "bench/stability/stability_report.hpp"
 #include "render/pictures/marks.hpp"
@@ -447,7 +448,7 @@ std::vector<std::string> draw_worst_cases(
     try {
       cases::Case c = cases::make_case(*family, r.seed, r.difficulty, r.case_index);
       if (grid.quantity == Quantity::self_intersections) {  // of the mesh of both bodies
-        const Mesh both = joined(*c.a, c.pose_a, *c.b, c.pose_b);
+        const Mesh both = methods::joined(*c.a, c.pose_a, *c.b, c.pose_b);
         c = {};
         c.a = c.b = cases::body(both, true);
       }

@@ -146,23 +146,6 @@ std::vector<double> replacements(double x, const std::set<double>& others) {
   return out;
 }
 
-std::string key_of(const CaseMeshes& c) {
-  std::string key;
-  const auto add = [&](const auto& value) {
-    key.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  for (const auto& [mesh, pose] : {std::pair{&c.a, &c.pose_a}, std::pair{&c.b, &c.pose_b}}) {
-    add(mesh->vertices.size());
-    for (const Vector3d& v : mesh->vertices)
-      for (int k = 0; k < 3; ++k) add(v[k]);
-    for (const VertexId v : mesh->face_vertices) add(v.value());
-    for (const std::uint32_t o : mesh->face_offsets) add(o);
-    for (int i = 0; i < 9; ++i) add(pose->r(i / 3, i % 3));
-    for (int i = 0; i < 3; ++i) add(pose->t[i]);
-  }
-  return key;
-}
-
 // ---- Shrinking
 
 class Shrinking {
@@ -221,7 +204,7 @@ class Shrinking {
   bool attempt(const CaseMeshes& c) {
     if (spent() || c.a.face_count() == 0 || c.b.face_count() == 0) return false;
     const CaseSize size = size_of(c);
-    if (!(size < size_) || !tried_.insert(key_of(c)).second) return false;
+    if (!(size < size_) || !tried_.insert(text_of(c)).second) return false;
     const std::uint64_t degenerate = degenerate_faces(c);
     if (degenerate > degenerate_) return false;
     const Replay answer = ask_(c);

@@ -160,6 +160,7 @@ ordered_json to_json(const Record& r) {
 Record record_from(const json& value) {
   try {
     const auto r = io::record_from_json<Record>(value);
+    if (r.outcome == Outcome::answered) throw InputError("expected a judged answer");
     if (r.difficulty < 0 || r.difficulty >= kDifficulties)
       throw InputError("difficulty " + std::to_string(r.difficulty) + ": expected 0 to " +
                        std::to_string(kDifficulties - 1));

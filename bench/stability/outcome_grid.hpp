@@ -24,25 +24,9 @@
 namespace lrb::stability {
 
 using cases::kDifficulties;
-using methods::Quantity;
+using methods::Outcome, methods::Quantity;
 
-/// The outcome of one case for one method.
-enum class Outcome : std::uint8_t {
-  right,      ///< all that the method answers is right
-  wrong,      ///< missed or extra pairs, or a wrong relation
-  rejected,   ///< the method reported that it cannot answer
-  crashed,    ///< its process died
-  timed_out,  ///< it did not answer in time
-};
-constexpr auto enum_names(Outcome) {
-  return std::to_array<EnumName<Outcome>>({{Outcome::right, "right"},
-                                           {Outcome::wrong, "wrong"},
-                                           {Outcome::rejected, "refused"},
-                                           {Outcome::crashed, "crashed"},
-                                           {Outcome::timed_out, "timed_out"}});
-}
-
-/// All but `right`, in the order of tables, bars and legends.
+/// Those of a case that is not right, in the order of tables, bars and legends.
 inline constexpr std::array<Outcome, 4> kNotRight = {Outcome::wrong, Outcome::crashed, Outcome::timed_out,
                                                      Outcome::rejected};
 

@@ -187,19 +187,6 @@ std::string simplices(const Counterexample& c, std::size_t n) {
   return render::counted(n, flat(c) ? "segment" : "triangle", flat(c) ? "segments" : "triangles");
 }
 
-std::string mesh_text(const Mesh& mesh) {
-  std::ostringstream out;
-  for (const Vector3d& v : mesh.vertices)
-    out << "v " << io::exact_text(v.x()) << " " << io::exact_text(v.y()) << " " << io::exact_text(v.z())
-        << "\n";
-  for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    out << (mesh.dim == 2 ? "l" : "f");
-    for (const VertexId v : mesh.face(f)) out << " " << v + 1;
-    out << "\n";
-  }
-  return out.str();
-}
-
 std::string pose_text(const Pose& pose) {
   std::string out;
   for (int i = 0; i < 3; ++i) {
@@ -297,16 +284,15 @@ std::string versions(const Counterexample& c) {
 
 /// Returns the failure in words: "misses a pair of triangles that cross".
 std::string failure_text(const Counterexample& c) {
-  const std::string what = flat(c) ? "segments" : "triangles";
+  const std::string pair = flat(c) ? "a pair of segments" : "a pair of triangles";
   const bool lists = c.found.answer.answered.has_value();
   switch (c.found.kind) {
     case FailureKind::misses_crossing:
-      return lists ? "misses a pair of " + what + " that cross" : "reports no contact of bodies that cross";
+      return (lists ? "misses " + pair : "reports no contact of bodies") + " that cross";
     case FailureKind::misses_touching:
-      return lists ? "misses a pair of " + what + " that touch" : "reports no contact of bodies that touch";
+      return (lists ? "misses " + pair : "reports no contact of bodies") + " that touch";
     case FailureKind::adds:
-      return lists ? "returns a pair of " + what + " that do not intersect"
-                   : "reports a contact of bodies that do not intersect";
+      return (lists ? "returns " + pair : "reports a contact of bodies") + " that do not intersect";
     case FailureKind::relation:
       return "reports a wrong relation of two bodies";
     case FailureKind::crashes:
@@ -368,9 +354,9 @@ int main() {
 )";
 }
 
-/// Returns the text for the tracker, in Markdown: the function called, the meshes, the right answer with its
-/// proof, the engine's answer, and versions.
-std::string tracker_text(const Counterexample& c) {
+/// Returns the text for the tracker of a saved case, in Markdown: the function called, the meshes, the right
+/// answer with its proof, the engine's answer, and versions.
+std::string tracker_text(const Counterexample& c, const std::string& folder) {
   std::ostringstream out;
   out << "# " << c.method.info.title << " " << failure_text(c) << "\n\n";
   out << "A has " << simplices(c, meshes(c).a.face_count()) << ", B "
@@ -378,8 +364,8 @@ std::string tracker_text(const Counterexample& c) {
   out << (fits_float(meshes(c)) ? ". All coordinates are floats.\n\n" : ". Coordinates are doubles.\n\n");
   out << "![The meshes](picture.png)\n\n";
   out << "## Meshes\n\nA:\n\n```\n"
-      << mesh_text(meshes(c).a) << "```\n\nB:\n\n```\n"
-      << mesh_text(meshes(c).b) << "```\n\n";
+      << io::read_text(folder + "/a.obj") << "```\n\nB:\n\n```\n"
+      << io::read_text(folder + "/b.obj") << "```\n\n";
   if (is_identity(meshes(c).pose_a) && is_identity(meshes(c).pose_b))
     out << "Both poses are the identity.\n\n";
   else
@@ -424,7 +410,7 @@ std::vector<std::string> save_counterexample(const Counterexample& c, const std:
     io::write_text(folder + "/fcl.cpp", program);
     files.emplace_back("fcl.cpp");
   }
-  io::write_text(folder + "/report.md", tracker_text(c) + "\nMade by `" + c.command + "`.\n");
+  io::write_text(folder + "/report.md", tracker_text(c, folder) + "\nMade by `" + c.command + "`.\n");
   files.emplace_back("report.md");
   return files;
 }

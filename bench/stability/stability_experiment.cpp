@@ -11,17 +11,21 @@
 #include "bench/methods/triangles.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/io/files.hpp"
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb {
 
 template <>
-inline constexpr auto kFields<stability::RightAnswer> = std::tuple{
-    field("pairs", &stability::RightAnswer::pairs), field("relation", &stability::RightAnswer::relation),
-    field("least", &stability::RightAnswer::least, Kept::if_set),
-    field("most", &stability::RightAnswer::most, Kept::if_set),
-    field("refusal", &stability::RightAnswer::rejection, Kept::if_set)};
+inline constexpr auto kFields<stability::RightAnswer> =
+    std::tuple{field("pairs", &stability::RightAnswer::pairs),
+               field("relation", &stability::RightAnswer::relation),
+               field("least", &stability::RightAnswer::least, Kept::if_set),
+               field("most", &stability::RightAnswer::most, Kept::if_set),
+               field("size", &stability::RightAnswer::size, Kept::if_set),
+               field("several", &stability::RightAnswer::several, Kept::if_set),
+               field("refusal", &stability::RightAnswer::rejection, Kept::if_set)};
 static_assert(covers_all_fields<stability::RightAnswer>);
 
 }  // namespace lrb
@@ -46,6 +50,7 @@ std::string why_not(const cases::Case& c) {
 
 RightAnswer expected_answer(const cases::Case& c) {
   RightAnswer e;
+  e.several = c.a->component_vertices().size() > 1 && c.b->component_vertices().size() > 1;
   e.rejection = why_not(c);
   if (!e.rejection.empty()) return e;
   BruteForceResult r = brute_force(*c.a, c.pose_a, *c.b, c.pose_b);
@@ -64,7 +69,7 @@ RightAnswer expected_from(const std::string& line) {
 
 namespace {
 
-using methods::MethodAnswer;
+using methods::Answer;
 using methods::MethodInfo;
 using methods::Says;
 
@@ -82,67 +87,118 @@ const char* in_brief(bool contact, bool inside) {
   return contact ? "contact" : inside ? "inside" : "separate";
 }
 
-void compare_pairs(Record& record, const std::vector<SimplexPair>& answered,
-                   const std::vector<SimplexPair>& expected) {
-  record.missed = methods::without(expected, answered).size();
-  record.extra = methods::without(answered, expected).size();
+/// Counts what an answer misses and adds: pairs, or contacts for a method that lists no pairs.
+void compare(Record& record, const MethodInfo& info, const std::vector<SimplexPair>& answered, bool contact,
+             const std::vector<SimplexPair>& expected, bool expected_contact) {
+  record.missed = info.pairs ? methods::without(expected, answered).size() : expected_contact && !contact;
+  record.extra = info.pairs ? methods::without(answered, expected).size() : contact && !expected_contact;
 }
 
-void compare_contact(Record& record, bool answered, bool expected) {
-  record.missed = expected && !answered;
-  record.extra = answered && !expected;
+void conclude(Record& record, bool is_right) {
+  record.outcome = is_right ? Outcome::right : Outcome::wrong;
 }
 
-void conclude(Record& record, bool relation_matters, bool extra_matters = true) {
-  const bool right = record.missed == 0 && (record.extra == 0 || !extra_matters) &&
-                     (!relation_matters || record.relation == record.expected_relation);
-  record.outcome = right ? Outcome::right : Outcome::wrong;
-}
-
-}  // namespace
-
-void judge(Record& record, const MethodInfo& info, const MethodAnswer& answer, const RightAnswer& expected) {
-  if (!expected.rejection.empty()) {
-    record.outcome = Outcome::wrong;
-    record.message = "answered, although " + expected.rejection;
-    return;
-  }
-  record.expected = expected.pairs.size();
-  if (info.pairs)
-    compare_pairs(record, answer.pairs, expected.pairs);
-  else
-    compare_contact(record, answer.contact, !expected.pairs.empty());
+void judge_pairs(Record& record, const MethodInfo& info, const Answer& answer, const RightAnswer& expected) {
+  const bool contact = !expected.pairs.empty();
+  compare(record, info, answer.pairs, answer.contact, expected.pairs, contact);
   if (answer.relation) {
     record.relation = to_string(*answer.relation);
     record.expected_relation = to_string(expected.relation);
   } else if (answer.inside) {
     record.relation = in_brief(answer.contact, *answer.inside);
-    record.expected_relation = in_brief(!expected.pairs.empty(), is_inside(expected.relation));
+    record.expected_relation = in_brief(contact, is_inside(expected.relation));
   }
   // For bodies that are not closed, only surface queries are defined.
-  conclude(record, answer.relation || expected.relation != Relation::undefined,
-           !info.has(methods::Trait::loose) || expected.pairs.empty());
+  const bool relation_matters = answer.relation || expected.relation != Relation::undefined;
+  const bool extra_matters = !info.has(methods::Trait::loose) || !contact;
+  conclude(record, record.missed == 0 && (record.extra == 0 || !extra_matters) &&
+                       (!relation_matters || record.relation == record.expected_relation));
 }
 
-void judge_swapped(Record& record, const MethodInfo& info, const MethodAnswer& answer,
-                   const MethodAnswer& swapped, bool several) {
+void judge_exchanged(Record& record, const MethodInfo& info, const Answer& answer, const Answer& exchanged,
+                     bool several) {
   std::vector<SimplexPair> back;
-  for (const SimplexPair& p : swapped.pairs) back.push_back({p.b, p.a});
+  for (const SimplexPair& p : exchanged.pairs) back.push_back({p.b, p.a});
   std::sort(back.begin(), back.end());
-  if (info.pairs)
-    compare_pairs(record, back, answer.pairs);
-  else
-    compare_contact(record, swapped.contact, answer.contact);
+  compare(record, info, back, exchanged.contact, answer.pairs, answer.contact);
   bool relation_matters = true;
-  if (answer.relation && swapped.relation) {
-    record.relation = to_string(mirrored(*swapped.relation));
+  if (answer.relation && exchanged.relation) {
+    record.relation = to_string(mirrored(*exchanged.relation));
     record.expected_relation = to_string(*answer.relation);
-    relation_matters = !(several && is_inside(*answer.relation) && is_inside(*swapped.relation));
-  } else if (answer.inside && swapped.inside) {
-    record.relation = in_brief(swapped.contact, *swapped.inside);
+    relation_matters = !(several && is_inside(*answer.relation) && is_inside(*exchanged.relation));
+  } else if (answer.inside && exchanged.inside) {
+    record.relation = in_brief(exchanged.contact, *exchanged.inside);
     record.expected_relation = in_brief(answer.contact, *answer.inside);
   }
-  conclude(record, relation_matters);
+  conclude(record, record.missed + record.extra == 0 &&
+                       (!relation_matters || record.relation == record.expected_relation));
+}
+
+std::string number_text(Quantity quantity, double lower, double upper) {
+  constexpr int kDigits = 9;
+  if (quantity == Quantity::first_contact && lower >= methods::kNever) return "never";
+  const std::string first = io::number_text(lower, kDigits), last = io::number_text(upper, kDigits);
+  return first == last ? first : first + " to " + last;
+}
+
+/// Returns true if an interval is the special value of its quantity: 0 ("in contact") or kNever.
+bool is_special(Quantity quantity, double least, double most) {
+  return quantity == Quantity::first_contact ? least >= methods::kNever : most <= 0;
+}
+
+void judge_number(Record& record, const MethodInfo& info, const Answer& answer, const RightAnswer& expected) {
+  constexpr double kMaxOffOfSize = 1e-6, kMaxOffOfMotion = 1e-3;
+  const double least = expected.least.value(), most = expected.most.value();
+  record.relation = number_text(info.quantity, answer.lower, answer.upper);
+  record.expected_relation = number_text(info.quantity, least, most);
+  const bool special = is_special(info.quantity, least, most);
+  bool right = is_special(info.quantity, answer.lower, answer.upper) == special;
+  if (info.has(methods::Trait::proves)) {
+    right = right && answer.lower <= most && answer.upper >= least;
+  } else if (!special) {
+    const double off = std::max(least - answer.upper, answer.lower - most);
+    const bool is_time = info.quantity == Quantity::first_contact;
+    right = right && off <= (is_time ? kMaxOffOfMotion : kMaxOffOfSize * expected.size);
+  }
+  conclude(record, right);
+}
+
+}  // namespace
+
+void judge(Record& record, const MethodInfo& info, const Answer& answer, const RightAnswer& expected) {
+  const bool of_pairs = info.quantity == Quantity::pairs, is_undefined = !expected.rejection.empty();
+  record.expected = expected.pairs.size();
+  record.outcome = answer.outcome;
+  record.message = answer.message;
+  if (is_undefined && !of_pairs) {
+    record.outcome = Outcome::rejected;
+    record.message = "skipped: " + expected.rejection;
+  }
+  if (record.outcome != Outcome::answered) return;
+  record.microseconds = answer.microseconds;
+  if (!answer.exchanged.empty()) {
+    judge_exchanged(record, info, answer, answer.exchanged.front(), expected.several);
+  } else if (is_undefined) {
+    record.outcome = Outcome::wrong;
+    record.message = "answered, although " + expected.rejection;
+  } else if (of_pairs) {
+    judge_pairs(record, info, answer, expected);
+  } else if (methods::is_list(info.quantity)) {
+    compare(record, info, answer.pairs, answer.contact, expected.pairs, false);
+    record.relation = std::to_string(answer.pairs.size()) + " pairs";
+    record.expected_relation = std::to_string(expected.pairs.size()) + " pairs";
+    conclude(record, record.missed + record.extra == 0);
+  } else {
+    judge_number(record, info, answer, expected);
+  }
+}
+
+Replay::Replay(const Record& of, const MethodInfo& info, Answer answer, const RightAnswer& right)
+    : record(of), expected(right.pairs) {
+  record.method = info.name;
+  judge(record, info, answer, right);
+  const bool is_answer = record.outcome == Outcome::right || record.outcome == Outcome::wrong;
+  if (is_answer && info.pairs && methods::is_list(info.quantity)) answered = std::move(answer.pairs);
 }
 
 namespace {
@@ -165,8 +221,7 @@ nlohmann::ordered_json question_of(const Record& of) {
 /// The state of one family while its jobs run.
 struct FamilyWork {
   std::string name;
-  workers::MemoryFile expected{"expected"};   ///< one line per case, from begin_ on
-  std::vector<std::uint64_t> expected_pairs;  ///< number of pairs, by case
+  std::vector<RightAnswer> expected;  ///< by case, from begin_ on
   bool expected_done = false;
   std::vector<std::vector<Record>> records;  ///< method by method
   std::size_t methods_begun = 0, methods_done = 0;
@@ -224,12 +279,12 @@ class Experiment {
       while (running_.size() < o_.jobs && start_one()) {
       }
       if (running_.empty()) break;
-      std::vector<workers::Job*> jobs;
-      for (const Running& r : running_) jobs.push_back(r.job.get());
-      workers::wait_for_news(jobs);
+      std::vector<workers::Worker*> busy;
+      for (const Running& r : running_) busy.push_back(r.worker.get());
+      workers::wait_for_news(busy);
       std::erase_if(running_, [](const Running& r) {
-        if (r.job->done()) r.on_done();
-        return r.job->done();
+        if (r.worker->done()) r.on_done();
+        return r.worker->done();
       });
     }
     unfinished_.remove();
@@ -238,9 +293,14 @@ class Experiment {
 
  private:
   struct Running {
-    std::unique_ptr<workers::Job> job;
+    std::unique_ptr<workers::Worker> worker;
     std::function<void()> on_done;
   };
+
+  void start(std::vector<std::string> command, workers::Worker::Task task, std::function<void()> on_done) {
+    running_.push_back({std::make_unique<workers::Worker>(std::move(command)), std::move(on_done)});
+    running_.back().worker->begin(std::move(task));
+  }
 
   /// Starts the next method of a family with known right answers, or else the computation of the right
   /// answers of the next family.
@@ -259,15 +319,13 @@ class Experiment {
   }
 
   void start_expected(FamilyWork& family) {
-    workers::Job::Task task;
-    task.command = command_of(o_.methods.front().program, o_.quantity, "");
+    workers::Worker::Task task;
     task.question = [this, &family](std::uint64_t k) { return question_of(record(family, k)).dump(); };
     task.begin = begin_;
     task.end = end_;
     task.limit = kBruteForceTimeout;
     task.on_line = [this, &family](std::uint64_t, const std::string& line) {
-      family.expected.write(line + "\n");
-      family.expected_pairs.push_back(expected_from(line).pairs.size());
+      family.expected.push_back(expected_from(line));
       notify(family.name + ", exact brute force");
     };
     task.on_failure = [this, &family](std::uint64_t k, const workers::WorkerFailure& failure) {
@@ -275,20 +333,14 @@ class Experiment {
                              std::to_string(k / o_.cases) + ", case " + std::to_string(k % o_.cases) + ": " +
                              failure.message + "; please report it");
     };
-    running_.push_back(
-        {std::make_unique<workers::Job>(std::move(task)), [&family] { family.expected_done = true; }});
+    start(command_of(o_.methods.front().program, o_.quantity, ""), std::move(task),
+          [&family] { family.expected_done = true; });
   }
 
   void start_method(FamilyWork& family, std::size_t m) {
     const workers::WorkerMethod& method = o_.methods[m];
-    workers::Job::Task task;
-    task.command = command_of(method.program, o_.quantity, method.info.name);
-    task.question = [this, &family](std::uint64_t k) {
-      nlohmann::ordered_json out = question_of(record(family, k));
-      out["right"] = family.expected.path();
-      out["line"] = k - begin_;
-      return out.dump();
-    };
+    workers::Worker::Task task;
+    task.question = [this, &family](std::uint64_t k) { return question_of(record(family, k)).dump(); };
     task.begin = begin_;
     task.end = end_;
     for (; task.begin < end_; ++task.begin) {
@@ -303,16 +355,15 @@ class Experiment {
     };
     if (task.begin == end_) return on_done();
     task.limit = Seconds(o_.timeout);
-    task.on_line = [this, &family, m](std::uint64_t, const std::string& line) {
-      keep(family, m, record_from(nlohmann::json::parse(line)));
+    task.on_line = [this, &family, m](std::uint64_t k, const std::string& line) {
+      keep(family, m, k, workers::answer_from(nlohmann::json::parse(line)));
     };
     task.on_failure = [this, &family, m](std::uint64_t k, const workers::WorkerFailure& failure) {
-      Record r = record(family, k, o_.methods[m].info.name);
-      r.expected = family.expected_pairs[k - begin_];
-      workers::note_failure(r, failure);
-      keep(family, m, std::move(r));
+      methods::Answer none;
+      workers::note_failure(none, failure);
+      keep(family, m, k, none);
     };
-    running_.push_back({std::make_unique<workers::Job>(std::move(task)), on_done});
+    start(command_of(method.program, o_.quantity, method.info.name), std::move(task), on_done);
   }
 
   /// Returns the record of case k, without an answer.
@@ -326,9 +377,11 @@ class Experiment {
     return r;
   }
 
-  void keep(FamilyWork& family, std::size_t m, Record record) {
-    unfinished_.add(record);
-    family.records[m].push_back(std::move(record));
+  void keep(FamilyWork& family, std::size_t m, std::uint64_t k, const methods::Answer& answer) {
+    Record r = record(family, k, o_.methods[m].info.name);
+    judge(r, o_.methods[m].info, answer, family.expected[k - begin_]);
+    unfinished_.add(r);
+    family.records[m].push_back(std::move(r));
     notify(family.name + ", " + o_.methods[m].info.name);
   }
 
@@ -353,7 +406,7 @@ class Experiment {
   std::size_t next_family_ = 0;
   std::deque<std::unique_ptr<FamilyWork>> open_;
   std::vector<Record> records_;
-  std::list<Running> running_;  // declared after what its jobs refer to
+  std::list<Running> running_;  // declared after what its tasks refer to
 };
 
 }  // namespace
@@ -362,36 +415,14 @@ std::vector<Record> run_experiment(const ExperimentOptions& options, const Progr
   return Experiment(options, progress).run();
 }
 
-bool Replay::ask(workers::Worker& worker, nlohmann::ordered_json question, const std::string& right,
-                 std::chrono::duration<double> limit) {
-  question.update({{"right", right}, {"line", 0}, {"pairs", true}});
-  workers::WorkerFailure failure;
-  const std::optional<std::string> line = worker.ask(question.dump(), limit, failure);
-  if (!line) {
-    record.expected = expected.size();
-    workers::note_failure(record, failure);
-    return false;
-  }
-  const auto value = nlohmann::json::parse(*line);
-  record = record_from(value);
-  if (value.contains("answered_pairs")) answered = workers::PairsJson::read(value.at("answered_pairs"));
-  return true;
-}
-
 Replay replay(const workers::WorkerMethod& method, const Record& of, double timeout, Quantity quantity) {
-  Replay out;
-  out.record = with_case({}, of);
-  out.record.method = method.info.name;
   workers::WorkerFailure failure;
   const auto right = workers::Worker(command_of(method.program, quantity, ""))
                          .ask(question_of(of).dump(), kBruteForceTimeout, failure);
   if (!right) throw EnvironmentError("exact brute force: " + failure.message + "; please report it");
-  out.expected = expected_from(*right).pairs;
-  const workers::MemoryFile file("expected");
-  file.write(*right + "\n");
   workers::Worker worker(command_of(method.program, quantity, method.info.name));
-  out.ask(worker, question_of(of), file.path(), Seconds(timeout));
-  return out;
+  return {with_case({}, of), method.info, workers::answer_of(worker, question_of(of), Seconds(timeout)),
+          expected_from(*right)};
 }
 
 StabilityRunner::Posed StabilityRunner::place(const LrbRep& rep, const Pose& pose, int side) {
@@ -403,27 +434,20 @@ StabilityRunner::Posed StabilityRunner::place(const LrbRep& rep, const Pose& pos
   return {body, pose};
 }
 
-void StabilityRunner::ask(const cases::Family& family, const cases::Case& c, const RightAnswer& expected,
-                          Record& record) {
-  pairs_.reset();
+methods::Answer StabilityRunner::ask(const cases::Case& c, bool both_ways) {
   const Mode mode = info_.pairs ? Mode::all_pairs : Mode::first_pair;
-  record.expected = expected.pairs.size();
-  workers::note_failures(record, [&] {
+  methods::Answer out;
+  workers::note_failures(out, [&] {
     if (c.a->dim() == 2 && !info_.has(methods::Trait::takes_2d))
       throw InputError("skipped: a 2D body, but the method supports only 3D");
-    if (!expected.rejection.empty() && !info_.has(methods::Trait::moves_exactly))
-      throw InputError("skipped: " + expected.rejection);
+    if (const std::string why = why_not(c); !why.empty() && !info_.has(methods::Trait::moves_exactly))
+      throw InputError("skipped: " + why);
     const Posed a = place(*c.a, c.pose_a, 0), b = place(*c.b, c.pose_b, 1);
-    methods::MethodAnswer answer = method_->query(*a.body, a.pose, *b.body, b.pose, mode);
-    record.microseconds = answer.microseconds;
-    if (family.both_ways) {
-      const bool several = c.a->component_vertices().size() > 1 && c.b->component_vertices().size() > 1;
-      judge_swapped(record, info_, answer, method_->query(*b.body, b.pose, *a.body, a.pose, mode), several);
-    } else {
-      judge(record, info_, answer, expected);
-    }
-    if (info_.pairs) pairs_ = std::move(answer.pairs);
+    methods::Answer answer = method_->query(*a.body, a.pose, *b.body, b.pose, mode);
+    if (both_ways) answer.exchanged = {method_->query(*b.body, b.pose, *a.body, a.pose, mode)};
+    out = std::move(answer);
   });
+  return out;
 }
 
 }  // namespace lrb::stability

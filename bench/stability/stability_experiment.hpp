@@ -20,32 +20,49 @@
 
 namespace lrb::stability {
 
-// Whether an answer is right: the right one, by exact brute force, and the judgement.
+// Whether an answer is right: the right one, by exact arithmetic, and the judgement.
 
 struct RightAnswer {
   std::vector<SimplexPair> pairs;
   Relation relation = Relation::separate;
   /// For a number: the interval [least, most] that contains it. Without a first contact both are 2.
   std::optional<double> least = {}, most = {};
+  double size = 0;        ///< for a number: diagonal of the larger body's box
+  bool several = false;   ///< both bodies have several pieces, so that each may contain a piece of the other
   std::string rejection;  ///< reason why the query has no answer; empty: it has one
 };
 
+/// Returns the pairs and the relation, by brute force.
 RightAnswer expected_answer(const cases::Case& c);
 
 nlohmann::ordered_json to_json(const RightAnswer& e);
 /// Reads it from a line. Throws InputError, or nlohmann's exceptions if it is not JSON.
 RightAnswer expected_from(const std::string& line);
 
-/// Sets outcome, counts and relations of the record. For a method that lists no pairs, counts are of contacts
-/// (0 or 1), and relations are "contact", "inside", "separate".
-void judge(Record& record, const methods::MethodInfo& info, const methods::MethodAnswer& answer,
+/// Sets outcome, message, time, counts and relations of the record.
+///
+/// Pairs: wrong if pairs are missed or in excess, or the relation is wrong. For a method that lists no pairs,
+/// counts are of contacts (0 or 1), and relations are "contact", "inside", "separate". A method that was
+/// asked for exchanged bodies as well is compared with itself: the answer to (B, A) must be the transpose of
+/// the answer to (A, B).
+///
+/// Numbers, as relations: wrong if it is 0 (or never) and the true value is not, or the reverse; if a proven
+/// interval does not contain the number; or if the error exceeds a millionth of the bodies' size, or a
+/// thousandth of the motion.
+void judge(Record& record, const methods::MethodInfo& info, const methods::Answer& answer,
            const RightAnswer& expected);
 
-/// Compares a method with itself for exchanged bodies: the answer to (B, A) must be the transpose of the
-/// answer to (A, B). `several`: both bodies have several pieces. Each body may then contain a piece of the
-/// other, and the relation names only one of these.
-void judge_swapped(Record& record, const methods::MethodInfo& info, const methods::MethodAnswer& answer,
-                   const methods::MethodAnswer& swapped, bool several);
+/// A judged answer with its pairs.
+struct Replay {
+  Record record;
+  std::vector<SimplexPair> expected;
+  std::optional<std::vector<SimplexPair>> answered =
+      {};  ///< nullopt: no answer, or one without a list of pairs
+
+  Replay() = default;
+  /// Judges an answer to the case of a record.
+  Replay(const Record& of, const methods::MethodInfo& info, methods::Answer answer, const RightAnswer& right);
+};
 
 // The experiment.
 
@@ -71,19 +88,7 @@ using ProgressFunction =
 /// exact brute force. Throws EnvironmentError if a worker cannot run.
 std::vector<Record> run_experiment(const ExperimentOptions& options, const ProgressFunction& progress);
 
-/// A single case, run again in its own process.
-struct Replay {
-  Record record;
-  std::vector<SimplexPair> expected;
-  std::optional<std::vector<SimplexPair>> answered;  ///< nullopt: no answer, or one without a list of pairs
-
-  /// Asks a worker, and takes record and pairs from its answer. `right`: a file with the right answer.
-  /// Returns false, with the failure in the record, if there is no answer.
-  bool ask(workers::Worker& worker, nlohmann::ordered_json question, const std::string& right,
-           std::chrono::duration<double> limit);
-};
-
-/// Runs the case of a record.
+/// Runs the case of a record again, in its own process.
 Replay replay(const workers::WorkerMethod& method, const Record& of, double timeout,
               Quantity quantity = Quantity::pairs);
 
@@ -94,12 +99,10 @@ class StabilityRunner {
   /// The method must be present.
   explicit StabilityRunner(const methods::MethodEntry& entry) : info_(entry.info), method_(entry.make()) {}
 
-  /// Runs the method on a case. Sets outcome, counts, relations, time and message of the record, and stores
-  /// the answer.
-  void ask(const cases::Family& family, const cases::Case& c, const RightAnswer& expected, Record& record);
-
-  /// Returns the pairs of the last ask(), or nullopt if there was no answer or it contains no list of pairs.
-  const std::optional<std::vector<SimplexPair>>& pairs() const { return pairs_; }
+  const methods::MethodInfo& info() const { return info_; }
+  /// Returns the method's answer to a case; with `both_ways` also that for exchanged bodies. Failures are its
+  /// outcome.
+  methods::Answer ask(const cases::Case& c, bool both_ways);
 
  private:
   using BodyPointer = std::shared_ptr<methods::MethodBody>;
@@ -114,7 +117,6 @@ class StabilityRunner {
   std::unique_ptr<methods::Method> method_;
   std::map<std::pair<std::uint64_t, int>, BodyPointer>
       kept_;  ///< by hash and side, because families share bodies
-  std::optional<std::vector<SimplexPair>> pairs_;
 };
 
 }  // namespace lrb::stability

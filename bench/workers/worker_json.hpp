@@ -1,5 +1,5 @@
 #pragma once
-/// Writes and reads a worker's description of its methods, one per line.
+/// A worker's lines: the description of its methods, one a line, and answers.
 
 #include <exception>
 #include <string>
@@ -19,13 +19,20 @@ nlohmann::ordered_json to_json(const methods::MethodInfo& info);
 /// Reads a line. Throws InputError, which describes the error in the line, if it is invalid.
 methods::MethodInfo method_info_from(const nlohmann::json& value);
 
+/// Answers to cases and bodies; without what only data sets need.
+nlohmann::ordered_json to_json(const methods::Answer& answer);
+methods::Answer answer_from(const nlohmann::json& value);
+/// Asks a worker. An answer that does not come has the outcome `crashed` or `timed_out`.
+methods::Answer answer_of(Worker& worker, const nlohmann::ordered_json& question,
+                          std::chrono::duration<double> limit);
+
 // Outcome of a query that a method rejects, or that ends with an exception.
 
 /// Calls ask(). Records an InputError as a rejection, and any other exception as a crash, with its message.
-/// Record: has a `message`, and an `outcome` with the enumerators `rejected` and `crashed`.
+/// Record: an answer or a record of one.
 template <class Record, class Ask>
 void note_failures(Record& record, Ask ask) {
-  using Outcome = decltype(record.outcome);
+  using methods::Outcome;
   try {
     ask();
   } catch (const InputError& e) {
@@ -40,8 +47,7 @@ void note_failures(Record& record, Ask ask) {
 /// Records that a worker did not answer.
 template <class Record>
 void note_failure(Record& record, const WorkerFailure& failure) {
-  using Outcome = decltype(record.outcome);
-  record.outcome = failure.timed_out ? Outcome::timed_out : Outcome::crashed;
+  record.outcome = failure.timed_out ? methods::Outcome::timed_out : methods::Outcome::crashed;
   record.message = failure.message;
 }
 

@@ -81,7 +81,7 @@ Child::Child(Child&& other) noexcept
       unfinished_(std::move(other.unfinished_)),
       unread_(std::move(other.unread_)) {}
 
-bool Child::read(std::vector<std::string>& lines) {
+bool Child::read() {
   static constexpr std::size_t kPiece = 1 << 16;
   char buffer[kPiece];
   const ssize_t n = ::read(output_, buffer, sizeof buffer);
@@ -90,7 +90,7 @@ bool Child::read(std::vector<std::string>& lines) {
   unfinished_.append(buffer, static_cast<std::size_t>(n));
   std::size_t begin = 0;
   for (std::size_t end; (end = unfinished_.find('\n', begin)) != std::string::npos; begin = end + 1)
-    lines.push_back(unfinished_.substr(begin, end - begin));
+    unread_.push_back(unfinished_.substr(begin, end - begin));
   unfinished_.erase(0, begin);
   return true;
 }
@@ -99,13 +99,13 @@ Child::Next Child::next_line(std::chrono::steady_clock::time_point deadline, std
   while (unread_.empty()) {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
-    if (left <= 0) return Next::late;
     pollfd waiting{output_, POLLIN, 0};
-    constexpr std::int64_t kMax = 60'000;  // fits an int
-    if (poll(&waiting, 1, static_cast<int>(std::min(left, kMax))) <= 0) continue;
-    std::vector<std::string> lines;
-    if (!read(lines)) return Next::end;
-    unread_.insert(unread_.end(), lines.begin(), lines.end());
+    constexpr std::int64_t kLeast = 0, kMax = 60'000;  // fits an int
+    if (poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(left, kLeast, kMax))) > 0) {
+      if (!read()) return Next::end;
+    } else if (left <= 0) {
+      return Next::late;
+    }
   }
   line = std::move(unread_.front());
   unread_.pop_front();
@@ -196,29 +196,6 @@ std::string error_in(const std::string& answer) {
   return value.is_object() ? value.value("error", "") : "";
 }
 
-std::optional<std::string> Worker::answer(std::chrono::duration<double> limit, WorkerFailure& failure) {
-  std::string line;
-  const auto next = child_.next_line(Clock::now() + std::chrono::duration_cast<Clock::duration>(limit), line);
-  if (next == Child::Next::line) return line;
-  if (next == Child::Next::late) {
-    failure = {true, text_of_timeout(limit.count())};
-    return std::nullopt;
-  }
-  const int status = child_.wait();
-  if (status == kNoSuchProgram) throw EnvironmentError(command_.front() + ": cannot be started; rebuild it");
-  failure = {false, text_of_end(status)};
-  return std::nullopt;
-}
-
-std::optional<std::string> Worker::ask(const std::string& question, std::chrono::duration<double> limit,
-                                       WorkerFailure& failure) {
-  ask(question);
-  std::optional<std::string> line = answer(limit, failure);
-  if (const std::string error = line ? error_in(*line) : ""; !error.empty())
-    throw EnvironmentError(command_.front() + ": " + error);
-  return line;
-}
-
 std::string text_of_end(int status) {
   if (status >= 0) return "exited with code " + std::to_string(status);
   const char* name = strsignal(-status);
@@ -226,83 +203,113 @@ std::string text_of_end(int status) {
          (name != nullptr ? std::string(" (") + name + ")" : "");
 }
 
-std::string text_of_timeout(double seconds) {
+namespace {
+
+std::string text_of_timeout(std::chrono::duration<double> limit) {
   char text[64];
-  std::snprintf(text, sizeof text, "no answer in %g s", seconds);
+  std::snprintf(text, sizeof text, "no answer in %g s", limit.count());
   return text;
 }
 
-void Job::start() {
-  child_.reset();
-  if (next_ == task_.end) return;
-  pipe_.emplace();
-  child_.emplace(task_.command, pipe_->reading_end());
-  sent_ = next_;
-  ask_ahead();
-  deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(task_.limit);
+Worker::Clock::time_point after(std::chrono::duration<double> limit) {
+  return Worker::Clock::now() + std::chrono::duration_cast<Worker::Clock::duration>(limit);
 }
 
-void Job::ask_ahead() {
+}  // namespace
+
+void Worker::begin(Task task) {
+  task_ = std::move(task);
+  next_ = sent_ = task_.begin;
+  hung_ = 0;
+  if (!done()) start();
+}
+
+void Worker::start() {
+  if (!child_) {
+    pipe_.emplace();
+    child_.emplace(command_, pipe_->reading_end());
+    sent_ = next_;
+    if (!greeting_.question.empty()) {
+      pipe_->write(greeting_.question + "\n");
+      std::string line;
+      const Child::Next next = child_->next_line(after(greeting_.limit), line);
+      const std::string why = next == Child::Next::line   ? error_in(line)
+                              : next == Child::Next::late ? text_of_timeout(greeting_.limit)
+                                                          : text_of_end(child_->wait());
+      if (!why.empty()) throw InputError(greeting_.complaint + why);
+    }
+  }
+  ask_ahead();
+  deadline_ = after(task_.limit);
+}
+
+void Worker::ask_ahead() {
   for (; sent_ < std::min(task_.end, next_ + kAhead); ++sent_) pipe_->write(task_.question(sent_) + "\n");
 }
 
-void Job::receive() {
-  std::vector<std::string> lines;
-  const bool more = child_->read(lines);
-  for (const std::string& line : lines) {
-    const std::string error = error_in(line);
-    if (!error.empty()) throw EnvironmentError(task_.command.front() + ": " + error);
-    if (next_ == task_.end) break;
+void Worker::receive() {
+  std::string line;
+  auto next = Child::Next::line;
+  while (!done() && (next = child_->next_line(Clock::now(), line)) == Child::Next::line) {
+    if (const std::string error = error_in(line); !error.empty())
+      throw EnvironmentError(command_.front() + ": " + error);
     task_.on_line(next_++, line);
     hung_ = 0;
-  }
-  if (next_ == task_.end) return child_.reset();
-  if (!lines.empty()) {
     ask_ahead();
-    deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(task_.limit);
+    deadline_ = after(task_.limit);
   }
-  if (more) return;
+  if (done() || next == Child::Next::late) return;
   const int status = child_->wait();
   if (status == kBadInput || status == kNoSuchProgram)
-    throw EnvironmentError(task_.command.front() + ": " + text_of_end(status) + "; rebuild it");
+    throw EnvironmentError(command_.front() + ": " + text_of_end(status) + "; rebuild it");
   go_on({false, text_of_end(status)});
 }
 
-void Job::expire() {
-  child_->kill();
-  go_on({true, text_of_timeout(task_.limit.count())});
+void Worker::expire() {
+  go_on({true, text_of_timeout(task_.limit)});
 }
 
-void Job::go_on(const WorkerFailure& failure) {
+void Worker::go_on(const WorkerFailure& failure) {
+  child_.reset();  // kills it
   task_.on_failure(next_++, failure);
   hung_ = failure.timed_out ? hung_ + 1 : 0;
   if (hung_ == kMaxTimeouts)
-    while (next_ < task_.end)
+    while (!done())
       task_.on_failure(next_++, {true, "skipped: " + failure.message + " for " +
                                            std::to_string(kMaxTimeouts) + " cases in a row"});
-  start();
+  if (!done()) start();
 }
 
-void wait_for_news(std::span<Job* const> jobs) {
+void wait_for_news(std::span<Worker* const> workers) {
   std::vector<pollfd> waiting;
-  auto deadline = Job::Clock::time_point::max();
-  for (const Job* job : jobs) {
-    waiting.push_back({job->output(), POLLIN, 0});
-    deadline = std::min(deadline, job->deadline());
+  auto deadline = Worker::Clock::time_point::max();
+  for (const Worker* worker : workers) {
+    waiting.push_back({worker->output(), POLLIN, 0});
+    deadline = std::min(deadline, worker->deadline());
   }
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Job::Clock::now()).count();
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Worker::Clock::now()).count();
   poll(waiting.data(), waiting.size(), static_cast<int>(std::max<std::int64_t>(0, left)));
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
+  for (std::size_t i = 0; i < workers.size(); ++i) {
     if (waiting[i].revents != 0)
-      jobs[i]->receive();
-    else if (Job::Clock::now() > jobs[i]->deadline())
-      jobs[i]->expire();
+      workers[i]->receive();
+    else if (Worker::Clock::now() > workers[i]->deadline())
+      workers[i]->expire();
   }
 }
 
-void run_to_end(Job job) {
-  Job* const jobs[] = {&job};
-  while (!job.done()) wait_for_news(jobs);
+void Worker::run(Task task) {
+  begin(std::move(task));
+  Worker* const workers[] = {this};
+  while (!done()) wait_for_news(workers);
+}
+
+std::optional<std::string> Worker::ask(const std::string& question, std::chrono::duration<double> limit,
+                                       WorkerFailure& failure) {
+  std::optional<std::string> out;
+  run({0, 1, [&](std::uint64_t) { return question; }, limit,
+       [&](std::uint64_t, const std::string& line) { out = line; },
+       [&](std::uint64_t, const WorkerFailure& why) { failure = why; }});
+  return out;
 }
 
 namespace {
@@ -342,8 +349,7 @@ std::vector<fs::path> programs_in(const fs::path& folder) {
       "that folder");
 }
 
-}  // namespace
-
+/// Returns the methods of one program, in its order. Throws EnvironmentError if it does not answer.
 std::vector<WorkerMethod> methods_of(const std::string& program, const std::vector<std::string>& options) {
   std::vector<std::string> command = {program, "--list"};
   command.insert(command.end(), options.begin(), options.end());
@@ -362,13 +368,15 @@ std::vector<WorkerMethod> methods_of(const std::string& program, const std::vect
   return methods;
 }
 
+}  // namespace
+
 std::vector<WorkerMethod> find_methods(methods::Quantity quantity) {
   if (quantity != methods::Quantity::pairs)
-    return methods_of(number_worker(), {"--quantity", std::string(name_of(quantity))});
+    return methods_of(main_worker(), {"--quantity", std::string(name_of(quantity))});
   const fs::path folder = folder_of_workers();
   std::vector<WorkerMethod> methods;
   for (const fs::path& program : programs_in(folder))
-    for (WorkerMethod& m : methods_of(program.string())) methods.push_back(std::move(m));
+    for (WorkerMethod& m : methods_of(program.string(), {})) methods.push_back(std::move(m));
   if (methods.empty()) throw_not_found((folder / kProgram).string());
   return methods;
 }
@@ -379,15 +387,10 @@ std::vector<methods::MethodInfo> infos_of(const std::vector<WorkerMethod>& metho
   return out;
 }
 
-std::string number_worker() {
-  std::string program = program_beside("lrbscope-quantities");
-  if (program.empty()) throw_not_found("lrbscope-quantities");
-  return program;
-}
-
-std::string program_beside(const std::string& name) {
-  const std::string path = (folder_of_workers() / name).string();
-  return access(path.c_str(), X_OK) == 0 ? path : "";
+std::string main_worker() {
+  const std::string path = (folder_of_workers() / kProgram).string();
+  if (access(path.c_str(), X_OK) != 0) throw_not_found(path);
+  return path;
 }
 
 }  // namespace lrb::workers

@@ -34,10 +34,9 @@ class Child {
 
   /// Returns the file descriptor to wait on for lines.
   int output() const { return output_; }
-  /// Reads the available output, and appends complete lines. Returns false at the end.
-  bool read(std::vector<std::string>& lines);
   enum class Next { line, late, end };
-  /// Waits for the next line until a point in time, and stores it.
+  /// Waits for the next line until a point in time, and stores it. If that has passed, it takes only a line
+  /// that is already there.
   Next next_line(std::chrono::steady_clock::time_point deadline, std::string& line);
   void kill();
   /// Waits for the end. Returns an exit code, or -signal.
@@ -47,7 +46,10 @@ class Child {
   pid_t pid_ = -1;
   int output_ = -1;
   std::string unfinished_;
-  std::deque<std::string> unread_;  ///< lines for next_line()
+  std::deque<std::string> unread_;
+
+  /// Reads the available output. Returns false at the end.
+  bool read();
 };
 
 /// Returns all lines of a child that is expected to end soon, or an empty list if it did not end with code 0
@@ -97,45 +99,28 @@ struct WorkerFailure {
   std::string message;
 };
 
-/// Messages of failures: of the end of a child, as Child::wait() returns it, and of an answer that is late.
+/// Returns the message on the end of a child, as Child::wait() returns it.
 std::string text_of_end(int status);
-std::string text_of_timeout(double seconds);
 
 /// Returns the message of an answer {"error": "..."}, or an empty text.
 std::string error_in(const std::string& answer);
 
-/// A worker process.
+/// The first line to every process of a worker, which it must answer; otherwise InputError is thrown.
+struct Greeting {
+  std::string question;
+  std::chrono::duration<double> limit{};
+  std::string complaint;  ///< begins the message of the error
+};
+
+/// A worker program that answers sequences of numbered questions. The process goes on from one sequence to
+/// the next. If it crashes or hangs, a new one continues after the current question. If several consecutive
+/// questions hang, the remaining ones are skipped and count as time-outs, so that the running time is
+/// bounded.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit Worker(std::vector<std::string> command)
-      : command_(std::move(command)), child_(command_, pipe_.reading_end()) {}
-
-  /// Waits if questions of more than a pipe's buffer (64 KiB) are unanswered.
-  void ask(const std::string& question) const { pipe_.write(question + "\n"); }
-  /// Returns the next answer, or nullopt and the reason why there is none; the process is then of no more
-  /// use. Throws EnvironmentError if the program cannot be started.
-  std::optional<std::string> answer(std::chrono::duration<double> limit, WorkerFailure& failure);
-  /// Asks and waits for the answer. Throws EnvironmentError as well if the answer is an error.
-  std::optional<std::string> ask(const std::string& question, std::chrono::duration<double> limit,
-                                 WorkerFailure& failure);
-
- private:
-  std::vector<std::string> command_;
-  Pipe pipe_;
-  Child child_;
-};
-
-/// Asks questions in a sequence of worker processes. If one crashes or hangs, the next continues after its
-/// current question. If several consecutive questions hang, the remaining ones are skipped and count as
-/// time-outs, so that the running time is bounded.
-class Job {
- public:
-  using Clock = Worker::Clock;
-
   struct Task {
-    std::vector<std::string> command;
     std::uint64_t begin = 0, end = 0;  ///< numbers of the questions
     std::function<std::string(std::uint64_t k)> question;
     std::chrono::duration<double> limit{};  ///< per question
@@ -144,9 +129,13 @@ class Job {
     std::function<void(std::uint64_t k, const WorkerFailure& failure)> on_failure;
   };
 
-  explicit Job(Task task) : task_(std::move(task)), next_(task_.begin) { start(); }
+  explicit Worker(std::vector<std::string> command, Greeting greeting = {})
+      : command_(std::move(command)), greeting_(std::move(greeting)) {}
 
-  bool done() const { return !child_; }
+  /// Begins a sequence; the one before must be done. Throws EnvironmentError, as do the following functions,
+  /// if the program cannot be started or an answer is an error.
+  void begin(Task task);
+  bool done() const { return next_ == task_.end; }
   int output() const { return child_->output(); }
   Clock::time_point deadline() const { return deadline_; }
   /// Reads lines. Call it when there is output to read.
@@ -154,13 +143,21 @@ class Job {
   /// Ends the current question. Call it when the deadline has passed.
   void expire();
 
+  /// Runs a sequence to its end, with all its lines and failures.
+  void run(Task task);
+  /// Asks one question. Returns nullopt and the reason if there is no answer.
+  std::optional<std::string> ask(const std::string& question, std::chrono::duration<double> limit,
+                                 WorkerFailure& failure);
+
  private:
   void start();
   void ask_ahead();
   void go_on(const WorkerFailure& failure);
 
+  std::vector<std::string> command_;
+  Greeting greeting_;
   Task task_;
-  std::uint64_t next_;      ///< question of the next answer
+  std::uint64_t next_ = 0;  ///< question of the next answer
   std::uint64_t sent_ = 0;  ///< questions before this one have been sent
   int hung_ = 0;            ///< consecutive questions that hung
   std::optional<Pipe> pipe_;
@@ -168,10 +165,8 @@ class Job {
   Clock::time_point deadline_;
 };
 
-/// Waits for the next output or deadline of jobs that are not done, and passes it to them.
-void wait_for_news(std::span<Job* const> jobs);
-/// Runs a job to its end, with all its lines and failures.
-void run_to_end(Job job);
+/// Waits for the next output or deadline of workers that are not done, and passes it to them.
+void wait_for_news(std::span<Worker* const> workers);
 
 struct WorkerMethod {
   std::string program;       ///< path of the worker with this method
@@ -179,22 +174,14 @@ struct WorkerMethod {
 };
 
 /// Queries the workers in the folder of the running program, or in the folder named by the environment
-/// variable LRBSCOPE_METHODS, for their methods for a quantity. Throws EnvironmentError if there is no worker
+/// variable LRBSCOPE_METHODS, for their methods for a quantity; the first program has all that are not for
+/// pairs. Throws EnvironmentError if there is no worker
 /// or one does not answer.
 std::vector<WorkerMethod> find_methods(methods::Quantity quantity = methods::Quantity::pairs);
 /// Returns their descriptions.
 std::vector<methods::MethodInfo> infos_of(const std::vector<WorkerMethod>& methods);
 
-/// Returns the path of the worker with methods that return a number. Throws EnvironmentError if it is
-/// missing.
-std::string number_worker();
-
-/// Returns the methods of one program, in its order; options may select some of them. Throws EnvironmentError
-/// if it does not answer.
-std::vector<WorkerMethod> methods_of(const std::string& program,
-                                     const std::vector<std::string>& options = {});
-
-/// Returns the path of another program in that folder, or an empty string if it is missing.
-std::string program_beside(const std::string& name);
+/// Returns the path of the worker with lrbscope's own methods. Throws EnvironmentError if it is missing.
+std::string main_worker();
 
 }  // namespace lrb::workers

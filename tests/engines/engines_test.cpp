@@ -21,18 +21,18 @@ class FakeEngine : public Engine {
       : times_(std::move(times)), tests_(std::move(tests)), queries_(times_.size(), 0) {}
 
   std::string name() const override { return "fake"; }
-  std::vector<EngineAnswer> ask(std::span<const Pose> poses, Wanted wanted,
-                                const Progress& progress) override {
-    std::vector<EngineAnswer> out;
+  std::vector<methods::Answer> ask(std::span<const Pose> poses, Wanted wanted,
+                                   const Progress& progress) override {
+    std::vector<methods::Answer> out;
     for (const Pose& pose : poses) {
       const auto i = static_cast<std::size_t>(pose.t.x());
-      EngineAnswer& answer = out.emplace_back();
+      methods::Answer& answer = out.emplace_back();
       if (wanted.tests) {
-        answer.us = 1e6;  // counting takes long, and must not count as time
+        answer.microseconds = 1e6;  // counting takes long, and must not count as time
         answer.tests = tests_[i];
         continue;
       }
-      answer.us = times_[i][std::min(queries_[i]++, times_[i].size() - 1)];
+      answer.microseconds = times_[i][std::min(queries_[i]++, times_[i].size() - 1)];
     }
     progress(out.size());
     return out;
@@ -79,9 +79,10 @@ TEST_CASE("percentiles are values of the sorted list, and quantities that are no
   std::vector<double> us;
   for (std::size_t i = 0; i < kPoses; ++i) {
     us.push_back(random.in(1, 100));
-    samples.answers.emplace_back().us = us.back();
+    samples.answers.emplace_back().microseconds = us.back();
   }
-  samples.answers.emplace_back().failure = "killed";  // counts nowhere
+  const auto kill = [](methods::Answer& a) { a.outcome = methods::Outcome::crashed, a.message = "killed"; };
+  kill(samples.answers.emplace_back());  // counts nowhere
   std::sort(us.begin(), us.end());
   const std::vector<Percentiles> found = percentiles(samples);
   REQUIRE(found.size() == 1);
@@ -93,7 +94,7 @@ TEST_CASE("percentiles are values of the sorted list, and quantities that are no
   CHECK(found[0].max == us[249]);
   CHECK(notes_of({samples}) ==
         std::vector<std::string>{"fake: no answer at 1 of 251 poses; pose 250: killed"});
-  for (EngineAnswer& a : samples.answers) a.failure = "killed";
+  for (methods::Answer& a : samples.answers) kill(a);
   CHECK(percentiles(samples).empty());
 }
 
@@ -101,9 +102,9 @@ TEST_CASE("the least of three rounds counts, and counting tests takes no time") 
   FakeEngine engine({{10}, {90, 95, 11}, {70, 10, 12}}, {10, 1000, 1});
   const Samples samples = measure(engine, numbered_poses(3), run::kSilent);
   CHECK(samples.rounds == kRounds);
-  CHECK(samples.answers[0].us == 10);
-  CHECK(samples.answers[1].us == 11);
-  CHECK(samples.answers[2].us == 10);
+  CHECK(samples.answers[0].microseconds == 10);
+  CHECK(samples.answers[1].microseconds == 11);
+  CHECK(samples.answers[2].microseconds == 10);
   CHECK(samples.answers[1].tests == 1000);
 }
 
@@ -116,16 +117,16 @@ TEST_CASE(
                             event(EventKind::nodes, 1, 1, 0), event(EventKind::phase, 1, 0, 0),
                             event(EventKind::triangles, 7, 2, 1), event(EventKind::triangles, 3, 2, 1),
                             event(EventKind::triangles, 3, 9, 0), event(EventKind::count, 0, 5, 0)});
-  const EngineAnswer a = answer_of(q, names, true);
-  CHECK(a.us == 2.5);
-  CHECK(a.pairs == 1);
+  const methods::Answer a = answer_of(q, names, true);
+  CHECK(a.microseconds == 2.5);
+  CHECK(a.count == 1);
   CHECK(a.tests == 8);
   CHECK(a.kinds->boxes == 5);
   CHECK(a.kinds->faces == 3);
   CHECK(a.phases.at("broad") == 5);
   CHECK(a.phases.at("narrow") == 3);
   const std::vector<SimplexPair> list = {{SimplexId(3), SimplexId(2)}, {SimplexId(7), SimplexId(2)}};
-  CHECK(a.list == list);
+  CHECK(a.pairs == list);
   q.events.pop_back();  // not all were kept
   q.parts[0].count = q.events.size();
   CHECK(answer_of(q, names, false).tests == 8);

@@ -181,7 +181,7 @@ struct Judged {
     const bench::Question& question = set.questions[q];
     bench::Record r = answer(m.name, q, question.pose_class, us);
     r.set = set.name;
-    methods::MethodAnswer said;
+    methods::Answer said;
     said.pairs = pairs;
     said.contact = !pairs.empty();
     r.all.contact = said.contact;
@@ -327,6 +327,7 @@ TEST_CASE("errors of near pairs: missing and extra pairs, and the largest error 
   // The nearest corners of two boxes are 5 apart: (3, 4, 0).
   const LrbRep a = build_lrb(shapes::box()), b = methods::at_pose(a, Pose::translation({4, 5, 0.5}));
   bench::DataSet set;
+  set.quantity = Quantity::near_pairs;
   set.diagonal = 10;
   bench::Question q;
   q.expected = bench::exact_pairs(a, Pose{}, b, Pose{}, 5);
@@ -334,8 +335,10 @@ TEST_CASE("errors of near pairs: missing and extra pairs, and the largest error 
   CHECK(bench::exact_pairs(a, Pose{}, b, Pose{}, std::nextafter(5, 0)).empty());
   const auto error = [&](std::vector<SimplexPair> pairs, double distance, Metric m) {
     std::sort(pairs.begin(), pairs.end());
-    return bench::errors_of_near(set, q, a, b, pairs,
-                                 std::vector<double>(pairs.size(), distance))[static_cast<std::size_t>(m)];
+    methods::Answer found;
+    found.distances.assign(pairs.size(), distance);
+    found.pairs = std::move(pairs);
+    return bench::errors_of_answer(set, q, a, b, info("near"), found)[static_cast<std::size_t>(m)];
   };
   CHECK(*error(q.expected, 5, Metric::list) == 0);
   CHECK(*error(q.expected, 5, Metric::distance) == 0);

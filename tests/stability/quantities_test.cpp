@@ -5,7 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/quantities/number_method.hpp"
+#include "bench/methods/triangles.hpp"
+#include "bench/quantities/truth.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
@@ -31,22 +32,25 @@ void check_number(Quantity quantity, const cases::Case& c, double right) {
   CHECK(*e.most - *e.least <= 1e-15 * right);
 }
 
-const NumberMethod& ours(Quantity quantity) {
-  static const std::vector<NumberMethod> kMethods = own_number_methods();
-  for (const NumberMethod& m : kMethods)
-    if (m.quantity == quantity && m.info.name == "ours") return m;
-  throw InputError("ours is not there");
+/// Asks lrbscope, and judges its answer.
+Record ask_ours(Quantity quantity, const cases::Case& c) {
+  static const std::vector<methods::MethodEntry> kMethods = methods::registered_methods();
+  const methods::MethodEntry& ours = methods::find_method(kMethods, "ours", quantity);
+  Record r;
+  judge(r, ours.info, ask_number(ours, c), true_number(quantity, c));
+  return r;
 }
 
 Outcome judged(Quantity quantity, double lower, double upper, double least, double most, bool proves) {
-  NumberMethod method;
-  method.quantity = quantity;
-  method.proves = proves;
+  methods::MethodInfo info;
+  info.quantity = quantity;
+  info.traits.set(methods::Trait::proves, proves);
   RightAnswer e;
   e.least = least;
   e.most = most;
+  e.size = 1;
   Record r;
-  judge_number(r, method, {lower, upper, 0}, e, 1);
+  judge(r, info, methods::number_answer(lower, upper, 0), e);
   return r.outcome;
 }
 
@@ -67,7 +71,7 @@ TEST_CASE("stability: the true distance and depth of two boxes") {
 TEST_CASE("B collides with A at the time found by exact queries") {
   const cases::Case c = boxes({0.25, 0.5, 0.875});
   const RightAnswer e = true_number(Quantity::first_contact, c);
-  const NumberQuery q = query_of(c);
+  const methods::Question q = question_of(c);
   const double gap = q.from.z() + 0.875 - 1, way = q.from.z() - q.to.z();  // from above, face on face
   const double by_x = q.from.x() + 0.25 - 1, by_y = q.from.y() + 0.5 - 1;
   REQUIRE(gap > 0);
@@ -89,6 +93,7 @@ TEST_CASE("stability: computed numbers are compared with the true ones") {
   CHECK(distance(0, 0, 1e-16, false) == Outcome::wrong);
   CHECK(distance(1e-16, 1e-16, 0, false) == Outcome::wrong);
   CHECK(distance(0, 0, 0, false) == Outcome::right);
+  using methods::kNever;
   CHECK(judged(Quantity::first_contact, kNever, kNever, 0.5, 0.5, false) == Outcome::wrong);
   CHECK(judged(Quantity::first_contact, 0.5, 0.5, kNever, kNever, false) == Outcome::wrong);
   CHECK(judged(Quantity::first_contact, kNever, kNever, kNever, kNever, false) == Outcome::right);
@@ -105,8 +110,7 @@ TEST_CASE("lrbscope's numbers are right from benign to degenerate") {
         CAPTURE(difficulty);
         CAPTURE(name_of(quantity));
         const cases::Case c = cases::make_case(*cases::find_family(name), 3, difficulty, 0);
-        Record r;
-        ask_number(ours(quantity), c, true_number(quantity, c), r);
+        const Record r = ask_ours(quantity, c);
         CAPTURE(r.relation);
         CAPTURE(r.expected_relation);
         CHECK((r.outcome == Outcome::right || r.outcome == Outcome::rejected));
@@ -120,9 +124,7 @@ TEST_CASE("a needle that passes many triangles is decided") {
   for (const int difficulty : {2, 5, 10}) {
     CAPTURE(difficulty);
     const cases::Case c = cases::make_case(*cases::find_family("sliver"), 1, difficulty, 1);
-    Record r;
-    ask_number(ours(Quantity::first_contact), c, true_number(Quantity::first_contact, c), r);
-    CHECK(r.outcome == Outcome::right);
+    CHECK(ask_ours(Quantity::first_contact, c).outcome == Outcome::right);
   }
 }
 
@@ -142,7 +144,7 @@ LrbRep triangles(const std::vector<Eigen::Vector3d>& points, const std::vector<s
 
 TEST_CASE("rational lists: pairs within a distance, with the distance itself") {
   const cases::Case c = boxes({1.25, 0, 0});
-  const NumberQuery q = query_of(c);
+  const methods::Question q = question_of(c);
   CHECK(true_near_pairs(q.a, q.b, std::nextafter(0.25, 0)).empty());
   const std::size_t facing = true_near_pairs(q.a, q.b, 0.25).size();
   CHECK(facing > 4);  // the two facing sides, and faces beside them
@@ -176,13 +178,15 @@ TEST_CASE("rational lists: self-intersections of triangles that share corners") 
 TEST_CASE("judging lists") {
   RightAnswer right;
   right.pairs = {{SimplexId(0), SimplexId(1)}, {SimplexId(2), SimplexId(2)}};
-  NumberAnswer answer;
+  methods::MethodInfo info;
+  info.quantity = Quantity::near_pairs;
+  methods::Answer answer;
   answer.pairs = right.pairs;
   Record r;
-  judge_list(r, answer, right);
+  judge(r, info, answer, right);
   CHECK(r.outcome == Outcome::right);
   answer.pairs[1].b = SimplexId(3);
-  judge_list(r, answer, right);
+  judge(r, info, answer, right);
   CHECK(r.outcome == Outcome::wrong);
   CHECK(r.missed == 1);
   CHECK(r.extra == 1);
@@ -199,8 +203,7 @@ TEST_CASE("lrbscope's lists of near pairs and self-intersections are right from 
           CAPTURE(index);
           CAPTURE(name_of(quantity));
           const cases::Case c = cases::make_case(*cases::find_family(name), 5, difficulty, index);
-          Record r;
-          ask_number(ours(quantity), c, true_number(quantity, c), r);
+          const Record r = ask_ours(quantity, c);
           CHECK((r.outcome == Outcome::right || r.outcome == Outcome::rejected));
           right += r.outcome == Outcome::right;
           pairs += r.expected;

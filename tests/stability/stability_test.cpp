@@ -197,7 +197,7 @@ TEST_CASE("stability: failures are counted per method, family and difficulty") {
 
 TEST_CASE("stability: judge() compares pairs and relation with the right answer") {
   methods::MethodInfo info;
-  methods::MethodAnswer answer;
+  methods::Answer answer;
   RightAnswer expected;
   expected.pairs = {{0, 1}, {2, 3}};
   expected.relation = Relation::crossing;
@@ -230,7 +230,7 @@ TEST_CASE("stability: judge() compares pairs and relation with the right answer"
 
   expected = RightAnswer{};
   expected.relation = Relation::b_inside_a;
-  answer = methods::MethodAnswer{};
+  answer = methods::Answer{};
   answer.inside = false;
   judge(r, info, answer, expected);
   CHECK(r.outcome == Outcome::wrong);
@@ -245,26 +245,28 @@ TEST_CASE("stability: judge() compares pairs and relation with the right answer"
 
 TEST_CASE("judging a method by itself, with the bodies exchanged") {
   methods::MethodInfo info;
-  methods::MethodAnswer ab, ba;
+  methods::Answer ab, ba;
+  RightAnswer right;
+  const auto outcome = [&] {
+    ab.exchanged = {ba};
+    Record r;
+    judge(r, info, ab, right);
+    CHECK((r.missed == 1) == (ba.pairs.size() < ab.pairs.size()));
+    return r.outcome;
+  };
   ab.pairs = {{0, 1}, {0, 2}, {3, 1}};
   ba.pairs = {{1, 0}, {1, 3}, {2, 0}};
-  Record r;
-  judge_swapped(r, info, ab, ba, false);
-  CHECK(r.outcome == Outcome::right);
+  CHECK(outcome() == Outcome::right);
   ba.pairs = {{1, 0}, {2, 0}};
-  judge_swapped(r, info, ab, ba, false);
-  CHECK(r.outcome == Outcome::wrong);
-  CHECK(r.missed == 1);
+  CHECK(outcome() == Outcome::wrong);
   ab.pairs = ba.pairs = {};
   ab.relation = Relation::a_inside_b;
   ba.relation = Relation::b_inside_a;
-  judge_swapped(r, info, ab, ba, false);
-  CHECK(r.outcome == Outcome::right);
+  CHECK(outcome() == Outcome::right);
   ba.relation = Relation::a_inside_b;
-  judge_swapped(r, info, ab, ba, false);
-  CHECK(r.outcome == Outcome::wrong);
-  judge_swapped(r, info, ab, ba, true);  // each may hold a piece of the other
-  CHECK(r.outcome == Outcome::right);
+  CHECK(outcome() == Outcome::wrong);
+  right.several = true;  // each may hold a piece of the other
+  CHECK(outcome() == Outcome::right);
 }
 
 // If the benign end were not benign the grid could not say where along the difficulty a method starts to
@@ -288,7 +290,7 @@ TEST_CASE(
         const RightAnswer right = expected_answer(c);
         const auto ask = [&](StabilityRunner& method) {
           Record r;
-          method.ask(f, c, right, r);
+          judge(r, method.info(), method.ask(c, f.both_ways), right);
           return r;
         };
         const Record r = ask(plain);

@@ -1,6 +1,7 @@
 // CGAL, with its kernel of exact predicates and inexact constructions: near pairs by its intersecting boxes,
 // of which those of A have grown by the distance, and by an AABB tree queried with such boxes.
-#include "bench/quantities/number_method.hpp"
+
+#include "bench/methods/method.hpp"
 
 #ifdef LRB_HAS_CGAL
 
@@ -15,10 +16,9 @@
 
 #include "bench/methods/triangles.hpp"
 
-namespace lrb::stability {
+namespace lrb::methods {
 namespace {
 
-using methods::Stopwatch;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Triangle = Kernel::Triangle_3;
 using Iterator = std::vector<Triangle>::const_iterator;
@@ -26,7 +26,7 @@ using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_triangle_primi
 using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, Iterator>;
 
 std::vector<Triangle> triangles(const LrbRep& rep) {
-  const methods::Triangles t = methods::triangles_of(rep);
+  const Triangles t = triangles_of(rep);
   const auto point = [&](VertexId v) {
     const Eigen::Vector3d& x = t.vertices[v];
     return Kernel::Point_3(x.x(), x.y(), x.z());
@@ -40,8 +40,8 @@ CGAL::Bbox_3 grown(const CGAL::Bbox_3& b, double by) {
   return {b.xmin() - by, b.ymin() - by, b.zmin() - by, b.xmax() + by, b.ymax() + by, b.zmax() + by};
 }
 
-void add_if_near(const NumberQuery& q, const std::vector<Triangle>& a, Iterator s,
-                 const std::vector<Triangle>& b, Iterator t, NumberAnswer& out) {
+void add_if_near(const Question& q, const std::vector<Triangle>& a, Iterator s,
+                 const std::vector<Triangle>& b, Iterator t, Answer& out) {
   const double square = CGAL::squared_distance(*s, *t);
   if (square <= q.within * q.within)
     add_near(out, {static_cast<SimplexId>(s - a.cbegin()), static_cast<SimplexId>(t - b.cbegin())},
@@ -49,9 +49,9 @@ void add_if_near(const NumberQuery& q, const std::vector<Triangle>& a, Iterator 
 }
 
 template <bool kMeasures>
-NumberAnswer by_boxes(const NumberQuery& q, Setting) {
+Answer by_boxes(const Question& q, Setting) {
   const std::vector<Triangle> a = triangles(q.a), b = triangles(q.b);
-  NumberAnswer out;
+  Answer out;
   const Stopwatch watch;
   std::vector<Box> boxes_a, boxes_b;
   for (Iterator s = a.cbegin(); s != a.cend(); ++s) boxes_a.emplace_back(grown(s->bbox(), q.within), s);
@@ -72,11 +72,11 @@ NumberAnswer by_boxes(const NumberQuery& q, Setting) {
   return out;
 }
 
-NumberAnswer by_tree(const NumberQuery& q, Setting) {
+Answer by_tree(const Question& q, Setting) {
   const std::vector<Triangle> a = triangles(q.a), b = triangles(q.b);
   Tree tree(b.cbegin(), b.cend());
   tree.build();
-  NumberAnswer out;
+  Answer out;
   const Stopwatch watch;
   std::vector<Iterator> met;
   for (Iterator s = a.cbegin(); s != a.cend(); ++s) {
@@ -89,38 +89,42 @@ NumberAnswer by_tree(const NumberQuery& q, Setting) {
   return out;
 }
 
-NumberMethod cgal_method(const char* name, const char* what, const char* remark, const Ask& ask,
-                         methods::MethodStyle style) {
-  return number_method(name, std::string("CGAL " CGAL_VERSION_STR ", ") + what, remark, Quantity::near_pairs,
-                       ask, std::move(style));
+MethodEntry cgal_method(const char* name, const char* what, const char* remark, Ask ask, MethodStyle style,
+                        Traits traits = {Trait::hard_cases}) {
+  return {{.name = name,
+           .title = std::string("CGAL " CGAL_VERSION_STR ", ") + what,
+           .remark = remark,
+           .traits = traits,
+           .style = std::move(style),
+           .rank = 30,
+           .quantity = Quantity::near_pairs},
+          nullptr,
+          std::move(ask)};
 }
 
 }  // namespace
 
-std::vector<NumberMethod> cgal_number_methods() {
-  const methods::MethodStyle boxes = {"CGAL, boxes", "#009e73", "triangle"};
-  NumberMethod only = cgal_method("cgal-boxes-only", "box_intersection_d", "Boxes only, no distances.",
-                                  by_boxes<false>, {"CGAL, boxes only", "#8f5bd9", "rectRot"});
-  only.info.traits.set(methods::Trait::hard_cases, false);
+std::vector<MethodEntry> cgal_numbers_methods() {
   return {cgal_method("cgal-boxes", "box_intersection_d, distances",
                       "box_intersection_d() of A's boxes grown by the distance and B's; squared_distance() "
                       "of the triangles.",
-                      by_boxes<true>, boxes),
-          std::move(only),
+                      by_boxes<true>, {"CGAL, boxes", "#009e73", "triangle"}),
+          cgal_method("cgal-boxes-only", "box_intersection_d", "Boxes only, no distances.", by_boxes<false>,
+                      {"CGAL, boxes only", "#8f5bd9", "rectRot"}, {}),
           cgal_method("cgal-tree", "AABB_tree, distances",
                       "all_intersected_primitives() of B's tree for each box of A, grown by the distance; "
                       "squared_distance() of the triangles.",
                       by_tree, {"CGAL, AABB tree", "#4f7942", "star"})};
 }
 
-}  // namespace lrb::stability
+}  // namespace lrb::methods
 
 #else
 
-namespace lrb::stability {
-std::vector<NumberMethod> cgal_number_methods() {
+namespace lrb::methods {
+std::vector<MethodEntry> cgal_numbers_methods() {
   return {};
 }
-}  // namespace lrb::stability
+}  // namespace lrb::methods
 
 #endif

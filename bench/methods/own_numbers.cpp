@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 
 #include "bench/methods/triangles.hpp"
-#include "bench/quantities/number_method.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
@@ -13,44 +12,43 @@
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/self_intersections.hpp>
 
-namespace lrb::stability {
+namespace lrb::methods {
 namespace {
 
 using Eigen::Vector3d;
-using methods::Stopwatch;
 
-Motion motion_of(const NumberQuery& q) {
+Motion motion_of(const Question& q) {
   return Motion::linear(Pose::translation(q.from), q.to);
 }
 
-NumberAnswer answer_of(const NumberQuery& q, DistanceRequest request) {
+Answer interval_of(const Question& q, DistanceRequest request) {
   request.relation = false;
   const Stopwatch watch;
   const DistanceResult r = distance(q.a, Pose{}, q.b, Pose{}, request);
   const double us = watch.microseconds();
   // Only a lower bound may be known; records contain finite numbers.
-  return {r.lower, std::min(r.upper, std::numeric_limits<double>::max()), us};
+  return number_answer(r.lower, std::min(r.upper, std::numeric_limits<double>::max()), us);
 }
 
-NumberAnswer our_distance(const NumberQuery& q, Setting tolerance) {
+Answer our_distance(const Question& q, Setting tolerance) {
   DistanceRequest request;
   request.tolerance = tolerance.value_or(0) * q.size;
-  return answer_of(q, request);
+  return interval_of(q, request);
 }
 
-NumberAnswer distance_in_steps(const NumberQuery& q, Setting steps) {
+Answer distance_in_steps(const Question& q, Setting steps) {
   DistanceRequest request;
   request.max_steps = static_cast<std::uint64_t>(steps.value_or(100));
-  return answer_of(q, request);
+  return interval_of(q, request);
 }
 
-NumberAnswer within(const NumberQuery& q, Setting share) {
+Answer within(const Question& q, Setting share) {
   DistanceRequest request;
   request.within = share.value_or(0.05) * q.size;
-  return answer_of(q, request);
+  return interval_of(q, request);
 }
 
-NumberAnswer our_first_contact(const NumberQuery& q, Setting tolerance) {
+Answer our_first_contact(const Question& q, Setting tolerance) {
   FirstContactRequest request;
   request.relation = false;
   if (tolerance) request.tolerance = *tolerance;
@@ -59,39 +57,40 @@ NumberAnswer our_first_contact(const NumberQuery& q, Setting tolerance) {
   const double us = watch.microseconds();
   if (r.outcome == MotionOutcome::undecided)
     throw InputError("undecided, as reported by the method: closer than rounding errors");
-  if (r.outcome == MotionOutcome::never) return {kNever, kNever, us};
-  return {r.t0, r.t1, us};
+  if (r.outcome == MotionOutcome::never) return number_answer(kNever, kNever, us);
+  return number_answer(r.t0, r.t1, us);
 }
 
-NumberAnswer our_depth(const NumberQuery& q, Setting) {
+Answer our_depth(const Question& q, Setting) {
   ClashRequest request;
   request.volume = false;
   const Stopwatch watch;
   const ClashResult r = clash(q.a, Pose{}, q.b, Pose{}, request);
   const double us = watch.microseconds();
   if (!r.depth) throw InputError("undecided, as reported by the method: not a closed solid");
-  return {r.depth->lower, r.depth->upper, us};
+  return number_answer(r.depth->lower, r.depth->upper, us);
 }
 
 /// Runs the exact query at n + 1 equally spaced times.
-NumberAnswer sampled(const NumberQuery& q, int n) {
+Answer sampled(const Question& q, int n) {
   const Motion motion = motion_of(q);
   CollideRequest any;
   any.mode = Mode::any_pair;
   const Stopwatch watch;
   for (int i = 0; i <= n; ++i) {
     const double t = static_cast<double>(i) / n;
-    if (!collide(q.a, Pose{}, q.b, motion.at(t), any).pairs.empty()) return {t, t, watch.microseconds()};
+    if (!collide(q.a, Pose{}, q.b, motion.at(t), any).pairs.empty())
+      return number_answer(t, t, watch.microseconds());
   }
-  return {kNever, kNever, watch.microseconds()};
+  return number_answer(kNever, kNever, watch.microseconds());
 }
 
-NumberAnswer our_near_pairs(const NumberQuery& q, Setting) {
+Answer our_near_pairs(const Question& q, Setting) {
   NearPairsRequest request;
   request.within = q.within;
   const Stopwatch watch;
   const NearPairsResult r = near_pairs(q.a, Pose{}, q.b, Pose{}, request);
-  NumberAnswer out;
+  Answer out;
   out.microseconds = watch.microseconds();
   for (const NearPair& p : r.pairs) {
     add_near(out, {p.a, p.b}, p.upper);
@@ -100,11 +99,11 @@ NumberAnswer our_near_pairs(const NumberQuery& q, Setting) {
   return out;
 }
 
-NumberAnswer our_self_intersections(const NumberQuery& q, Setting) {
+Answer our_self_intersections(const Question& q, Setting) {
   const LrbRep body = union_of(q);
   const Stopwatch watch;
   const SelfIntersections r = self_intersections(body, 1);
-  NumberAnswer out;
+  Answer out;
   out.microseconds = watch.microseconds();
   for (const SelfIntersection& p : r.pairs)  // all faces are triangles
     out.pairs.push_back({static_cast<SimplexId>(p.a.value()), static_cast<SimplexId>(p.b.value())});
@@ -157,7 +156,7 @@ Eigen::AlignedBox3d box_of(const Triangle& t) {
 }
 
 double triangle_to_triangle(const Triangle& s, const Triangle& t) {
-  if (methods::plain_triangles_meet(s.data(), t.data())) return 0;
+  if (plain_triangles_meet(s.data(), t.data())) return 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
     least = std::min({least, point_to_triangle(s[i], t), point_to_triangle(t[i], s)});
@@ -167,7 +166,7 @@ double triangle_to_triangle(const Triangle& s, const Triangle& t) {
   return least;
 }
 
-NumberAnswer plain_near_pairs(const NumberQuery& q, Setting) {
+Answer plain_near_pairs(const Question& q, Setting) {
   struct Face {
     Triangle corners;
     Eigen::AlignedBox3d box;
@@ -178,7 +177,7 @@ NumberAnswer plain_near_pairs(const NumberQuery& q, Setting) {
       out.push_back({triangle(rep, s), box_of(triangle(rep, s))});
     return out;
   };
-  NumberAnswer out;
+  Answer out;
   const Stopwatch watch;
   const std::vector<Face> a = faces_of(q.a), b = faces_of(q.b);
   for (SimplexId i = 0; i < a.size(); ++i)
@@ -191,9 +190,9 @@ NumberAnswer plain_near_pairs(const NumberQuery& q, Setting) {
   return out;
 }
 
-NumberAnswer plain_self_intersections(const NumberQuery& q, Setting) {
+Answer plain_self_intersections(const Question& q, Setting) {
   const LrbRep body = union_of(q);
-  NumberAnswer out;
+  Answer out;
   const Stopwatch watch;
   for (SimplexId i = 0; i < body.real_simplex_count(); ++i)
     for (SimplexId j(i + 1); j < body.real_simplex_count(); ++j) {
@@ -202,63 +201,94 @@ NumberAnswer plain_self_intersections(const NumberQuery& q, Setting) {
       body.simplex(j, w);
       if (std::find_first_of(v, v + 3, w, w + 3) != v + 3) continue;
       const Triangle s = triangle(body, i), t = triangle(body, j);
-      if (methods::plain_triangles_meet(s.data(), t.data())) out.pairs.push_back({i, j});
+      if (plain_triangles_meet(s.data(), t.data())) out.pairs.push_back({i, j});
     }
   out.microseconds = watch.microseconds();
   return out;
 }
 
-NumberMethod plain_list(Quantity quantity, const char* remark, const Ask& ask) {
-  NumberMethod m = number_method("plain", "brute force, double", remark, quantity, ask,
-                                 {"brute force", "#6b6b6b", "crossRot"});
-  m.info.role = methods::Role::no_peer;
-  return m;
+constexpr const char* kInterval = "An interval that must contain the number.";
+const MethodStyle kOurStyle = {"lrbscope", "#0072b2", "circle"};
+const MethodStyle kPlainStyle = {"brute force", "#6b6b6b", "crossRot"};
+constexpr Traits kProves = {Trait::hard_cases, Trait::proves};
+constexpr int kRank = 10;
+
+MethodEntry ours(Quantity quantity, const char* title, Ask ask, const char* remark = kInterval,
+                 Traits traits = kProves) {
+  return {{.name = "ours",
+           .title = title,
+           .remark = remark,
+           .traits = traits,
+           .style = kOurStyle,
+           .role = Role::ours,
+           .rank = kRank,
+           .quantity = quantity},
+          nullptr,
+          std::move(ask)};
 }
 
-NumberMethod ours(Quantity quantity, const char* title, const Ask& ask, const char* remark = nullptr) {
-  NumberMethod m = number_method("ours", title, remark ? remark : "An interval that must contain the number.",
-                                 quantity, ask, {"lrbscope", "#0072b2", "circle"});
-  m.info.role = methods::Role::ours;
-  m.proves = quantity != Quantity::self_intersections;
-  return m;
+MethodEntry plain_list(Quantity quantity, const char* remark, Ask ask) {
+  return {{.name = "plain",
+           .title = "brute force, double",
+           .remark = remark,
+           .style = kPlainStyle,
+           .role = Role::no_peer,
+           .rank = kRank,
+           .quantity = quantity},
+          nullptr,
+          std::move(ask)};
 }
 
-/// Returns a method of lrbscope that computes less than the narrowest interval. For charts only.
-NumberMethod less(const char* name, const char* title, const char* remark, methods::MethodStyle style,
-                  const Ask& ask) {
-  NumberMethod m = number_method(name, title, remark, Quantity::distance, ask, std::move(style));
-  m.info.role = methods::Role::ours_other;
-  m.info.traits.set(methods::Trait::hard_cases, false);
-  m.proves = true;
-  return m;
-}
-
-NumberMethod sampled_method(int n) {
-  constexpr int kTooFewForHardCases = 10;
-  NumberMethod m = number_method(
-      "sampled-" + std::to_string(n), "exact query, " + std::to_string(n) + " steps",
-      "lrbscope's exact query at equally spaced times; returns the first at which the bodies collide.",
-      Quantity::first_contact, [n](const NumberQuery& q, Setting) { return sampled(q, n); },
-      {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot"});
-  m.info.traits.set(methods::Trait::hard_cases, n > kTooFewForHardCases);
-  return m;
+MethodEntry sampled_method(int n, Traits traits) {
+  return {
+      {.name = "sampled-" + std::to_string(n),
+       .title = "exact query, " + std::to_string(n) + " steps",
+       .remark =
+           "lrbscope's exact query at equally spaced times; returns the first at which the bodies collide.",
+       .traits = traits,
+       .style = {"exact query at 10, 100, 1000 times", "#6b6b6b", "crossRot"},
+       .rank = kRank,
+       .quantity = Quantity::first_contact},
+      nullptr,
+      [n](const Question& q, Setting) { return sampled(q, n); }};
 }
 
 }  // namespace
 
-std::vector<NumberMethod> own_number_methods() {
-  return {with_parameter(ours(Quantity::distance, "lrbscope, distance", our_distance), "tolerance",
-                         {0.1, 0.01, 1e-3, 1e-6, 0}),
-          with_parameter(less("ours-budget", "lrbscope, distance in N steps",
-                              "The interval after N steps (pairs of nodes expanded).",
-                              {"lrbscope, within a budget", "#56b4e9", "rect"}, distance_in_steps),
-                         "steps", {3, 10, 30, 100, 300}),
-          with_parameter(less("ours-within", "lrbscope, within 5 % of the diagonal?",
-                              "A proven yes or no; the interval is the bound known by then.",
-                              {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"}, within),
-                         "within", {0.05}),
-          with_parameter(ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact),
-                         "tolerance", {1e-6, 1e-9, 1e-12}),
+std::vector<MethodEntry> own_numbers_methods() {
+  MethodEntry distance = ours(Quantity::distance, "lrbscope, distance", our_distance);
+  distance.info.parameter = "tolerance";
+  distance.info.settings = {0.1, 0.01, 1e-3, 1e-6, 0};
+  MethodEntry first_contact = ours(Quantity::first_contact, "lrbscope, first contact", our_first_contact);
+  first_contact.info.parameter = "tolerance";
+  first_contact.info.settings = {1e-6, 1e-9, 1e-12};
+  return {std::move(distance),
+          // Two that compute less than the narrowest interval, for charts only.
+          {{.name = "ours-budget",
+            .title = "lrbscope, distance in N steps",
+            .remark = "The interval after N steps (pairs of nodes expanded).",
+            .traits = {Trait::proves},
+            .parameter = "steps",
+            .settings = {3, 10, 30, 100, 300},
+            .style = {"lrbscope, within a budget", "#56b4e9", "rect"},
+            .role = Role::ours_other,
+            .rank = kRank,
+            .quantity = Quantity::distance},
+           nullptr,
+           distance_in_steps},
+          {{.name = "ours-within",
+            .title = "lrbscope, within 5 % of the diagonal?",
+            .remark = "A proven yes or no; the interval is the bound known by then.",
+            .traits = {Trait::proves},
+            .parameter = "within",
+            .settings = {0.05},
+            .style = {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"},
+            .role = Role::ours_other,
+            .rank = kRank,
+            .quantity = Quantity::distance},
+           nullptr,
+           within},
+          std::move(first_contact),
           ours(Quantity::depth, "lrbscope, clash", our_depth),
           ours(Quantity::near_pairs, "lrbscope, near pairs", our_near_pairs,
                "near_pairs(), all pairs, each with the interval of its distance."),
@@ -266,14 +296,14 @@ std::vector<NumberMethod> own_number_methods() {
                      "Boxes of every pair, then the distance by corners, edges and Moeller's test (1997).",
                      plain_near_pairs),
           ours(Quantity::self_intersections, "lrbscope, self-intersections", our_self_intersections,
-               "self_intersections() of a mesh."),
-          plain_list(Quantity::self_intersections,
-                     "Every pair without a common corner by Moeller's test (1997); others are left out, as "
-                     "usual.",
-                     plain_self_intersections),
-          sampled_method(10),
-          sampled_method(100),
-          sampled_method(1000)};
+               "self_intersections() of a mesh.", {Trait::hard_cases}),
+          plain_list(
+              Quantity::self_intersections,
+              "Every pair without a common corner by Moeller's test (1997); others are left out, as usual.",
+              plain_self_intersections),
+          sampled_method(10, {}),
+          sampled_method(100, {Trait::hard_cases}),
+          sampled_method(1000, {Trait::hard_cases})};
 }
 
-}  // namespace lrb::stability
+}  // namespace lrb::methods

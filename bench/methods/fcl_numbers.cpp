@@ -1,7 +1,8 @@
 // FCL as packaged: distance() of two BVHModels, continuousCollide() with each solver that supports them, the
 // maximum penetration depth of collide()'s contacts, and near pairs by the traversal of distance(), which is
 // kept from stopping at pairs that are farther than the nearest, but within the distance.
-#include "bench/quantities/number_method.hpp"
+
+#include "bench/methods/method.hpp"
 
 #ifdef LRB_HAS_FCL
 
@@ -14,39 +15,25 @@
 #include <fcl/narrowphase/detail/traversal/traversal_recurse.h>
 #include <fcl/narrowphase/distance.h>
 
-#include "bench/methods/triangles.hpp"
-#include <lrbscope/error.hpp>
+#include "bench/methods/fcl_models.hpp"
 
-namespace lrb::stability {
+namespace lrb::methods {
 namespace {
 
-using methods::Stopwatch;
-
-template <class Volume>
-fcl::BVHModel<Volume> model_of(const LrbRep& rep, const Eigen::Vector3d& by = {0, 0, 0}) {
-  const methods::Triangles t = methods::triangles_of(rep);
-  std::vector<fcl::Vector3<typename Volume::S>> points;
-  for (const Eigen::Vector3d& v : t.vertices) points.push_back((v + by).cast<typename Volume::S>());
-  std::vector<fcl::Triangle> triangles;
-  for (const auto& c : t.triangles) triangles.emplace_back(c[0], c[1], c[2]);
-  fcl::BVHModel<Volume> model;
-  model.beginModel();
-  model.addSubModel(points, triangles);
-  if (model.endModel() != fcl::BVH_OK) throw InputError("FCL cannot build its tree");
-  return model;
+fcl::Transform3d moved(const Eigen::Vector3d& by) {
+  return transform<double>(Pose::translation(by));
 }
 
-fcl::Transform3d moved(const Eigen::Vector3d& by) {
-  fcl::Transform3d t = fcl::Transform3d::Identity();
-  t.translation() = by;
-  return t;
+template <class Volume>
+fcl::BVHModel<Volume> model(const LrbRep& rep, const Eigen::Vector3d& by = {0, 0, 0}) {
+  return model_of<Volume>(triangles_of(rep), by);
 }
 
 /// FCL rejects a pair only if it is within both the absolute and the relative error. The relative error is at
 /// most 1.
 template <class Volume>
-NumberAnswer fcl_distance(const NumberQuery& q, Setting tolerance) {
-  const auto a = model_of<Volume>(q.a), b = model_of<Volume>(q.b);
+Answer fcl_distance(const Question& q, Setting tolerance) {
+  const auto a = model<Volume>(q.a), b = model<Volume>(q.b);
   fcl::DistanceRequestd request;
   request.abs_err = tolerance.value_or(0) * q.size;
   request.rel_err = request.abs_err > 0 ? 1 : 0;
@@ -54,16 +41,16 @@ NumberAnswer fcl_distance(const NumberQuery& q, Setting tolerance) {
   const Stopwatch watch;
   const double d = fcl::distance(&a, moved({0, 0, 0}), &b, moved({0, 0, 0}), request, result);
   const double us = watch.microseconds(), least = std::max(0.0, d);  // -1: the surfaces intersect
-  return {least, least, us};
+  return number_answer(least, least, us);
 }
 
 /// B is FCL's first body, because its conservative advancement ignores a second body that approaches. The
 /// polynomial solver uses vertices without their poses, so B's vertices are those at the start of the motion.
 template <class Volume>
-NumberAnswer fcl_first_contact(const NumberQuery& q, fcl::CCDSolverType solver, std::size_t iterations) {
+Answer fcl_first_contact(const Question& q, fcl::CCDSolverType solver, std::size_t iterations) {
   const bool in_place = solver == fcl::CCDC_POLYNOMIAL_SOLVER;
   const Eigen::Vector3d none(0, 0, 0), begin = in_place ? q.from : none;
-  const auto a = model_of<Volume>(q.a), b = model_of<Volume>(q.b, begin);
+  const auto a = model<Volume>(q.a), b = model<Volume>(q.b, begin);
   fcl::ContinuousCollisionRequestd request;
   request.ccd_solver_type = solver;
   request.num_max_iterations = iterations;
@@ -72,11 +59,11 @@ NumberAnswer fcl_first_contact(const NumberQuery& q, fcl::CCDSolverType solver, 
   fcl::continuousCollide<double>(&b, moved(q.from - begin), moved(q.to - begin), &a, moved(none), moved(none),
                                  request, result);
   const double t = result.is_collide ? result.time_of_contact : kNever;
-  return {t, t, watch.microseconds()};
+  return number_answer(t, t, watch.microseconds());
 }
 
-NumberAnswer fcl_depth(const NumberQuery& q, Setting) {
-  const auto a = model_of<fcl::OBBRSSd>(q.a), b = model_of<fcl::OBBRSSd>(q.b);
+Answer fcl_depth(const Question& q, Setting) {
+  const auto a = model<fcl::OBBRSSd>(q.a), b = model<fcl::OBBRSSd>(q.b);
   const fcl::CollisionRequestd request(std::size_t{1} << 20, true);
   fcl::CollisionResultd result;
   const Stopwatch watch;
@@ -84,14 +71,14 @@ NumberAnswer fcl_depth(const NumberQuery& q, Setting) {
   double depth = 0;
   for (std::size_t i = 0; i < result.numContacts(); ++i)
     depth = std::max(depth, result.getContact(i).penetration_depth);
-  return {depth, depth, watch.microseconds()};
+  return number_answer(depth, depth, watch.microseconds());
 }
 
 /// S: float or double.
 template <class S>
 class NearNode : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<S> {
  public:
-  NearNode(S within, NumberAnswer& answer) : within_(within), answer_(answer) {}
+  NearNode(S within, Answer& answer) : within_(within), answer_(answer) {}
   bool canStop(S bound) const override { return bound > within_; }
   void leafTesting(int b1, int b2) const override {
     const int i = this->model1->getBV(b1).primitiveId(), j = this->model2->getBV(b2).primitiveId();
@@ -105,15 +92,15 @@ class NearNode : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<S> {
 
  private:
   S within_;
-  NumberAnswer& answer_;
+  Answer& answer_;
 };
 
 template <class S>
-NumberAnswer fcl_near(const NumberQuery& q, Setting) {
-  const auto a = model_of<fcl::OBBRSS<S>>(q.a), b = model_of<fcl::OBBRSS<S>>(q.b);
+Answer fcl_near(const Question& q, Setting) {
+  const auto a = model<fcl::OBBRSS<S>>(q.a), b = model<fcl::OBBRSS<S>>(q.b);
   const fcl::DistanceRequest<S> request;
   fcl::DistanceResult<S> result;
-  NumberAnswer out;
+  Answer out;
   NearNode<S> node(static_cast<S>(q.within), out);
   const fcl::Transform3<S> none = fcl::Transform3<S>::Identity();
   const Stopwatch watch;
@@ -124,48 +111,47 @@ NumberAnswer fcl_near(const NumberQuery& q, Setting) {
   return out;
 }
 
-NumberMethod fcl_method(const char* name, const char* what, const char* remark, Quantity quantity, Ask ask,
-                        methods::MethodStyle style) {
-  return number_method(name, std::string("FCL " FCL_VERSION ", ") + what, remark, quantity, std::move(ask),
-                       std::move(style));
+MethodEntry fcl_method(const char* name, const char* what, const char* remark, Quantity quantity, Ask ask,
+                       MethodStyle style, const char* parameter = "", std::vector<double> settings = {}) {
+  return {{.name = name,
+           .title = std::string("FCL " FCL_VERSION ", ") + what,
+           .remark = remark,
+           .parameter = parameter,
+           .settings = std::move(settings),
+           .style = std::move(style),
+           .rank = 20,
+           .quantity = quantity},
+          nullptr,
+          std::move(ask)};
 }
 
-NumberMethod fcl_sweep(const char* name, const char* what, const char* remark, fcl::CCDSolverType solver,
-                       std::size_t iterations, methods::MethodStyle style) {
-  return fcl_method(
-      name, what, remark, Quantity::first_contact,
-      [=](const NumberQuery& q, Setting steps) {
-        return fcl_first_contact<fcl::OBBRSSd>(q, solver,
-                                               steps ? static_cast<std::size_t>(*steps) : iterations);
-      },
-      std::move(style));
+Ask sweep(fcl::CCDSolverType solver, std::size_t iterations) {
+  return [=](const Question& q, Setting steps) {
+    return fcl_first_contact<fcl::OBBRSSd>(q, solver, steps ? static_cast<std::size_t>(*steps) : iterations);
+  };
 }
 
 }  // namespace
 
-std::vector<NumberMethod> fcl_number_methods() {
-  const methods::MethodStyle rss = {"FCL, RSS", "#d55e00", "rect"},
-                             obbrss = {"FCL, OBBRSS", "#a3132f", "triangle"};
+std::vector<MethodEntry> fcl_numbers_methods() {
   const std::vector<double> tolerances = {0.1, 0.01, 1e-3, 0};
   return {
-      with_parameter(fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.",
-                                Quantity::distance, fcl_distance<fcl::RSSd>, rss),
-                     "tolerance", tolerances),
-      with_parameter(fcl_method("fcl-obbrss", "distance, OBBRSS", "distance() of two BVHModel<OBBRSS>.",
-                                Quantity::distance, fcl_distance<fcl::OBBRSSd>, obbrss),
-                     "tolerance", tolerances),
-      with_parameter(
-          fcl_sweep(
-              "fcl-naive", "continuousCollide, naive",
-              "Its default solver: the first of N equally spaced times at which the bodies collide; N is 1000 "
-              "by default.",
-              fcl::CCDC_NAIVE, 1000, {"FCL, naive", "#d55e00", "rect"}),
-          "times", {10, 100, 1000}),
-      fcl_sweep("fcl-advancement", "continuousCollide, advancement", "Conservative advancement.",
-                fcl::CCDC_CONSERVATIVE_ADVANCEMENT, 10,
-                {"FCL, conservative advancement", "#a3132f", "triangle"}),
-      fcl_sweep("fcl-polynomials", "continuousCollide, polynomials", "Its polynomial solver.",
-                fcl::CCDC_POLYNOMIAL_SOLVER, 10, {"FCL, polynomials", "#8a5a2b", "star"}),
+      fcl_method("fcl-rss", "distance, RSS", "distance() of two BVHModel<RSS>.", Quantity::distance,
+                 fcl_distance<fcl::RSSd>, {"FCL, RSS", "#d55e00", "rect"}, "tolerance", tolerances),
+      fcl_method("fcl-obbrss", "distance, OBBRSS", "distance() of two BVHModel<OBBRSS>.", Quantity::distance,
+                 fcl_distance<fcl::OBBRSSd>, {"FCL, OBBRSS", "#a3132f", "triangle"}, "tolerance", tolerances),
+      fcl_method(
+          "fcl-naive", "continuousCollide, naive",
+          "Its default solver: the first of N equally spaced times at which the bodies collide; N is 1000 "
+          "by default.",
+          Quantity::first_contact, sweep(fcl::CCDC_NAIVE, 1000), {"FCL, naive", "#d55e00", "rect"}, "times",
+          {10, 100, 1000}),
+      fcl_method("fcl-advancement", "continuousCollide, advancement", "Conservative advancement.",
+                 Quantity::first_contact, sweep(fcl::CCDC_CONSERVATIVE_ADVANCEMENT, 10),
+                 {"FCL, conservative advancement", "#a3132f", "triangle"}),
+      fcl_method("fcl-polynomials", "continuousCollide, polynomials", "Its polynomial solver.",
+                 Quantity::first_contact, sweep(fcl::CCDC_POLYNOMIAL_SOLVER, 10),
+                 {"FCL, polynomials", "#8a5a2b", "star"}),
       fcl_method("fcl-contacts", "collide, contacts", "The largest penetration depth of its contacts.",
                  Quantity::depth, fcl_depth, {"FCL, contacts", "#d55e00", "rect"}),
       fcl_method("fcl-near", "traversal of distance, double",
@@ -176,14 +162,14 @@ std::vector<NumberMethod> fcl_number_methods() {
                  fcl_near<float>, {"FCL, float", "#d55e00", "rect"})};
 }
 
-}  // namespace lrb::stability
+}  // namespace lrb::methods
 
 #else
 
-namespace lrb::stability {
-std::vector<NumberMethod> fcl_number_methods() {
+namespace lrb::methods {
+std::vector<MethodEntry> fcl_numbers_methods() {
   return {};
 }
-}  // namespace lrb::stability
+}  // namespace lrb::methods
 
 #endif
