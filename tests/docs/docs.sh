@@ -11,22 +11,23 @@ bad=0
 complain() { echo "$1" && bad=1; }
 pages=$(find . -name '*.md' -not -path './build*' -not -path './out/*' -not -path './.git/*' | sort)
 
-# Prints the anchors of a page, as GitHub makes them from headings.
-anchors() {
-  sed '/^```/,/^```/d' "$1" | sed -n 's/^##* *//p' | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g'
-}
+# The anchors of each page, between line breaks, as GitHub makes them from headings.
+declare -A anchors
+for page in $pages; do
+  anchors[$page]=$'\n'$(sed '/^```/,/^```/d' "$page" | sed -n 's/^##* *//p' | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g')$'\n'
+done
 
 links=0
 for page in $pages; do
   while IFS= read -r link; do
     case "$link" in *://* | mailto:*) continue ;; esac
     links=$((links + 1))
-    target=$(dirname "$page")/${link%%#*}
+    target=${page%/*}/${link%%#*}
     [ "${link%%#*}" != "" ] || target=$page
     [ -e "$target" ] || { complain "$page: no target for the link $link"; continue; }
-    case "$link" in
-      *#*) anchors "$target" | grep -qxF -- "${link#*#}" || complain "$page: link $link: $target has no such heading" ;;
-    esac
+    [[ "$link" == *#* ]] || continue
+    [[ "$target" != *..* ]] || target=./$(realpath --relative-to=. "$target")
+    [[ "${anchors[$target]:-}" == *$'\n'"${link#*#}"$'\n'* ]] || complain "$page: link $link: $target has no such heading"
   done < <(sed '/^```/,/^```/d' "$page" | grep -oE '\]\([^) ]+\)' | sed 's/^](//; s/)$//')
 done
 [ "$links" -gt 20 ] || complain "docs.sh: found only $links links"
@@ -70,6 +71,11 @@ done
 
 commands=0
 if [ -n "$program" ]; then
+  declare -A helps # of each command, and of its subcommands, such as `golden test`; empty: there is none
+  help_of() { # WORD...: sets `help`
+    [ -n "${helps[$*]+known}" ] || helps[$*]=$("$program" "$@" --help 2>/dev/null) || helps[$*]=""
+    help=${helps[$*]}
+  }
   for page in $pages examples/ci/*.yml; do
     while IFS= read -r line; do
       commands=$((commands + 1))
@@ -77,13 +83,16 @@ if [ -n "$program" ]; then
       read -ra words <<<"$line"
       command=${words[1]:-}
       case "$command" in "" | -*) continue ;; esac
-      # Options of a subcommand, such as `golden test`, are in its own help.
-      help=$("$program" "$command" --help 2>/dev/null) || { complain "$page: lrbscope has no command $command"; continue; }
-      sub=${words[2]:-}
-      if [[ "$sub" =~ ^[a-z]+$ ]] && more=$("$program" "$command" "$sub" --help 2>/dev/null); then help+=$more; fi
+      help_of "$command"
+      [ -n "$help" ] || { complain "$page: lrbscope has no command $command"; continue; }
+      if [[ "${words[2]:-}" =~ ^[a-z]+$ ]]; then
+        all=$help
+        help_of "$command" "${words[2]}"
+        help=$all$help
+      fi
       for word in "${words[@]:2}"; do
         [[ "$word" =~ ^--?[a-z] ]] || continue
-        grep -qE -- "(^|[ ,!])${word%%=*}([ ,=]|$)" <<<"$help" || complain "$page: lrbscope $command has no option $word"
+        [[ $'\n'$help$'\n' =~ [\ ,!$'\n']"${word%%=*}"[\ ,=$'\n'] ]] || complain "$page: lrbscope $command has no option $word"
       done
     done < <({ case "$page" in *.yml) sed '/^#/d' "$page" ;; *) awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$page" ;; esac; } | grep -oE '(^|[ /$])lrbscope [a-z][^|>'"'"']*' | sed 's/^[^l]*//')
   done

@@ -1,4 +1,5 @@
-# lrb_blocks(PAGE LANGUAGE OUT): writes the code blocks of a page to the build folder, and stores the list of files in OUT.
+# lrb_blocks(PAGE LANGUAGE OUT): writes the code blocks of a page to the build folder, and stores the list of files in OUT. Copies of
+# examples (<!-- examples/FILE -->, compared by tests/docs) are left out: they are compiled as examples.
 function(lrb_blocks page language out)
   file(READ "${page}" text)
   get_filename_component(name "${page}" NAME_WE)
@@ -9,11 +10,16 @@ function(lrb_blocks page language out)
     if(begin EQUAL -1)
       break()
     endif()
+    string(SUBSTRING "${text}" 0 ${begin} before)
     string(LENGTH "```${language}\n" length)
     math(EXPR begin "${begin} + ${length}")
     string(SUBSTRING "${text}" ${begin} -1 text)
     string(FIND "${text}" "```" end)
     string(SUBSTRING "${text}" 0 ${end} block)
+    string(SUBSTRING "${text}" ${end} -1 text)
+    if(before MATCHES "<!-- examples/[^ ]+ -->\n+$")
+      continue()
+    endif()
     set(file "${CMAKE_CURRENT_BINARY_DIR}/blocks/${name}_${n}.${language}")
     file(WRITE "${file}" "${block}")
     list(APPEND files "${file}")

@@ -56,24 +56,19 @@ run(${CMAKE_COMMAND} -S "${SOURCE}" -B "${place}/user" ${toolchain} "-DCMAKE_PRE
     "-DLRB_TREE=${tree}" "-DLRB_VERSION=${VERSION}" ${more})
 run(${CMAKE_COMMAND} --build "${place}/user")
 run("${place}/user/user")
-# The examples, as a separate project.
+# The examples, as a separate project: one of each set of libraries. All are compiled with lrbscope itself.
 run(${CMAKE_COMMAND} -S "${tree}/examples" -B "${place}/examples" ${toolchain} "-DCMAKE_PREFIX_PATH=${prefix}")
-run(${CMAKE_COMMAND} --build "${place}/examples")
+run(${CMAKE_COMMAND} --build "${place}/examples" --target collide record_and_draw)
 set(arguments "${tree}/tests/data/gear.obj" "${tree}/tests/data/l_block.obj" 0 0 0)
 run("${place}/examples/collide" ${arguments})
 run("${place}/examples/record_and_draw" ${arguments} "${place}/drawn")
 
-# By hand and pkg-config, as in a Makefile.
+# By hand and pkg-config, as in a Makefile. lrbscope-trace and -render require lrbscope.
 file(GLOB_RECURSE pc "${prefix}/lrbscope.pc")
 get_filename_component(pc "${pc}" DIRECTORY)
 get_filename_component(lib "${pc}" DIRECTORY)
-foreach(what IN ITEMS "${SOURCE}/user lrbscope" "${tree}/examples/record_and_draw lrbscope-trace lrbscope-render")
-  separate_arguments(what UNIX_COMMAND "${what}")
-  list(POP_FRONT what source)
-  get_filename_component(program "${source}" NAME)
-  string(REPLACE ";" " " packages "${what}")
-  set(command "eval \"'${COMPILER}' ${FLAGS} -std=c++20 '${source}.cpp' -o '${place}/by_hand_${program}' $(pkg-config --cflags --libs ${packages})\"")
-  run(${CMAKE_COMMAND} -E env "PKG_CONFIG_PATH=${pc}" sh -c "${command}")
-  run(${CMAKE_COMMAND} -E env "LD_LIBRARY_PATH=${lib}" "${place}/by_hand_${program}" ${arguments} "${place}/drawn")
-endforeach()
+set(command "eval \"'${COMPILER}' ${FLAGS} -std=c++20 '${tree}/examples/record_and_draw.cpp' -o '${place}/by_hand' \
+$(pkg-config --cflags --libs lrbscope-trace lrbscope-render)\"")
+run(${CMAKE_COMMAND} -E env "PKG_CONFIG_PATH=${pc}" sh -c "${command}")
+run(${CMAKE_COMMAND} -E env "LD_LIBRARY_PATH=${lib}" "${place}/by_hand" ${arguments} "${place}/drawn")
 file(REMOVE_RECURSE "${place}")
