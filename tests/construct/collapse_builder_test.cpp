@@ -7,6 +7,7 @@
 #include "tests/construct/build_checks.hpp"
 #include "tests/support/figure_eight.hpp"
 #include "tests/support/noisy_quads.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh_check.hpp>
 
@@ -178,14 +179,7 @@ TEST_CASE("the LRB-rep does not depend on scale and position") {
 }
 
 TEST_CASE("bodies that cannot be built are rejected with the affected elements, on one line") {
-  const auto message = [](const Mesh& mesh) {
-    try {
-      build_lrb(mesh);
-    } catch (const InputError& e) {
-      return std::string(e.what());
-    }
-    return std::string();
-  };
+  const auto message = [](const Mesh& mesh) { return error_of([&] { build_lrb(mesh); }); };
   const std::string open = message(open_cylinder(8));
   CHECK(open.find("an edge has only one face") != std::string::npos);
   CHECK(open.find("0-1") != std::string::npos);

@@ -12,6 +12,7 @@
 #include "tests/support/float_modes.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/validate.hpp>
@@ -90,6 +91,15 @@ TEST_CASE("the validation report does not depend on the number of threads, for v
   }
   CHECK(validate(reps[0]).valid);
   CHECK_FALSE(validate(reps[2]).valid);
+}
+
+TEST_CASE("an exception from a probe ends the build") {
+  struct Thrower final : ConstructProbe {
+    void region(RegionId) override { throw InputError("enough"); }
+  } thrower;
+  BuildOptions options;
+  options.probe = &thrower;
+  CHECK_THROWS_WITH_AS(build_lrb(bumpy_sphere(3, 3), options), "enough", InputError);
 }
 
 TEST_CASE("workers run every task once, rethrow the exception of the lowest task, and can be reused") {

@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/support/text.hpp"
 #include <lrbscope/trace/capture.hpp>
 
 #define LRBCAP_ENABLE
@@ -60,18 +61,9 @@ std::vector<Query> stream_queries(const Bytes& bytes, std::size_t piece, Stream&
 /// Returns the message with which a capture is refused. A stream must refuse it with the same one, except
 /// that it waits for the rest of a header, and no longer has the queries that ended.
 std::string refusal(const Bytes& bytes) {
-  std::string in_stream = "accepted", out = "accepted";
-  try {
-    Stream stream("run.lrbcap");
-    stream_queries(bytes, 7, stream);
-  } catch (const InputError& e) {
-    in_stream = e.what();
-  }
-  try {
-    read(bytes);
-  } catch (const InputError& e) {
-    out = e.what();
-  }
+  Stream stream("run.lrbcap");
+  const std::string in_stream = test::error_of([&] { stream_queries(bytes, 7, stream); }),
+                    out = test::error_of([&] { read(bytes); });
   bool excused = bytes.size() < 16;
   for (const char* of_ended : {"a second time", "after the end of their query"})
     excused = excused || out.find(of_ended) != std::string::npos;

@@ -1,5 +1,6 @@
 /// Constructions as traces: content, files, schema, summary, SQL and divergence.
 
+#include <array>
 #include <bit>
 #include <set>
 #include <string>
@@ -39,10 +40,16 @@ Built build(const Mesh& mesh, unsigned threads = 1, RecorderSettings settings = 
   return {std::move(rep), std::move(trace)};
 }
 
+/// Bodies of one component and of several, crossing, and with voids that leave thin gaps; in the plane.
 std::vector<Mesh> meshes() {
   using namespace shapes;
-  return {bumpy_sphere(3, 5), quad_torus(20, 10),
-          several({icosphere(2), turned_inside_out(icosphere(2, 1.05)), icosphere(3, 1.5)}), gear(40),
+  return {bumpy_sphere(3, 5),
+          quad_torus(20, 10),
+          comb(12),
+          several({bumpy_sphere(3, 5), translated(bumpy_sphere(3, 6), {0.9, 0.1, 0.2})}),
+          several({icosphere(4), turned_inside_out(icosphere(4, 1.003)), icosphere(3, 1.5)}),
+          gear(40),
+          several({circle(40, 3), turned_inside_out(circle(30, 2)), star(5)}),
           ring_2d(40)};
 }
 
@@ -85,11 +92,24 @@ void check_passes(const Built& built) {
 
 }  // namespace
 
-TEST_CASE("a construction begins with the body, falls pass by pass, and ends with the outermost wrapper") {
+TEST_CASE(
+    "a construction begins with the body, falls pass by pass, and ends with the outermost wrapper, on any number of "
+    "threads; the body is the same without a probe") {
+  std::array<std::uint32_t, kEnumNames<CapVerdict>.size()> caps{};
+  std::uint32_t excluded = 0, merged = 0;
   for (const Mesh& mesh : meshes()) {
     CAPTURE(mesh.name);
     const Built built = build(mesh);
     check_passes(built);
+    CHECK(built.rep.hash() == build_lrb(mesh).hash());
+    const Built on_threads = build(mesh, 4);
+    CHECK(on_threads.rep.hash() == built.rep.hash());
+    CHECK((on_threads.trace == built.trace));
+    for (const PassSummary& p : passes_of(built.trace)) {
+      for (std::size_t v = 0; v < caps.size(); ++v) caps[v] += p.caps[v];
+      excluded += p.excluded;
+      merged += p.merged;
+    }
     const Trace& t = built.trace;
     CHECK(t.events.front().kind == EventKind::step);
     CHECK(t.events.back().kind == EventKind::closed);
@@ -110,6 +130,11 @@ TEST_CASE("a construction begins with the body, falls pass by pass, and ends wit
     CHECK(chart.series[0].values.front() == built.rep.real_face_count());
     CHECK(chart.series[0].values.back() == built.rep.outermost_faces().size());
   }
+  CHECK(excluded > 0);
+  CHECK(merged > 0);
+  using enum CapVerdict;
+  for (const CapVerdict v : {accepted, too_thick, too_many_faces, no_place, meets_front, overlaps})
+    CHECK_MESSAGE(caps[static_cast<std::size_t>(v)] > 0, name_of(v));
 }
 
 TEST_CASE(
