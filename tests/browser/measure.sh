@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# measure.sh LRBSCOPE [STABILITY_PAGE]: makes a page of each kind, opens it in Chromium at 400, 1,000, 1,280 and 3,000 pixels, light and
-# dark, and measures it (measure.js): cut off or overlapping text, low contrast, a run's view that is small or covered, and
+# measure.sh LRBSCOPE [STABILITY_PAGE]: makes a page of each kind, opens it in Chromium at 400, 1,000, 1,280 and 3,000 pixels, and dark at
+# 400 and 1,280, and measures it (measure.js): cut off or overlapping text, low contrast, a run's view that is small or covered, and
 # messages in the console.
 # STABILITY_PAGE: a program that writes a page from made-up results. Skipped (77) without Chromium.
 # measure.sh --pages PAGE...: measures only these pages.
@@ -35,9 +35,11 @@ make_pages() {
 # measure light|dark: opens all pages at all widths, one after the other, and prints the findings.
 measure() {
   local scheme=1 budget=2000000
-  [ "$1" = dark ] && scheme=0
+  local sizes='[400, 800], [1000, 900], [1280, 800], [3000, 900]'
+  [ "$1" = dark ] && scheme=0 sizes='[400, 800], [1280, 800]' # styles differ in colours alone
+  sed "s/^const sizes.*/const sizes = [$sizes];/" "$work/measure.html" >"$work/$1.html"
   browse --window-size=3200,1000 --blink-settings="preferredColorScheme=$scheme" --virtual-time-budget=$budget \
-    "${webgl[@]}" "file://$work/measure.html" | sed -n '/<pre id="measured">/,/<\/pre>/p' |
+    "${webgl[@]}" "file://$work/$1.html" | sed -n '/<pre id="measured">/,/<\/pre>/p' |
     sed -e 's/.*<pre id="measured">//' -e 's/<\/pre>.*//' -e "s/^/$1, /" | unmarked
 }
 
@@ -56,6 +58,7 @@ done
 {
   echo '<!DOCTYPE html><body style="margin: 0"><pre id="measured"></pre><script>'
   echo "const pages = [$(IFS=,; echo "${urls[*]}")];"
+  echo 'const sizes = [];'
   cat "$here/measure_all.js"
   echo '</script></body>'
 } >"$work/measure.html"

@@ -1,4 +1,5 @@
-// Opens `pages` one after the other in frames of each width, which measure.js measures, and writes down what it says.
+// Opens `pages` one after the other in frames of each of the `sizes`, which measure.js measures; writes down
+// its report.
 (async function () {
   const lines = document.getElementById("measured");
   const opened = (page, width, height) =>
@@ -19,7 +20,7 @@
     });
   const shown = [];
   for (const page of pages)
-    for (const [width, height] of [[400, 800], [1000, 900], [1280, 800], [3000, 900]]) {
+    for (const [width, height] of sizes) {
       const text = await opened(page, width, height), name = page.split("/").slice(-2).join("/").replace(".measured", "");
       for (const line of text ? text.split("\n") : ["ok"]) shown.push(`${name} at ${width}: ${line}`);
     }

@@ -284,7 +284,7 @@ LargeAndSmall small_on_large(RandomEngine& random, double size, double offset) {
 TEST_CASE("small triangles on large ones, where the kernel's floats are strained") {
   RandomEngine random(3);
   std::size_t meeting = 0, from_cache = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 1500; ++i) {
     const double size = std::pow(10, uniform(random, -7, -0.5));
     LargeAndSmall x = small_on_large(random, size, i % 3 ? 0 : std::pow(10, uniform(random, -1, 6)));
     CAPTURE(i);
@@ -305,8 +305,8 @@ TEST_CASE("small triangles on large ones, where the kernel's floats are strained
     }
     from_cache += coherent.statistics().from_cache;
   }
-  CHECK(meeting > 20'000);
-  CHECK(from_cache > 1000);
+  CHECK(meeting > 10'000);
+  CHECK(from_cache > 500);
 }
 
 TEST_CASE("a small triangle above the long edge of an obtuse sliver: coherent queries while it descends") {
@@ -356,17 +356,9 @@ TEST_CASE("boxes of open bodies: touching they are not disjoint, one ulp apart t
                     {low, triangle({-1.6e308, 1e307, 0}, 1e307), Relation::undefined}};
   for (const auto& [a, b, expected] : rows)
     CHECK(collide(open_body(a), {}, open_body(b), {}).relation == expected);
-  // Of many faces: boxes from trees. In a search for a first contact.
+  // In a search for a first contact.
   const LrbRep open = open_body(test::without_last_face(shapes::icosphere(4))),
-               other = closed(shapes::bumpy_sphere(4, 3));
-  for (int i = 0; i < 40; ++i) {
-    const Pose pose = Pose::rotation({1, 2, 3}, 0.3 * i, {1.4 + 0.02 * i, 1.2, 0.9});
-    const CollideResult r = collide(open, {}, other, pose);
-    if (r.pairs.empty())
-      CHECK(r.relation ==
-            (boxes_are_disjoint(open, {}, other, pose) ? Relation::separate : Relation::undefined));
-  }
-  const LrbRep small = closed(shapes::icosphere(0, 0.3));
+               small = closed(shapes::icosphere(0, 0.3));
   for (const auto& [x, expected] : {std::pair{5.0, Relation::separate}, {0.0, Relation::undefined}})
     CHECK(first_contact(open, Motion::still({}), small,
                         Motion::linear(Pose::translation({x, 0, 0}), {x - 0.1, 0, 0}))
@@ -418,19 +410,6 @@ TEST_CASE(
     CHECK(r.relation == row.relation);
     CHECK(std::count(row.overlap.begin(), row.overlap.end(), r.interiors_overlap) == 1);
   }
-  const LrbRep ordinary[] = {closed(shapes::bumpy_sphere(2, 3, 0.5)), closed(shapes::torus(12, 8)),
-                             closed(shapes::comb(4)), closed(shapes::bowl(12, 6))};
-  RandomEngine random(3);
-  int crossings = 0;
-  for (int i = 0; i < 300; ++i) {
-    const LrbRep &a = ordinary[i % 4], &b = ordinary[random() % 4];
-    const CollideResult r = collide(a, {}, b, shapes::random_pose(random, a, b, uniform(random, 0, 1)),
-                                    {.interiors_overlap = true});
-    if (r.relation != Relation::crossing) continue;
-    ++crossings;
-    CHECK(r.interiors_overlap == yes);
-  }
-  CHECK(crossings > 100);
 }
 
 TEST_CASE("contact normals point from A to B for mirrored and scaled bodies, in space and in the plane") {

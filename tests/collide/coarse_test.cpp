@@ -10,8 +10,6 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
 #include "tests/support/coarse_checks.hpp"
-#include "tests/support/shared_meshes.hpp"
-#include "tests/support/simplex_distance.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/mesh.hpp>
@@ -40,16 +38,6 @@ std::vector<CoarseBodies> coarse_bodies() {
   return list;
 }
 
-std::vector<std::vector<Eigen::Vector3d>> real_simplices(const LrbRep& rep, const Pose& pose) {
-  std::vector<std::vector<Eigen::Vector3d>> out;
-  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) out.push_back(test::simplex_points(rep, pose, s));
-  return out;
-}
-
-double surfaces_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  return test::surface_distance(real_simplices(a, pose_a), real_simplices(b, pose_b));
-}
-
 Pose pose_around(RandomEngine& random, const CoarseBodies& pair) {
   const double share = shapes::uniform(random, 0, 1.1);
   return shapes::random_pose(random, pair.a, pair.b, share);
@@ -68,7 +56,7 @@ void check_claims(const CoarseBodies& pair, const Pose& p, const CollideResult& 
     REQUIRE(!coarse.finished);
     REQUIRE(coarse.error_bound > 0);
     if (truth.relation == Relation::separate && std::isfinite(coarse.error_bound))
-      REQUIRE(surfaces_disjoint(pair.a, Pose{}, pair.b, p) <= coarse.error_bound);
+      REQUIRE(test::RealSurfaces(pair.a, Pose{}, pair.b, p).between() <= coarse.error_bound);
     return;
   }
   REQUIRE(std::string(to_string(coarse.relation)) == to_string(truth.relation));

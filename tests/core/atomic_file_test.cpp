@@ -3,6 +3,7 @@
 
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
@@ -36,14 +37,7 @@ TEST_CASE("a file that is not committed leaves no trace") {
 
 TEST_CASE("an unwritable path is reported with the reason") {
   const Folder directory;
-  const auto message = [](const std::string& path) -> std::string {
-    try {
-      write_file(path, "x");
-      return "";
-    } catch (const InputError& e) {
-      return e.what();
-    }
-  };
+  const auto message = [](const std::string& path) { return error_of([&] { write_file(path, "x"); }); };
   const std::string missing = directory / "none/a.txt";
   CHECK(message(missing).starts_with(missing + ": cannot create the file (No such file or directory); "));
   CHECK(message(directory / "").find("Is a directory") != std::string::npos);

@@ -199,7 +199,7 @@ TEST_CASE("the interval contains the rational distance, from enclosed to distant
   DistanceTally t;
   for (const DistantBodies& pair : distant_bodies()) {
     CAPTURE(pair.name);
-    for (int i = 0; i < 15; ++i) {
+    for (int i = 0; i < 6; ++i) {
       CAPTURE(i);
       const double share =
           i % 3 == 0 ? shapes::uniform(random, 0, 1) : std::pow(10, shapes::uniform(random, -1, 2));
@@ -215,37 +215,32 @@ TEST_CASE("the interval contains the rational distance of interlocked bodies") {
   DistanceTally t;
   for (const DistantBodies& pair : interlocked_bodies()) {
     CAPTURE(pair.name);
-    std::uint64_t most_steps = 0;
-    for (int i = 0; i < 2; ++i) {
-      CAPTURE(i);
-      const Pose pose = test::nudged(random, pair.pose, 0.02, 0.03, 3);
-      check(pair.a, Pose{}, pair.b, pose, t);
-      most_steps = std::max(most_steps, distance(pair.a, Pose{}, pair.b, pose).counters.steps);
-    }
-    CHECK(most_steps > 32);  // with more than one descent
+    const Pose pose = test::nudged(random, pair.pose, 0.02, 0.03, 3);
+    check(pair.a, Pose{}, pair.b, pose, t);
+    CHECK(distance(pair.a, Pose{}, pair.b, pose).counters.steps > 32);  // with more than one descent
   }
-  CHECK(t.apart > 6);
+  CHECK(t.apart > 2);
 }
 
 TEST_CASE("the interval contains the rational distance for bodies far from the origin") {
   RandomEngine random(18);
   DistanceTally t;
   const LrbRep a = closed(shapes::bumpy_sphere(1, 3)), b = closed(shapes::torus(7, 5));
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 8; ++i) {
     CAPTURE(i);
     Pose frame;
     frame.r = shapes::random_rotation(random);
-    frame.t = std::pow(10, i % 8) * shapes::random_direction(random);
+    frame.t = std::pow(10, i) * shapes::random_direction(random);
     const Pose relative = shapes::random_pose(random, a, b, shapes::uniform(random, 0, 2));
     check(a, frame, b, {frame.r * relative.r, frame.r * relative.t + frame.t}, t);
   }
-  CHECK(t.apart > 4);
+  CHECK(t.apart > 2);
 }
 
 TEST_CASE("the interval contains the rational distance for affine maps") {
   RandomEngine random(19);
   DistanceTally t;
-  const LrbRep a = closed(shapes::icosphere(1)), b = closed(shapes::torus(6, 5));
+  const LrbRep a = closed(shapes::icosphere(0)), b = closed(shapes::torus(6, 5));
   const LrbRep flat_a = closed(shapes::gear(7)), flat_b = closed(shapes::star(5));
   for (int kind = 0; kind < test::kMapKinds; ++kind)
     for (int i = 0; i < 4; ++i) {

@@ -84,7 +84,7 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
 TEST_CASE("near pairs are those that brute force finds, for all kinds of bodies, poses and distances") {
   RandomEngine random(1);
   const LrbRep solids[] = {
-      closed(shapes::quad_box()), closed(shapes::icosphere(1)), closed(shapes::torus(8, 6)),
+      closed(shapes::quad_box()), closed(shapes::icosphere(0)), closed(shapes::torus(6, 5)),
       LrbRep::without_regions(shapes::open_cylinder(8), false, false),
       LrbRep::without_regions(
           shapes::several({shapes::quad_box(), shapes::translated(shapes::quad_box(), {0.5, 0.25, 0.125})}),
@@ -103,8 +103,8 @@ TEST_CASE("near pairs are those that brute force finds, for all kinds of bodies,
         check(a, pose_a, b, pose_b, distances[round], seen);
       }
   CHECK(seen.queries == 150);
-  CHECK(seen.pairs > 20'000);
-  CHECK(seen.meet > 500);
+  CHECK(seen.pairs > 4000);
+  CHECK(seen.meet > 200);
 }
 
 TEST_CASE("near pairs are exact for flush bodies and at the distance itself") {

@@ -104,7 +104,7 @@ TEST_CASE("distances of triangles and of segments contain the rational one, dege
     CAPTURE(test::name_of(kind));
     Rng rng(700 + static_cast<std::uint64_t>(k));
     PairTally t;
-    const int rounds = test::rounds_for(kind, 30);
+    const int rounds = test::rounds_for(kind, 12);
     for (int i = 0; i < rounds; ++i) {
       CAPTURE(i);
       const test::SimplexPair pair = test::random_pair(rng, kind);

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 
@@ -52,15 +53,10 @@ TEST_CASE("components are pieces joined by vertices") {
 }
 
 TEST_CASE("inconsistent arrays are rejected by name") {
-  const auto message = [](auto change) -> std::string {
+  const auto message = [](auto change) {
     LrbData d = shapes::dented_box().data();
     change(d);
-    try {
-      LrbRep rep(std::move(d));
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "";
+    return test::error_of([&] { LrbRep rep(std::move(d)); });
   };
   const auto names = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;

@@ -13,6 +13,7 @@
 #include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/mesh_check.hpp>
@@ -75,14 +76,6 @@ std::set<FacePair> expected_in(const Mesh& m) {
       if (std::any_of(parts[f].begin(), parts[f].end(), meets)) found.insert({f, g});
     }
   return found;
-}
-
-/// Moves vertices a little, so that faces about hubs run into each other.
-Mesh shaken(Mesh m, double by, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  for (auto& v : m.vertices)
-    for (double& x : v) x += by * (static_cast<double>(random() % 2001) / 1000 - 1);
-  return m;
 }
 
 constexpr std::uint32_t kMany = 90;  // more than kFewNeighbours

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include "tests/support/folder.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/frame_writer.hpp>
 #include <lrbscope/render/image.hpp>
@@ -57,13 +58,8 @@ std::string png_of(std::size_t width, std::size_t height, std::size_t zeros) {
 
 /// Returns the message with which a picture is rejected; empty if it is read.
 std::string rejection(const std::string& bytes, std::uint64_t max_pixels = render::kMaxPixels) {
-  try {
-    render::decode_png({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, "p.png",
-                       max_pixels);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  return test::error_of([&] { render::decode_png({data, bytes.size()}, "p.png", max_pixels); });
 }
 
 }  // namespace

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/rational_oracle.hpp"
+#include "tests/torture/sweep_oracle.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/lrb_rep.hpp>
 
@@ -131,33 +131,11 @@ class ParityOracle {
   double reach_ = 0;
 };
 
-inline bool boxes_are_disjoint(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  const auto ends = [&](const LrbRep& rep, const Pose& pose, int axis) {
-    std::array<double, 2> out{kFar, -kFar};
-    const std::vector<WorldPoint> x = world_points(rep, pose);
-    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-      VertexId v[3];
-      rep.simplex(s, v);
-      for (int k = 0; k < rep.dim(); ++k) {
-        out[0] = std::min(out[0], x[v[k]][axis]);
-        out[1] = std::max(out[1], x[v[k]][axis]);
-      }
-    }
-    return out;
-  };
-  for (int axis = 0; axis < a.dim(); ++axis) {
-    const auto of_a = ends(a, pose_a, axis), of_b = ends(b, pose_b, axis);
-    if (of_a[1] < of_b[0] || of_b[1] < of_a[0]) return true;
-  }
-  return false;
-}
-
 /// For bodies without a pair that meets.
 inline Relation relation_by_parity(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                    shapes::RandomEngine& random) {
   if (!a.closed() || !b.closed())
-    return boxes_are_disjoint(a, pose_a, b, pose_b) ? Relation::separate : Relation::undefined;
+    return SweptBody(a, pose_a).is_apart_from({b, pose_b}) ? Relation::separate : Relation::undefined;
   const ParityOracle oa(a, pose_a), ob(b, pose_b);
   const std::size_t a_in_b = ob.held_pieces(oa, random), b_in_a = oa.held_pieces(ob, random);
   const std::size_t pieces_a = a.component_vertices().size(), pieces_b = b.component_vertices().size();

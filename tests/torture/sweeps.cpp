@@ -6,6 +6,7 @@
 #include "engine/collide/collide_into.hpp"
 #include "engine/motion/contact_search.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/torture/children.hpp"
 
 namespace lrb::torture {
@@ -36,17 +37,8 @@ struct SweepBodies {
         size(shapes::box_of(a).diagonal().norm() + shapes::box_of(b).diagonal().norm()) {}
 };
 
-/// A sheet of two triangles.
-Mesh sheet(double half) {
-  Mesh m;
-  m.dim = 3;
-  m.vertices = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
-  for (const std::array<std::uint32_t, 3>& t : {std::array<std::uint32_t, 3>{0, 1, 2}, {0, 2, 3}})
-    m.add_face(std::array{VertexId(t[0]), VertexId(t[1]), VertexId(t[2])});
-  return m;
-}
-
 std::vector<SweepBodies> sweep_bodies() {
+  const auto sheet = [](double half) { return test::sheet(1, {-half, -half}, {half, half}); };
   std::vector<SweepBodies> list;
   list.emplace_back("bumps", shapes::bumpy_sphere(3, 7, 0.3), shapes::bumpy_sphere(3, 8, 0.3));
   list.emplace_back("ball in bowl", shapes::bowl(24, 12), shapes::icosphere(3, 0.5));

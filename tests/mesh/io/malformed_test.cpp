@@ -3,6 +3,7 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 
@@ -10,16 +11,6 @@ namespace lrb::test {
 
 using namespace shapes;
 namespace {
-
-/// The message of the error; empty if the file is read.
-std::string complaint(const std::string& bytes, const std::string& name) {
-  try {
-    read_mesh(bytes, name);
-    return "";
-  } catch (const InputError& e) {
-    return e.what();
-  }
-}
 
 struct Case {
   std::string bytes;
@@ -30,7 +21,7 @@ struct Case {
 
 void check_all(const std::vector<Case>& cases) {
   for (const Case& c : cases) {
-    const std::string message = complaint(c.bytes, c.name);
+    const std::string message = error_of([&] { read_mesh(c.bytes, c.name); });
     CAPTURE(c.bytes.substr(0, 200));
     CAPTURE(message);
     CHECK(message.starts_with(c.start));
@@ -292,14 +283,7 @@ TEST_CASE("files of other kinds are rejected with their apparent format") {
 
 TEST_CASE("paths that are not files are rejected") {
   const Folder directory;
-  const auto message = [](const std::string& path) -> std::string {
-    try {
-      read_mesh(path);
-      return "";
-    } catch (const InputError& e) {
-      return e.what();
-    }
-  };
+  const auto message = [](const std::string& path) { return error_of([&] { read_mesh(path); }); };
   CHECK(message(directory / "none.obj") == (directory / "none.obj") + ": no such file; check the path");
   CHECK(message(directory / "").find("found a directory, expected a file") != std::string::npos);
 }
@@ -310,7 +294,7 @@ TEST_CASE("a truncated file is rejected, or read if its format cannot tell") {
                                    to_off(body), to_ply_ascii(body)}) {
     const std::size_t needed = whole.find_last_not_of("\n") + 1;  // the last newline may be missing
     for (std::size_t size = 0; size < needed; ++size) {
-      const std::string message = complaint(whole.substr(0, size), "cut");
+      const std::string message = error_of([&] { read_mesh(whole.substr(0, size), "cut"); });
       CAPTURE(size);
       // "endsolid body" without the end of its name is still the end.
       if (message.empty()) CHECK(whole.substr(0, size).find("endsolid") != std::string::npos);

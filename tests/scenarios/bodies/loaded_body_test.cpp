@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/support/folder.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 
 using namespace lrb;
@@ -19,21 +20,11 @@ const std::string kOpen = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\
 
 /// Returns the message of the exception, or an empty string if both files can be loaded.
 std::string error_of_two(const std::string& a, const std::string& b) {
-  try {
-    bodies::load_faces_of_two(a, b);
-    return {};
-  } catch (const InputError& e) {
-    return e.what();
-  }
+  return test::error_of([&] { bodies::load_faces_of_two(a, b); });
 }
 
 std::string error_of_one(const std::string& path) {
-  try {
-    bodies::load_faces(path);
-    return {};
-  } catch (const InputError& e) {
-    return e.what();
-  }
+  return test::error_of([&] { bodies::load_faces(path); });
 }
 
 }  // namespace

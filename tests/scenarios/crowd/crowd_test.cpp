@@ -12,6 +12,7 @@
 #include "scenarios/io/poses.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/json_schema.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>
@@ -48,12 +49,7 @@ spec::Crowd crowd_of(const json& j) {
 }
 
 std::string error_of(const json& j, const std::string& file) {
-  try {
-    static_cast<void>(spec::parse_crowd(j.dump(1), file));
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
+  return test::error_of([&] { return spec::parse_crowd(j.dump(1), file); });
 }
 
 bool schema_accepts(const json& j) {

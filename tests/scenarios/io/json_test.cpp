@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/support/text.hpp"
 #include "trace/json_read.hpp"
 #include <lrbscope/error.hpp>
 
@@ -10,12 +11,7 @@ using namespace lrb;
 namespace {
 
 std::string json_error(const std::string& text) {
-  try {
-    const io::JsonText parsed(text, "file.json");
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return {};
+  return test::error_of([&] { const io::JsonText parsed(text, "file.json"); });
 }
 
 }  // namespace

@@ -142,20 +142,6 @@ TEST_CASE("boxes of deep nodes: those on paths to faces, as many as fit, with th
   CHECK(counts[1] == std::count_if(all.begin(), all.end(), [](const auto& b) { return b.depth == 1; }));
 }
 
-TEST_CASE("page data of a run: bodies, steps and events, without notes if it is complete") {
-  const run::Recording r = rocks_that_meet();
-  const json scene = json::parse(run::scene_json(run_of(r), {"trace.json", ""}));
-  CHECK(scene["bodies"].size() == 2);
-  CHECK(scene["bodies"][0]["faces"] == r.bodies[0].rep.face_count());
-  CHECK(scene["steps"]["count"] == r.trace.steps.size());
-  CHECK(scene["events"]["count"] == r.trace.events.size());
-  CHECK(scene["events"]["id"] == "");
-  CHECK(scene["firstContact"] == run::first_contact(r.trace));
-  CHECK(scene["thinned"] == "");
-  CHECK(scene["tooLarge"] == "");
-  CHECK(scene["kinds"].size() == trace::kEventKinds);
-}
-
 TEST_CASE("page data of a run names omissions and where to find them") {
   const run::Recording r = rocks_that_meet();
   run::SceneLimits limits;

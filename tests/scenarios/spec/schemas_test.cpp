@@ -10,6 +10,7 @@
 #include "scenarios/spec/crowd_spec.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tests/support/json_schema.hpp"
+#include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 
 using namespace lrb;
@@ -36,12 +37,7 @@ struct Format {
         .empty();
   }
   std::string error_of(const json& file) const {
-    try {
-      parse(file.dump(1));
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return {};
+    return test::error_of([&] { parse(file.dump(1)); });
   }
 };
 
