@@ -91,7 +91,7 @@ class MemoryFile {
 };
 
 // Questions to a worker: lines of JSON on its file descriptor 3, each of which it answers with a line, in
-// order (bench/programs/serve.hpp).
+// order (bench/programs/methods.cpp).
 
 /// The reason why a worker ended before its work was complete.
 struct WorkerFailure {

@@ -159,6 +159,11 @@ def _sorted_names(*names: Any) -> Any:
     return tuple(sorted(names, key=lambda name: (type(name).__name__, name)))
 
 
+def _check_manager(other: Any) -> None:
+    if not isinstance(other, CollisionManager):
+        raise TypeError(f"other_manager: expected a CollisionManager, got {type(other).__name__}")
+
+
 class CollisionManager:
     """Collisions and distances of named objects. Accepts any object with `vertices` and `faces`, or a Body. The
     objects are bodies of a Scene.
@@ -209,6 +214,7 @@ class CollisionManager:
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Return whether any object collides with one of another manager. This manager's names come first."""
+        _check_manager(other_manager)
         return self._collide(other_manager, return_names, return_data, lambda a, b: (a, b))
 
     def min_distance_single(
@@ -231,6 +237,7 @@ class CollisionManager:
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Return the minimum distance to the objects of another manager. This manager's name comes first."""
+        _check_manager(other_manager)
         distance, names, data = self._nearest(other_manager)
         return _answer(distance, (return_names, names), (return_data, data))
 

@@ -121,7 +121,9 @@ struct Row {
 
 Row row_of(const Argument& bodies, const Argument& given) {
   Row out;
-  if (!py::isinstance<py::sequence>(bodies.given)) throw py::reference_cast_error();
+  if (!py::isinstance<py::sequence>(bodies.given))
+    throw py::type_error(std::string(bodies.name) + ": expected a sequence of bodies, got " +
+                         described(bodies.given));
   for (const py::handle one : bodies.given) out.reps.push_back(body({one, bodies.name}).shared());
   out.poses = poses(given).to_vector();
   if (out.poses.size() != out.reps.size())

@@ -44,7 +44,7 @@ class Given {
   template <class Class>
   Class& self() const {
     py::detail::make_caster<Class> found;
-    if (!found.load(self_, true)) reject_self();
+    if (self_.is_none() || !found.load(self_, true)) reject_self();
     return py::detail::cast_op<Class&>(found);
   }
   py::detail::value_and_holder& made() const { return *made_; }

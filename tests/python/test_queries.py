@@ -7,6 +7,7 @@ import pytest
 
 import lrbscope
 from lrbscope import Body, InputError, clash, collide, distance, fcl, first_contact
+from lrbscope.collision import CollisionManager
 from shapes import Mesh, ball_arrays, bvh_model, cube_arrays, open_cube_arrays, random_poses, shifted
 
 CROSSING = shifted(0.5, 0.25, 0.125)
@@ -102,6 +103,10 @@ REFUSED = [
     ("collide('cube', cube)", TypeError, "a: expected a Body, got str"),
     ("collide(cube, None)", TypeError, "b: expected a Body, got None"),
     ("collide(cube)", TypeError, r"^collide\(\): missing a required argument: 'b'$"),
+    ("lrbscope.collide_pairs(3, [np.eye(4)], [cube], [np.eye(4)])", TypeError, "bodies_a: expected a sequence of bodies, got int"),
+    ("Body.save(None, 'x')", TypeError, "got an object of another class"),
+    ("CollisionManager().in_collision_other(None)", TypeError, "expected a CollisionManager"),
+    ("CollisionManager().min_distance_other((cube, np.eye(4)))", TypeError, "got tuple"),
     ("Body()", TypeError, r"^Body\(\): missing a required argument: 'vertices'$"),
     (f"collide({BOTH}mode='some')", InputError, 'mode: "some" is not one of all, first or any'),
     (f"collide({BOTH}pose_a=[np.eye(4)] * 2)", InputError, r"pose_a: expected numbers of shape \(4, 4\), got 2 poses"),
