@@ -79,23 +79,23 @@ render::Finding optional(const std::string& what, bool is_found, const std::stri
 /// Returns a finding for each worker program and each method of other engines.
 std::vector<render::Finding> check_engines() {
   std::vector<render::Finding> out;
-  const auto add_program = [&](bool is_found) {
-    out.push_back(optional("lrbscope-methods", is_found,
-                           "needed by bench, chart and stability; build it: cmake --build --preset release "
-                           "--target lrbscope-workers"));
-  };
+  bool is_found = false;
   try {
-    const std::vector<workers::WorkerMethod> methods = workers::find_methods();
-    add_program(true);
-    for (const workers::WorkerMethod& m : methods) {
+    workers::main_worker();
+    is_found = true;
+    for (const workers::WorkerMethod& m : workers::find_methods()) {
       const bool is_own = m.info.name.starts_with("ours");
       if (!is_own)
         out.push_back({m.info.present ? Level::ok : Level::warning, "method " + m.info.name,
                        m.info.present ? m.info.title : m.info.title + ": " + m.info.remark});
     }
-  } catch (const EnvironmentError&) {
-    add_program(false);
+  } catch (const EnvironmentError& e) {
+    if (is_found) out.push_back({Level::warning, "methods", e.what()});
   }
+  out.insert(out.begin(),
+             optional("lrbscope-methods", is_found,
+                      "needed by bench, chart and stability; build it: cmake --build --preset release "
+                      "--target lrbscope-workers"));
   return out;
 }
 #endif

@@ -170,8 +170,8 @@ class Answers {
     workers::note_failures(answer, [&] {
       answer = method_of_bodies_->query(*bodies_[0], Pose{}, *bodies_[1], pose, Mode::all_pairs);
       answer.count = answer.pairs.size();
-      if (!question.at("list").get<bool>()) answer.pairs.clear();
-      if (!question.at("tests").get<bool>()) return;
+      if (!question.value("list", false)) answer.pairs.clear();
+      if (!question.value("tests", false)) return;
       answer.kinds = method_of_bodies_->count_tests(*bodies_[0], Pose{}, *bodies_[1], pose);
       if (answer.kinds) answer.tests = answer.kinds->boxes + answer.kinds->faces;
     });

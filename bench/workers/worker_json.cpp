@@ -1,5 +1,7 @@
 #include "bench/workers/worker_json.hpp"
 
+#include <limits>
+
 namespace lrb {
 
 template <>
@@ -63,7 +65,10 @@ nlohmann::ordered_json to_json(const methods::Answer& answer) {
   return out;
 }
 
-methods::Answer answer_from(const nlohmann::json& value) {
+methods::Answer answer_from(nlohmann::json value) {
+  // JSON has null for a number that is not finite: NaN agrees with no right answer.
+  for (const char* end : {"lower", "upper"})
+    if (value.contains(end) && value[end].is_null()) value[end] = std::numeric_limits<double>::quiet_NaN();
   auto answer = io::record_from_json<methods::Answer>(value);
   if (value.contains("exchanged")) answer.exchanged = {answer_from(value.at("exchanged"))};
   return answer;

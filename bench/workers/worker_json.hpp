@@ -21,7 +21,7 @@ methods::MethodInfo method_info_from(const nlohmann::json& value);
 
 /// Answers to cases and bodies; without what only data sets need.
 nlohmann::ordered_json to_json(const methods::Answer& answer);
-methods::Answer answer_from(const nlohmann::json& value);
+methods::Answer answer_from(nlohmann::json value);
 /// Asks a worker. An answer that does not come has the outcome `crashed` or `timed_out`.
 methods::Answer answer_of(Worker& worker, const nlohmann::ordered_json& question,
                           std::chrono::duration<double> limit);

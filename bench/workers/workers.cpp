@@ -26,6 +26,13 @@ namespace {
 
 constexpr int kGiven = 3;  // the child's file descriptor for `given`
 
+/// Returns the time left for poll(), in milliseconds; of a far deadline the first minute.
+int time_left(std::chrono::steady_clock::time_point deadline) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+  constexpr std::int64_t kLeast = 0, kMax = 60'000;  // fits an int
+  return static_cast<int>(std::clamp<std::int64_t>(left.count(), kLeast, kMax));
+}
+
 /// Runs in the child, between fork and exec: must not allocate or take locks.
 [[noreturn]] void become(char* const* arguments, int output, int given, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -97,13 +104,11 @@ bool Child::read() {
 
 Child::Next Child::next_line(std::chrono::steady_clock::time_point deadline, std::string& line) {
   while (unread_.empty()) {
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+    const int left = time_left(deadline);
     pollfd waiting{output_, POLLIN, 0};
-    constexpr std::int64_t kLeast = 0, kMax = 60'000;  // fits an int
-    if (poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(left, kLeast, kMax))) > 0) {
+    if (poll(&waiting, 1, left) > 0) {
       if (!read()) return Next::end;
-    } else if (left <= 0) {
+    } else if (left == 0) {
       return Next::late;
     }
   }
@@ -236,7 +241,10 @@ void Worker::start() {
       const std::string why = next == Child::Next::line   ? error_in(line)
                               : next == Child::Next::late ? text_of_timeout(greeting_.limit)
                                                           : text_of_end(child_->wait());
-      if (!why.empty()) throw InputError(greeting_.complaint + why);
+      if (!why.empty()) {
+        child_.reset();  // so that the next question starts another one, and greets it
+        throw InputError(greeting_.complaint + why);
+      }
     }
   }
   ask_ahead();
@@ -287,8 +295,7 @@ void wait_for_news(std::span<Worker* const> workers) {
     waiting.push_back({worker->output(), POLLIN, 0});
     deadline = std::min(deadline, worker->deadline());
   }
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Worker::Clock::now()).count();
-  poll(waiting.data(), waiting.size(), static_cast<int>(std::max<std::int64_t>(0, left)));
+  poll(waiting.data(), waiting.size(), time_left(deadline));
   for (std::size_t i = 0; i < workers.size(); ++i) {
     if (waiting[i].revents != 0)
       workers[i]->receive();

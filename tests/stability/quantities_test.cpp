@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/quantities/truth.hpp"
+#include "bench/workers/worker_json.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/program.hpp"
 #include <lrbscope/error.hpp>
@@ -41,6 +43,7 @@ Record ask_ours(Quantity quantity, const cases::Case& c) {
   return r;
 }
 
+/// Judges a number as it comes from a worker.
 Outcome judged(Quantity quantity, double lower, double upper, double least, double most, bool proves) {
   methods::MethodInfo info;
   info.quantity = quantity;
@@ -50,7 +53,8 @@ Outcome judged(Quantity quantity, double lower, double upper, double least, doub
   e.most = most;
   e.size = 1;
   Record r;
-  judge(r, info, methods::number_answer(lower, upper, 0), e);
+  const std::string line = workers::to_json(methods::number_answer(lower, upper, 0)).dump();
+  judge(r, info, workers::answer_from(nlohmann::json::parse(line)), e);
   return r.outcome;
 }
 
@@ -99,6 +103,11 @@ TEST_CASE("stability: computed numbers are compared with the true ones") {
   CHECK(judged(Quantity::first_contact, kNever, kNever, kNever, kNever, false) == Outcome::right);
   CHECK(judged(Quantity::first_contact, 0.5, 0.5, 0.5005, 0.5005, false) == Outcome::right);
   CHECK(judged(Quantity::first_contact, 0.5, 0.5, 0.51, 0.51, false) == Outcome::wrong);
+  for (const double x : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+    for (const bool proves : {false, true}) {
+      CHECK(judged(Quantity::distance, x, x, 1, 1, proves) == Outcome::wrong);
+      CHECK(judged(Quantity::first_contact, x, x, 0.5, 0.5, proves) == Outcome::wrong);
+    }
 }
 
 TEST_CASE("lrbscope's numbers are right from benign to degenerate") {

@@ -78,7 +78,43 @@ std::vector<CollideRequest> requests() {
           {.separation = true}};
 }
 
+bool is_more(const Event& e) {
+  return e.kind > EventKind::result;
+}
+
 }  // namespace
+
+TEST_CASE("a query does the same work at every event detail") {
+  for (const WatchedBodies& bodies : watched_bodies())
+    for (const CollideRequest& request : requests()) {
+      const WatchedRun faces = record(bodies, request, EventLevel::faces);
+      for (const EventLevel level : {EventLevel::nodes, EventLevel::all}) {
+        const WatchedRun more = record(bodies, request, level);
+        for (std::size_t i = 0; i < faces.results.size(); ++i) {
+          CHECK(more.results[i].counters == faces.results[i].counters);
+          CHECK((more.results[i].pairs == faces.results[i].pairs));
+          CHECK(more.results[i].relation == faces.results[i].relation);
+          CHECK(more.results[i].error_bound == faces.results[i].error_bound);
+          CHECK(more.results[i].finished == faces.results[i].finished);
+          CHECK((more.results[i].separation == faces.results[i].separation));
+          CHECK((more.results[i].opened == faces.results[i].opened));
+          CHECK(more.results[i].regions.size() == faces.results[i].regions.size());
+        }
+        std::vector<Event> same = more.trace.events;
+        std::erase_if(same, is_more);
+        REQUIRE(same.size() == faces.trace.events.size());
+        for (std::size_t i = 0; i < same.size(); ++i) {
+          CHECK(same[i].kind == faces.trace.events[i].kind);
+          CHECK(same[i].a == faces.trace.events[i].a);
+          CHECK(same[i].b == faces.trace.events[i].b);
+          CHECK(same[i].boundary == faces.trace.events[i].boundary);
+          CHECK(same[i].depth_a == faces.trace.events[i].depth_a);
+          CHECK(same[i].depth_b == faces.trace.events[i].depth_b);
+          if (same[i].kind == EventKind::face_test) CHECK(same[i].tested_by() != TestedBy::unreported);
+        }
+      }
+    }
+}
 
 TEST_CASE("observed coherent queries have the same answers and counters, and their events add up to these") {
   std::map<Phase, std::uint64_t> phases;
