@@ -167,6 +167,7 @@ BodyPtr unpickled(const py::tuple& state) {
   double seconds = 0;
   std::size_t vertices = 0;
   archive(d, notes, seconds, vertices);
+  archive.check_end();
   if (vertices > d.vertices.size()) throw InputError("the pickle is damaged");
   return std::make_shared<Body>(bodies::LoadedBody{LrbRep(std::move(d)), std::move(notes), seconds},
                                 vertices);

@@ -53,6 +53,8 @@ class Archive {
   explicit Archive(const py::tuple& state);
   py::tuple state() const;
   bool reads() const { return reads_; }
+  /// Throws InputError if a state has more than was read.
+  void check_end() const;
 
   template <class... Values>
   void operator()(Values&... values) {
@@ -119,6 +121,7 @@ void make_picklable(Class& c) {
         Archive archive(state);
         Value value;
         archive(value);
+        archive.check_end();
         return value;
       }));
 }

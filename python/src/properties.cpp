@@ -39,6 +39,10 @@ void Archive::check(std::size_t n) const {
   if (n > all_.size() - next_) throw InputError("the pickle is damaged: it ends early");
 }
 
+void Archive::check_end() const {
+  if (next_ != all_.size()) throw InputError("the pickle is damaged: it does not end where it should");
+}
+
 std::size_t checked_index(const py::object& i, std::size_t n) {
   const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(i.ptr()));
   if (!index) throw py::error_already_set();

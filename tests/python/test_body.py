@@ -86,6 +86,7 @@ def test_a_damaged_pickle_is_refused(cube):
     for state, said in (
         (("1.0", data), "another version"),
         ((version, data[:-9]), "damaged"),
+        ((version, data + b"\0"), "damaged"),
         ((version, data.replace(cube.faces.tobytes(), b"\xff" * cube.faces.nbytes)), ""),
     ):
         with pytest.raises(InputError, match=said):
