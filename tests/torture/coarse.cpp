@@ -1,10 +1,9 @@
-#include "tests/torture/coarse.hpp"
-
 #include <cstdio>
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/coarse_checks.hpp"
 #include "tests/torture/children.hpp"
+#include "tests/torture/torture.hpp"
 #include <lrbscope/build.hpp>
 
 namespace lrb::torture {
@@ -21,8 +20,24 @@ constexpr std::uint64_t kMeasuredEvery = 16;
 struct CoarseTally {
   std::uint64_t queries = 0, meeting = 0, alone_apart = 0, unresolved = 0, with_lids = 0, measured = 0;
   std::uint64_t wrong_relations = 0, wrong_separate = 0, wrong_bounds = 0, crashes = 0;
-  std::uint64_t differences() const { return wrong_relations + wrong_separate + wrong_bounds + crashes; }
 };
+
+}  // namespace
+
+template <>
+inline constexpr auto kColumns<CoarseTally> =
+    std::to_array<Column<CoarseTally>>({{"queries", &CoarseTally::queries},
+                                        {"meeting", &CoarseTally::meeting},
+                                        {"apart by", &CoarseTally::alone_apart},
+                                        {"unresolved", &CoarseTally::unresolved},
+                                        {"with lids", &CoarseTally::with_lids},
+                                        {"measured", &CoarseTally::measured},
+                                        {"relation", &CoarseTally::wrong_relations, true},
+                                        {"separate", &CoarseTally::wrong_separate, true},
+                                        {"bound", &CoarseTally::wrong_bounds, true},
+                                        {"crashes", &CoarseTally::crashes, true}});
+
+namespace {
 
 struct CoarseBodies {
   const char* name;
@@ -172,14 +187,6 @@ class CoarseChecker {
   CoarseTally t_;
 };
 
-void print_coarse_row(const char* name, const CoarseTally& t, double seconds) {
-  const auto n = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
-  std::printf("%-14s %9llu %9llu %9llu %10llu %9llu %9llu %9llu %9llu %9llu %8llu %7.1f\n", name,
-              n(t.queries), n(t.meeting), n(t.alone_apart), n(t.unresolved), n(t.with_lids), n(t.measured),
-              n(t.wrong_relations), n(t.wrong_separate), n(t.wrong_bounds), n(t.crashes), seconds);
-  std::fflush(stdout);
-}
-
 }  // namespace
 
 std::uint64_t torture_coarse(std::uint64_t count, std::uint64_t seed, unsigned jobs) {
@@ -188,20 +195,7 @@ std::uint64_t torture_coarse(std::uint64_t count, std::uint64_t seed, unsigned j
     bodies.a.levels();
     bodies.b.levels();
   }
-  std::printf("%-14s %9s %9s %9s %10s %9s %9s %9s %9s %9s %8s %7s\n", "bodies", "queries", "meeting",
-              "apart by", "unresolved", "with lids", "measured", "relation", "separate", "bound", "crashes",
-              "s");
-  const auto check = [](const CoarseBodies& bodies, Batch b, RandomEngine& random) {
-    return CoarseChecker(bodies, random).run(b.end - b.begin);
-  };
-  const auto lost = [](Batch b, int) {
-    CoarseTally tally;
-    tally.queries = b.end - b.begin;
-    tally.crashes = 1;
-    return tally;
-  };
-  return sum_over_bodies<CoarseTally>(list, count, kCoarseBatch, seed, jobs, check, lost, print_coarse_row)
-      .differences();
+  return print_table(rows_of<CoarseTally, CoarseChecker>(list, count, seed), kCoarseBatch, jobs);
 }
 
 }  // namespace lrb::torture

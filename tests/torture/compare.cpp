@@ -1,5 +1,3 @@
-#include "tests/torture/compare.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -9,6 +7,7 @@
 #include "tests/torture/cgal_oracle.hpp"
 #include "tests/torture/parity_oracle.hpp"
 #include "tests/torture/sweep_oracle.hpp"
+#include "tests/torture/torture.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 

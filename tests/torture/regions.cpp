@@ -1,7 +1,6 @@
-#include "tests/torture/regions.hpp"
-
 #include <unordered_map>
 
+#include "tests/torture/torture.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/error.hpp>
 

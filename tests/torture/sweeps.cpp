@@ -1,5 +1,3 @@
-#include "tests/torture/sweeps.hpp"
-
 #include <cmath>
 #include <cstdio>
 
@@ -8,6 +6,7 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/bodies.hpp"
 #include "tests/torture/children.hpp"
+#include "tests/torture/torture.hpp"
 
 namespace lrb::torture {
 namespace {
@@ -20,10 +19,29 @@ constexpr int kSamples = 40, kCloseSamples = 24;
 
 struct SweepTally {
   std::uint64_t motions = 0, contacts = 0, at_start = 0, never = 0, undecided = 0, grazing = 0, passed = 0,
-                samples = 0;
-  std::uint64_t misses = 0, no_contact = 0, wide = 0, crashes = 0, steps = 0;
-  std::uint64_t differences() const { return misses + no_contact + wide + crashes; }
+                steps = 0, samples = 0;
+  std::uint64_t misses = 0, no_contact = 0, wide = 0, crashes = 0;
 };
+
+}  // namespace
+
+template <>
+inline constexpr auto kColumns<SweepTally> =
+    std::to_array<Column<SweepTally>>({{"motions", &SweepTally::motions},
+                                       {"contact", &SweepTally::contacts},
+                                       {"at start", &SweepTally::at_start},
+                                       {"never", &SweepTally::never},
+                                       {"undecided", &SweepTally::undecided},
+                                       {"grazing", &SweepTally::grazing},
+                                       {"passed", &SweepTally::passed},
+                                       {"steps", &SweepTally::steps},
+                                       {"samples", &SweepTally::samples},
+                                       {"misses", &SweepTally::misses, true},
+                                       {"no contact", &SweepTally::no_contact, true},
+                                       {"wide", &SweepTally::wide, true},
+                                       {"crashes", &SweepTally::crashes, true}});
+
+namespace {
 
 struct SweepBodies {
   const char* name;
@@ -234,33 +252,11 @@ class SweepChecker {
   SweepTally t_;
 };
 
-void print_sweep_row(const char* name, const SweepTally& t, double seconds) {
-  const auto n = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
-  std::printf("%-14s %9llu %9llu %9llu %9llu %9llu %9llu %9llu %9llu %10llu %8llu %10llu %8llu %8llu %7.1f\n",
-              name, n(t.motions), n(t.contacts), n(t.at_start), n(t.never), n(t.undecided), n(t.grazing),
-              n(t.passed), n(t.motions > 0 ? t.steps / t.motions : 0), n(t.samples), n(t.misses),
-              n(t.no_contact), n(t.wide), n(t.crashes), seconds);
-  std::fflush(stdout);
-}
-
 }  // namespace
 
 std::uint64_t torture_sweeps(std::uint64_t count, std::uint64_t seed, unsigned jobs) {
   const std::vector<SweepBodies> list = sweep_bodies();
-  std::printf("%-14s %9s %9s %9s %9s %9s %9s %9s %9s %10s %8s %10s %8s %8s %7s\n", "bodies", "motions",
-              "contact", "at start", "never", "undecided", "grazing", "passed", "steps", "samples", "misses",
-              "no contact", "wide", "crashes", "s");
-  const auto check = [](const SweepBodies& bodies, Batch b, RandomEngine& random) {
-    return SweepChecker(bodies, random).run(b.end - b.begin);
-  };
-  const auto lost = [](Batch b, int) {
-    SweepTally tally;
-    tally.motions = b.end - b.begin;
-    tally.crashes = 1;
-    return tally;
-  };
-  return sum_over_bodies<SweepTally>(list, count, kSweepBatch, seed, jobs, check, lost, print_sweep_row)
-      .differences();
+  return print_table(rows_of<SweepTally, SweepChecker>(list, count, seed), kSweepBatch, jobs);
 }
 
 }  // namespace lrb::torture

@@ -22,8 +22,9 @@
 // where that is proven, and a body that rounding has made flat gives "unknown". A face is the
 // triangles of cut_polygon(), and inside is the parity of these.
 
+#include "tests/torture/torture.hpp"
+
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -35,11 +36,7 @@
 #include "tests/support/shared_meshes.hpp"
 #include "tests/torture/cgal_oracle.hpp"
 #include "tests/torture/children.hpp"
-#include "tests/torture/coarse.hpp"
-#include "tests/torture/compare.hpp"
 #include "tests/torture/models.hpp"
-#include "tests/torture/regions.hpp"
-#include "tests/torture/sweeps.hpp"
 
 using namespace lrb;
 using namespace lrb::cases;
@@ -117,33 +114,6 @@ Tally batch(const Class& c, Batch range, const Options& o) {
   return sum;
 }
 
-/// A batch whose process died.
-Tally lost_batch(const Class& c, Batch range, int status, const Options& o) {
-  std::fprintf(stderr, "--class %s --seed %llu: the process died (status %d) between poses %llu and %llu\n",
-               c.family.name, static_cast<unsigned long long>(o.seed), status,
-               static_cast<unsigned long long>(range.begin), static_cast<unsigned long long>(range.end));
-  Tally lost;
-  lost.poses = range.end - range.begin;
-  lost.crashes = 1;
-  return lost;
-}
-
-void print_header() {
-  std::printf("%-12s %9s %9s %8s %8s %7s %7s %7s %8s %9s %9s %8s %10s %8s %8s %7s\n", "class", "poses",
-              "contact", "inside", "regions", "false-", "false+", "lists", "relation", "undecided",
-              "refusals", "crashes", "rational", "CGAL", "parity", "s");
-}
-
-void print_row(const char* name, const Tally& t, double seconds) {
-  const auto n = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
-  std::printf(
-      "%-12s %9llu %9llu %8llu %8llu %7llu %7llu %7llu %8llu %9llu %9llu %8llu %10llu %8llu %8llu %7.1f\n",
-      name, n(t.poses), n(t.in_contact), n(t.inside), n(t.with_regions), n(t.false_negatives),
-      n(t.false_positives), n(t.wrong_lists), n(t.wrong_relations), n(t.undecided), n(t.rejections),
-      n(t.crashes), n(t.oracle_pairs), n(t.cgal_pairs), n(t.parity_checks), seconds);
-  std::fflush(stdout);
-}
-
 int usage(const std::string& complaint) {
   std::fprintf(stderr, "torture: %s\n", complaint.c_str());
   std::fprintf(
@@ -184,34 +154,21 @@ bool take(Options& o, const std::string& key, const char* value) {
   return true;
 }
 
-Tally run_class(const Class& c, const Options& o) {
-  if (o.only >= 0) {
-    const auto index = static_cast<std::uint64_t>(o.only);
-    return batch(c, {index, index + 1}, o);
-  }
-  return sum_in_children<Tally>(
-      c.poses(o), kBatch, o.jobs, [&](Batch b) { return batch(c, b, o); },
-      [&](Batch b, int status) { return lost_batch(c, b, status, o); });
-}
-
 /// Runs the requested classes and prints a row each. Returns 1 if there was a difference.
 int run_table(const Options& o, const std::vector<Class>& classes) {
-  const auto seconds_since = [](auto start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-  print_header();
-  Tally total;
-  const auto begun = std::chrono::steady_clock::now();
+  std::vector<Row<Tally>> rows;
   for (const Class& c : classes) {
     if (!o.name.empty() && o.name != c.family.name) continue;
-    const auto start = std::chrono::steady_clock::now();
-    const Tally t = run_class(c, o);
-    print_row(c.family.name, t, seconds_since(start));
-    total += t;
+    const auto work = [&c, &o](Batch b) { return batch(c, b, o); };
+    const auto one = static_cast<std::uint64_t>(o.only);
+    if (o.only >= 0)
+      rows.push_back({c.family.name, 1, [=](Batch) { return work({one, one + 1}); }});
+    else
+      rows.push_back({c.family.name, c.poses(o), work});
   }
-  print_row("total", total, seconds_since(begun));
+  const std::uint64_t differences = print_table(rows, kBatch, o.only >= 0 ? 0 : o.jobs);
   if (!has_cgal()) std::printf("CGAL was not found when this was built: its column is 0\n");
-  return total.differences() == 0 ? 0 : 1;
+  return differences == 0 ? 0 : 1;
 }
 
 }  // namespace
