@@ -8,8 +8,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
 
+#include "engine/core/geometry.hpp"
 #include "engine/core/polygon.hpp"
 #include <lrbscope/error.hpp>
 
@@ -428,7 +428,17 @@ double box_gap(const ShapeBox& a, const ShapeBox& b) {
     Eigen::Matrix<double, 3, 6> free = Eigen::Matrix<double, 3, 6>::Zero();
     for (std::size_t k = 0; k < along.size(); ++k)
       if (std::abs(at[k]) < 1) free.col(static_cast<Eigen::Index>(k)) = along[k];
-    const Eigen::Matrix<double, 6, 1> step = free.completeOrthogonalDecomposition().solve(-between);
+    // The shortest step of least squares, from the eigenvectors of the free edges' matrix of products.
+    const Matrix3d products = free * free.transpose(), axes = eigenvectors_of_symmetric(products);
+    const double most = products.diagonal().sum();
+    Vector3d image = Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d axis = axes.col(k);
+      constexpr double kSingular = 1e-13;
+      if (const double value = axis.dot(products * axis); value > kSingular * most)
+        image -= axis.dot(between) / value * axis;
+    }
+    const Eigen::Matrix<double, 6, 1> step = free.transpose() * image;
     double share = 1;
     for (std::size_t k = 0; k < along.size(); ++k)
       if (const double d = step[static_cast<Eigen::Index>(k)]; std::abs(at[k]) < 1 && d != 0)
