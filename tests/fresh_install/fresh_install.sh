@@ -208,8 +208,8 @@ step_check() {
   # The format part may not be skipped if the formatter is available.
   [ "$suite" != bookworm ] || inside bash -c 'command -v clang-format-14'
 }
-# Tests in which permissions matter, and some of those that write files and start programs.
-user_tests='^(lrb_tests|library_tests|golden_tests|stability_tests|commands_(files|render|run)|package|robustness)$'
+# Tests in which permissions matter.
+user_tests='^(lrb_tests|library_tests|commands_(files|build|render)|robustness)$'
 # Without root, with the packages: the same clone with another owner, so that only steps that depend on the user are repeated.
 step_user() {
   chmod a+x "$root/root"
