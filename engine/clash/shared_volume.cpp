@@ -1,6 +1,6 @@
 /// Volume of the intersection of two closed bodies as a sum over pairs of triangles.
 /// Steps:
-/// 1. Project all triangles along x, and find the pairs whose boxes overlap, by strips across y.
+/// 1. Project all triangles along x, and find the pairs whose boxes overlap, by a grid across y and z.
 /// 2. Clip one triangle of a pair by the other (Sutherland and Hodgman 1974).
 /// 3. Integrate the lower of both heights over the polygon, and add it with the sign of both orientations.
 /// 4. Sum up with compensation (Neumaier 1974) and a bound on all errors.
@@ -243,33 +243,58 @@ double volume_at_most(const UnitBody& body) {
   return (std::abs(sum) + rounding) / 6 * (1 + 0x1p-50) + rounding_of_corners(body, kRounding);
 }
 
-/// Finds the pairs of overlapping boxes in strips across y.
-class Strips {
+/// Finds the pairs of overlapping boxes in the cells of a grid across y and z.
+class Grid {
  public:
-  Strips(const std::vector<Seen>& triangles, std::size_t count) : triangles_(triangles), in_(count) {
+  Grid(const std::vector<Seen>& triangles, std::size_t side)
+      : triangles_(triangles), side_(side), begin_(side * side + 1) {
+    // Counts first; then each cell's triangles are in one array, in ascending order.
+    for (const Seen& t : triangles) each_cell(t, [&](std::size_t cell) { ++begin_[cell + 1]; });
+    for (std::size_t cell = 0; cell < side * side; ++cell) begin_[cell + 1] += begin_[cell];
+    in_.resize(begin_.back());
+    std::vector<std::size_t> end = begin_;
     for (std::uint32_t i = 0; i < triangles.size(); ++i)
-      for (std::size_t k = first_of(triangles[i]); k <= last_of(triangles[i]); ++k) in_[k].push_back(i);
+      each_cell(triangles[i], [&](std::size_t cell) { in_[end[cell]++] = i; });
   }
 
+  /// Calls use(s) for all triangles s near t: by the first row of cells that both share, then by number.
   template <class Use>
-  void each_near(const Seen& t, const Use& use) const {
-    // A pair is reported only in the first strip that both boxes share.
-    for (std::size_t k = first_of(t); k <= last_of(t); ++k)
-      for (const std::uint32_t i : in_[k])
-        if (k == std::max(first_of(t), first_of(triangles_[i]))) use(triangles_[i]);  // once for each pair
+  void each_near(const Seen& t, const Use& use) {
+    std::size_t row = row_of(t.box.min().x());
+    found_.clear();
+    const auto end_row = [&] {
+      std::sort(found_.begin(), found_.end());
+      for (const std::uint32_t i : found_) use(triangles_[i]);
+      found_.clear();
+    };
+    each_cell(t, [&](std::size_t cell) {
+      if (cell / side_ != row) end_row();
+      row = cell / side_;
+      for (std::size_t k = begin_[cell]; k < begin_[cell + 1]; ++k) {
+        // A pair is reported only in the first cell that both boxes share.
+        const Vector2d first = t.box.min().cwiseMax(triangles_[in_[k]].box.min());
+        if (cell == row_of(first.x()) * side_ + row_of(first.y())) found_.push_back(in_[k]);
+      }
+    });
+    end_row();
   }
 
  private:
-  std::size_t strip_at(double y) const {
+  std::size_t row_of(double y) const {
     // Clamped, so that rounding at the border is harmless.
-    const double share = std::clamp(y + 0.5, 0.0, 1.0) * static_cast<double>(in_.size());
-    return std::min(static_cast<std::size_t>(share), in_.size() - 1);
+    const double share = std::clamp(y + 0.5, 0.0, 1.0) * static_cast<double>(side_);
+    return std::min(static_cast<std::size_t>(share), side_ - 1);
   }
-  std::size_t first_of(const Seen& t) const { return strip_at(t.box.min().x()); }
-  std::size_t last_of(const Seen& t) const { return strip_at(t.box.max().x()); }
+  template <class Use>
+  void each_cell(const Seen& t, const Use& use) const {
+    for (std::size_t k = row_of(t.box.min().x()); k <= row_of(t.box.max().x()); ++k)
+      for (std::size_t l = row_of(t.box.min().y()); l <= row_of(t.box.max().y()); ++l) use(k * side_ + l);
+  }
 
   const std::vector<Seen>& triangles_;
-  std::vector<std::vector<std::uint32_t>> in_;
+  std::size_t side_;
+  std::vector<std::size_t> begin_;  ///< by cell, its first place in in_
+  std::vector<std::uint32_t> in_, found_;
 };
 
 /// The intersection of the bodies' boxes, grown by `more`.
@@ -323,11 +348,10 @@ UnitBody limited(const UnitBody& body, const Eigen::AlignedBox3d& box, int zoom)
 
 ProvedInterval volume_of(const UnitBodies& bodies, double error_of_corners) {
   const std::vector<Seen> a = seen_of(bodies.body[0]), b = seen_of(bodies.body[1]);
-  // If triangles are evenly distributed, there are about as many strips as triangles in each.
-  const auto count = static_cast<std::size_t>(std::sqrt(static_cast<double>(b.size()))) + 1;
-  const Strips strips(b, count);
+  // About as many cells as triangles.
+  Grid grid(b, static_cast<std::size_t>(std::sqrt(static_cast<double>(b.size()))) + 1);
   Sum sum;
-  for (const Seen& t : a) strips.each_near(t, [&](const Seen& s) { add_pair(t, s, sum); });
+  for (const Seen& t : a) grid.each_near(t, [&](const Seen& s) { add_pair(t, s, sum); });
   // The error from the rounding of all corners is added once, at the end.
   return sum.interval(rounding_of_corners(bodies.body[0], error_of_corners) +
                       rounding_of_corners(bodies.body[1], error_of_corners));
