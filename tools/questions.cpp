@@ -217,6 +217,9 @@ struct ClashQuestion : PosedQuestion {
            "Also compute the directional penetration depth: how far B must move this way to separate from A")
         ->delimiter(',')
         ->expected(3);
+    app.add_option("--budget", request.max_steps, "N",
+                   "Stop narrowing depths after N queries and points located in the bodies")
+        ->in_hidden_range(std::uint64_t{1}, std::uint64_t{1} << 62);
     app.add_flag("--table", table, "Print a human-readable table instead of JSON");
     add_draw_options(app, draw, "Draw the solids with the separation vector");
   }
@@ -253,6 +256,7 @@ struct ClashQuestion : PosedQuestion {
     if (r.depth && std::isfinite(r.depth->upper)) w.member("translation", r.translation);
     write_interval(w, "along", r.along);
     write_interval(w, "volume", r.volume);
+    if (request.max_steps > 0) w.member("finished", r.finished);
     if (r.kind != ClashKind::apart && r.kind != ClashKind::within_clearance &&
         r.kind != ClashKind::undecided) {
       write_pieces(w, "pieces_a", r.pieces[0]);

@@ -88,6 +88,9 @@ inline constexpr double kClearanceMargin = 0x1p-46, kRoomMargin = 0x1p-46;
 /// intervals.
 inline constexpr double kNarrowDepth = 0.99;
 inline constexpr unsigned kMaxRoomPoints = 12000, kRoomLooks = 24;
+/// Share of ClashRequest::max_steps after which the search for short translations ends; the rest is left for
+/// that proof. Larger: shorter translations, lower ends nearer to 0.
+inline constexpr double kShareOfSearch = 0.5;
 /// The search for a point with enough clearance for a cube of translations; it proves nothing by itself. It
 /// starts at the points of the kSeeds nearest proven cubes. If the clearance found is less than kNearlyEnough
 /// of that needed, the cube is divided instead of searched further, unless it is smaller than kSmallCube of

@@ -41,9 +41,9 @@ namespace {
 class DepthFinder {
  public:
   /// `query`: begun with the bodies, which must be closed. `result`: all pairs of intersecting simplices.
-  /// adapter: null, or notified of bounds on the depth.
+  /// max_steps: as in ClashRequest. adapter: null, or notified of bounds on the depth.
   DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
-              SeparationSearch& penetration, BoundsProbeAdapter* adapter = nullptr);
+              SeparationSearch& penetration, std::uint64_t max_steps, BoundsProbeAdapter* adapter = nullptr);
 
   struct Depth {
     ProvedInterval length;  ///< world
@@ -52,6 +52,8 @@ class DepthFinder {
   Depth depth();
   /// `n`: approximately of unit length.
   ProvedInterval along(const Vector3d& n);
+  /// Returns false if the limit of steps ended a search.
+  bool finished() const { return !is_cut_; }
 
  private:
   /// Convex sets inside each body, around a common point.
@@ -74,11 +76,16 @@ class DepthFinder {
   void notify(double least);
   double hull_width(const Vector3d& n) const;
   double along_lower(const Vector3d& n);
+  std::uint64_t steps() const { return separation_search_.query_count() + located_; }
+  bool is_spent(double share = 1);
 
   QueryContext& query_;
   const CollideResult& result_;
   const UnitBodies& bodies_;
   SeparationSearch& separation_search_;
+  std::uint64_t max_steps_;
+  std::uint64_t located_ = 0;  ///< number of points located in both bodies
+  bool is_cut_ = false;        ///< the limit ended a search
   BoundsProbeAdapter* adapter_;
   double reported_lower_ = 0;             ///< lower bound on the depth, world units; only with an adapter
   std::uint64_t grown_ = 0;               ///< number of expansion steps; only with an adapter
@@ -138,10 +145,23 @@ double farthest(const UnitBody& body, const Vector3d& n) {
 }
 
 DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
-                         SeparationSearch& penetration, BoundsProbeAdapter* adapter)
-    : query_(query), result_(result), bodies_(bodies), separation_search_(penetration), adapter_(adapter) {
+                         SeparationSearch& penetration, std::uint64_t max_steps, BoundsProbeAdapter* adapter)
+    : query_(query),
+      result_(result),
+      bodies_(bodies),
+      separation_search_(penetration),
+      max_steps_(max_steps),
+      adapter_(adapter) {
   // The set of a convex body is the body itself, slightly shrunk: computed once for all queries below.
   for (const Side side : {Side::a, Side::b}) whole_[static_cast<int>(side)] = shrunken(side);
+}
+
+/// Returns true, and notes it, once a share of the limit of steps is reached.
+bool DepthFinder::is_spent(double share) {
+  const bool is_now =
+      max_steps_ > 0 && static_cast<double>(steps()) >= share * static_cast<double>(max_steps_);
+  is_cut_ = is_cut_ || is_now;
+  return is_now;
 }
 
 /// Returns a point of a body near x, in units, that was exactly located inside it, or nullopt if x is not
@@ -174,6 +194,7 @@ std::optional<ConvexPoints> DepthFinder::shrunken(Side side) {
 /// Returns the smaller clearance of a point from both surfaces, or 0 if it is not inside both bodies.
 double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
   double least = kInfinity;
+  ++located_;
   for (const Side side : {Side::a, Side::b}) {
     const std::optional<Vector3d> inside = inside_point(side, x, shift);
     if (!inside) return 0;
@@ -230,6 +251,7 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   // The grid is refined only while no common point is found.
   for (int grid = kStartGrid; grid <= kFinestStartGrid && !(most > 0); grid *= 2)
     for (const Vector3d& x : starts(box, grid)) {
+      if (is_spent(kShareOfSearch)) break;
       const double clearance = common_clearance(x, shift);
       // Every common point may help the proof of overlap later.
       if (clearance > 0 && shift.isZero(0)) common_.push_back(x);
@@ -242,7 +264,7 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   if (!(most > 0)) return std::nullopt;
   unsigned tries = 0;
   // Compass search: step along each axis, and halve the step when no step gains.
-  for (double step = most; step > kStartStep * most && tries < kMaxSteps;) {
+  for (double step = most; step > kStartStep * most && tries < kMaxSteps && !is_spent(kShareOfSearch);) {
     bool moved = false;
     for (int k = 0; k < 3; ++k)
       for (const double sign : {-1.0, 1.0}) {
@@ -351,7 +373,7 @@ void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
 /// Rotates the direction by decreasing angles while that shortens the translation.
 void DepthFinder::refine(double& best, Vector3d& best_n) {
   unsigned tries = 0;
-  for (double step = kFirstTurn; step > kMinTurn && tries < kMaxSteps;) {
+  for (double step = kFirstTurn; step > kMinTurn && tries < kMaxSteps && !is_spent(kShareOfSearch);) {
     // Two axes normal to the direction; small rotations towards each, both ways.
     const Vector3d across = best_n.unitOrthogonal(), other = best_n.cross(across);
     bool shorter = false;
@@ -382,10 +404,12 @@ double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
   // Nothing to gain, or no common point to start from. No depth exceeds 1 unit, the size of both bodies.
   if (known >= kNarrowDepth * best || !proof.begin(common_, std::min(best, kUnitReach * 0.5))) return known;
   constexpr unsigned kPart = kMaxRoomPoints / kRoomLooks;
-  for (unsigned part = 0; part < kRoomLooks && proof.lower() < kNarrowDepth * best; ++part) {
+  for (unsigned part = 0; part < kRoomLooks && proof.lower() < kNarrowDepth * best && !is_spent(); ++part) {
     // Alternate between proving and searching in the direction where the proof got stuck.
-    const unsigned looked = proof.grow(kPart);
+    const auto most = max_steps_ > 0 ? std::min<std::uint64_t>(kPart, max_steps_ - steps()) : kPart;
+    const unsigned looked = proof.grow(static_cast<unsigned>(most));
     grown_ += looked;
+    located_ += looked;
     reported_lower_ = std::max(reported_lower_, bodies_.frame.length_to_world(proof.lower()));
     // Where the proof fails, a shorter translation may exist.
     const double before = best;
@@ -393,7 +417,7 @@ double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
     if (best < before) refine(best, best_n);
     notify(best);
     // The proof cannot continue.
-    if (looked < kPart) break;
+    if (looked < most) break;
   }
   return std::max(known, proof.lower());
 }
@@ -417,7 +441,10 @@ DepthFinder::Depth DepthFinder::depth() {
   Vector3d best_n = hulls.direction();
   // Steps 3 and 4, for bodies that are not convex, which may be separated before their hulls are.
   if (!convex) {
-    for (const Vector3d& n : directions()) improve(n, best, best_n);
+    for (const Vector3d& n : directions()) {
+      if (is_spent(kShareOfSearch)) break;
+      improve(n, best, best_n);
+    }
     if (best < kInfinity) refine(best, best_n);
     lower = raise_lower(lower, best, best_n);
   }
@@ -440,7 +467,7 @@ DepthFinder::Depth DepthFinder::depth() {
 /// next step, where another common point is searched.
 double DepthFinder::along_lower(const Vector3d& n) {
   double from = 0, lower = 0;
-  for (unsigned step = 0; step < kMaxWaySteps; ++step) {
+  for (unsigned step = 0; step < kMaxWaySteps && !is_spent(); ++step) {
     // Convex sets of the bodies with B at the current translation.
     const std::optional<Common> sets = common_sets(from * n, WholeTriangles::yes);
     if (!sets) break;
@@ -479,13 +506,14 @@ void measure_depth(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
                    const ClashRequest& request, QueryContext& query, const CollideResult& found,
                    const UnitBodies& bodies, BoundsProbeAdapter* adapter, ClashResult& result) {
   SeparationSearch search(a, pose_a, b, pose_b, bodies);
-  DepthFinder finder(query, found, bodies, search, adapter);
+  DepthFinder finder(query, found, bodies, search, request.max_steps, adapter);
   if (request.depth) {
     const DepthFinder::Depth depth = finder.depth();
     result.depth = depth.length;
     result.translation = depth.translation;
   }
   if (request.along) result.along = finder.along(request.along->stableNormalized());
+  result.finished = finder.finished();
 }
 
 }  // namespace lrb::penetration

@@ -17,6 +17,7 @@ py::object clash(const Given& given) {
   if (const Argument along = given["along"]; !along.is_none()) request.along = vector(along);
   request.depth = flag(given["depth"], request.depth);
   request.volume = flag(given["volume"], request.volume);
+  request.max_steps = count(given["max_steps"], request.max_steps);
   std::vector<ClashResult> found =
       ask_poses<ClashResult>(two.poses_b, given, [&](const Pose& pose_b, Workspace& memory) {
         return lrb::clash(two.a.rep(), two.pose_a, two.b.rep(), pose_b, request, memory);
@@ -57,17 +58,19 @@ bounds. Made by clash().)");
   property(c, "along", "(float, float) or None: how far B has to move in the given direction.",
            &ClashResult::along);
   property(c, "volume", "(float, float) or None: the shared volume, unit cubed.", &ClashResult::volume);
+  property(c, "finished", "bool: max_steps was not reached.", &ClashResult::finished);
   c.def("__repr__",
         [](const ClashResult& r) { return "<lrbscope.Clash " + std::string(to_string(r.kind)) + ">"; });
   make_picklable(c);
   define(m, R"(clash(a, b, poses_b=None, pose_a=None, *, clearance=0, along=None, depth=True, volume=True,
-      threads=0)
+      max_steps=0, threads=0)
 
 Finds the kind and depth of the contact of two solids.
 
 poses_b: (4, 4) float, or (k, 4, 4) for many poses on all cores; pose_a: (4, 4). None: the identity.
 clearance: solids at this distance or less are 'within_clearance'; the world's unit.
 along: (3,), a direction in which B is to leave A. depth, volume: whether to compute them.
+max_steps: stop narrowing depths after this number of queries and of points located in the bodies; 0: no limit.
 
 Returns a Clash, or for (k, 4, 4) a list of them.
 

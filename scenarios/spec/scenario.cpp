@@ -285,7 +285,11 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
   if (more != nullptr) {
     read_flag("coherent", more->coherent);
     read_flag("distance", more->distance);
-    read_flag("clash", more->clash);
+    if (const auto n = node.get("clash")) {  // a flag, or the limit of its steps
+      const bool is_limit = n->json().is_number();
+      more->clash = is_limit || n->boolean();
+      if (is_limit) more->clash_steps = n->integer(1, kAnySeed);
+    }
     if (const auto n = node.get("near")) read_value(*n, more->near.emplace());
     if (const auto n = node.get("manifold")) read_value(*n, more->manifold.emplace());
     if (const auto n = node.get("points")) more->points = n->string();

@@ -54,6 +54,7 @@ struct StepQuestions {
   bool coherent = false;           ///< each step continues from the previous one: engine/collide
   bool distance = false;           ///< query the distance of the bodies
   bool clash = false;              ///< query the kind and depth of their contact
+  std::uint64_t clash_steps = 0;   ///< as ClashRequest::max_steps
   std::optional<double> near;      ///< list the pairs of faces at most this far apart
   std::optional<double> manifold;  ///< find the contact manifolds, with this margin
   std::string points;  ///< file of points that move with B, whose distances to A are computed; may be empty

@@ -113,6 +113,28 @@ TEST_CASE("clash: boxes that overlap by a known amount") {
   check_holds(ask(a, shapes::box({0.25, 0.25, 0.5}, {0.75, 0.75, top})).volume, 0.25 * (top - 0.5), 5e-12);
 }
 
+TEST_CASE("clash: a limit of steps widens the depth's interval, which stays proven") {
+  const LrbRep body = closed(shapes::torus(20, 12));
+  const Pose pose = Pose::rotation({1, 2, 3}, 0.7, {0.6, 0.5, 0.2});
+  const ClashResult whole = ask(body, body, pose);
+  double last = HUGE_VAL;
+  for (const std::uint64_t steps : {1, 100, 1000, 1000000}) {
+    CAPTURE(steps);
+    ClashRequest request;
+    request.max_steps = steps;
+    const ClashResult r = ask(body, body, pose, request);
+    CHECK(r.kind == whole.kind);
+    CHECK(r.volume->upper == whole.volume->upper);
+    CHECK(r.depth->lower <= whole.depth->upper);
+    CHECK(r.depth->upper >= whole.depth->lower);
+    CHECK(r.finished == (steps == 1000000));
+    CHECK(r.depth->upper - r.depth->lower <= last);
+    last = r.depth->upper - r.depth->lower;
+    check_translation(body, Pose{}, body, pose, r);
+  }
+  CHECK(last == whole.depth->upper - whole.depth->lower);
+}
+
 TEST_CASE("clash: touching, separate, and within a clearance") {
   const Mesh a = shapes::box();
   const auto kind = [&](const Vector3d& at, double clearance = 0) {

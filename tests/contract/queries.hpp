@@ -175,7 +175,9 @@ struct Clash {
   using Probe = ClashHistory;
   static auto events(const Probe& probe) { return std::pair(probe.of_distance, probe.of_depth); }
   static std::vector<Request> requests() {
-    return {{.clearance = 0.1, .along = {}}, {.clearance = 0.1, .along = Eigen::Vector3d(1, 2, 3)}};
+    return {{.clearance = 0.1, .along = {}},
+            {.clearance = 0.1, .along = Eigen::Vector3d(1, 2, 3)},
+            {.along = {}, .max_steps = 40}};
   }
   static std::vector<Rejected<Request>> rejected() {
     return {{{.clearance = -1, .along = {}}, "clearance"},

@@ -86,6 +86,9 @@ struct ClashRequest {
   std::optional<Eigen::Vector3d> along;
   bool depth = true;   ///< compute ClashResult::depth and ClashResult::translation
   bool volume = true;  ///< compute ClashResult::volume
+  /// Stop narrowing depths after this number of queries and of points located in the bodies; 0: no limit. The
+  /// bounds are proven in any case. The volume has no such limit.
+  std::uint64_t max_steps = 0;
 };
 
 /// Proven bounds of a number.
@@ -125,6 +128,7 @@ struct ClashResult {
   /// The volume of the intersection of the solids, world units cubed. nullopt for bodies that are not closed
   /// or intersect themselves, unless they are disjoint.
   std::optional<ProvedInterval> volume;
+  bool finished = true;  ///< false: max_steps was reached before depths were as narrow as without a limit
 };
 
 /// Classifies the contact of body `a` at pose_a and body `b` at pose_b, with its depth. Poses may be any
