@@ -1,5 +1,5 @@
 #pragma once
-/// What the suite compares: queries of a case, coarse queries, motions.
+/// The comparisons of the suite: queries of a case, coarse queries, motions.
 
 #include <array>
 #include <cstdint>
