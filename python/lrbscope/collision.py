@@ -3,8 +3,6 @@
 >>> m = CollisionManager()
 >>> _ = m.add_object("left", cube)
 >>> _ = m.add_object("right", cube, shifted(3, 0, 0))
->>> m.in_collision_internal()
-False
 >>> round(m.min_distance_internal(), 9)
 2.0
 >>> m.set_transform("right", shifted(0.5, 0.25, 0.125))
@@ -17,10 +15,9 @@ surfaces have contacts, not an object inside another. Distances refer to the sol
 
 from __future__ import annotations
 
-import hashlib
+import functools
 import math
-import threading
-from collections import OrderedDict
+import reprlib
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,23 +40,16 @@ if TYPE_CHECKING:
 
     _Pose = Optional[npt.ArrayLike]
     _Placed = tuple[Body, _Floats]
-    _Other = Union["CollisionManager", _Placed, None]
-    _Side = tuple[dict[int, Any], Callable[[int], _Placed]]  # names and placed bodies, by keys of a scene
+    _Other = Union["Objects", _Placed, tuple[()]]
+    _Side = tuple[dict[int, Any], Callable[[int], Any]]  # names and placed bodies, by keys of a scene
 
 
 class Shown:
     """Displays an object in one line, with its public attributes."""
 
     def __repr__(self) -> str:
-        shown = ", ".join(f"{name}={_short(value)}" for name, value in vars(self).items() if name[0] != "_")
-        return f"<{type(self).__module__}.{type(self).__name__}{' ' * bool(shown)}{shown}>"
-
-
-def _short(value: Any) -> str:
-    """Return a value in a few characters: lists and large arrays are counted."""
-    if isinstance(value, np.ndarray):
-        return str(value.tolist()) if value.size <= 4 else f"{value.shape} array"
-    return f"[{len(value)} items]" if isinstance(value, list) and len(value) > 2 else repr(value)
+        shown = "".join(f" {name}={reprlib.repr(value)}" for name, value in vars(self).items() if name[0] != "_")
+        return f"<{type(self).__module__}.{type(self).__name__}{shown}>"
 
 
 def contacts_of(result: Result, a: _Placed, b: _Placed) -> Iterator[tuple[int, _Floats, _Floats, float]]:
@@ -114,9 +104,10 @@ class DistanceData(_OfPair):
         return self._points[name]
 
 
-_MOST = 64
-_bodies: OrderedDict[Any, Body] = OrderedDict()  # of recently used meshes, by their contents
-_lock = threading.Lock()
+@functools.lru_cache(maxsize=64)
+def _body_of_bytes(*arrays: tuple[str, tuple[int, ...], bytes]) -> Body:
+    vertices, faces = (np.frombuffer(data, kind).reshape(shape) for kind, shape, data in arrays)
+    return _core.Body(vertices, faces, regions=False, name="mesh")
 
 
 def body_of(mesh: _Mesh) -> Body:
@@ -129,20 +120,10 @@ def body_of(mesh: _Mesh) -> Body:
     faces = triangles if faces is None else faces
     if vertices is None or faces is None:
         raise TypeError(f"mesh: expected something with vertices and faces, got {type(mesh).__name__}")
-    key = None  # of lists and masked arrays, which Body reads
-    arrays = [a if isinstance(a, (list, tuple)) else np.asanyarray(a) for a in (vertices, faces)]
+    arrays: list[Any] = [a if isinstance(a, (list, tuple)) else np.asanyarray(a) for a in (vertices, faces)]
     if all(isinstance(a, np.ndarray) and a.dtype.kind in "fiu" and not np.ma.isMA(a) for a in arrays):
-        key = tuple((a.dtype.str, a.shape, hashlib.blake2b(a.tobytes()).digest()) for a in arrays)
-    with _lock:
-        body = _bodies.pop(key, None)
-    if body is None:
-        body = _core.Body(vertices, faces, regions=False, name="mesh")
-    with _lock:
-        if key is not None:
-            _bodies[key] = body
-        if len(_bodies) > _MOST:
-            _bodies.popitem(last=False)
-    return body
+        return _body_of_bytes(*((a.dtype.str, a.shape, a.tobytes()) for a in arrays))
+    return _core.Body(vertices, faces, regions=False, name="mesh")  # lists and masked arrays
 
 
 def _pose_of(transform: _Pose) -> _Floats:
@@ -159,20 +140,8 @@ def _sorted_names(*names: Any) -> Any:
     return tuple(sorted(names, key=lambda name: (type(name).__name__, name)))
 
 
-def _check_manager(other: Any) -> None:
-    if not isinstance(other, CollisionManager):
-        raise TypeError(f"other_manager: expected a CollisionManager, got {type(other).__name__}")
-
-
-class CollisionManager:
-    """Collisions and distances of named objects. Accepts any object with `vertices` and `faces`, or a Body. The
-    objects are bodies of a Scene.
-
-    in_collision_...: return a bool; with return_names also the set of colliding objects, or of pairs of them; with
-    return_data also a list of ContactData. min_distance_...: return a float, inf without objects; with return_names
-    also the closest object or pair; with return_data also a DistanceData. transform: (4, 4) float. Methods raise
-    ValueError for a name that is unknown. Without flags, queries return a bool or float alone, else a tuple.
-    """
+class Objects:
+    """Named objects, which are the bodies of a Scene: what managers have in common."""
 
     def __init__(self) -> None:
         self._scene = _core.Scene()
@@ -180,21 +149,70 @@ class CollisionManager:
         self._names: dict[int, Any] = {}  # by key
 
     def __repr__(self) -> str:
-        return f"<lrbscope.CollisionManager of {len(self._keys)} objects>"
+        return f"<{type(self).__module__}.{type(self).__name__} of {len(self._keys)} objects>"
+
+    def _add(self, name: Hashable, body: Body, pose: _Floats) -> None:
+        key = self._scene.add(body, pose)
+        if name in self._keys:
+            self._remove(name)
+        self._keys[name], self._names[key] = key, name
+
+    def _remove(self, name: Hashable) -> None:
+        self._scene.remove(self._known(name))
+        del self._names[self._keys.pop(name)]
+
+    def _known(self, name: Hashable) -> int:
+        if name not in self._keys:
+            raise ValueError(f"{name} not in collision manager!")
+        return self._keys[name]
+
+    def _placed(self, key: int) -> _Placed:
+        return self._scene.body(key), self._scene.pose(key)
+
+    def _without(self, *names: Hashable) -> Any:
+        """Return a manager of all objects but those of these names."""
+        others = type(self)()
+        for key, name in self._names.items():
+            if name not in names:
+                others._add(name, *self._placed(key))
+        return others
+
+    def _manager(self, other: Any) -> Any:
+        """Return another manager; of this one a copy, as each object intersects itself."""
+        if not isinstance(other, type(self)):
+            raise TypeError(f"other_manager: expected a {type(self).__name__}, got {type(other).__name__}")
+        return self._without() if other is self else other
+
+    def _selected(self, other: _Other, outside: Any = "__external") -> tuple[tuple[Any, ...], _Side, _Side]:
+        """Return the arguments that select the others in the scene's functions, and both sides of the pairs that
+        these find: of all objects (an empty tuple), with those of another manager, or with a body at a pose, called
+        `outside`.
+        """
+        own = self._names, self._placed
+        if isinstance(other, tuple):
+            placed: Any = other
+            return placed, (({-1: outside}, lambda _: placed) if placed else own), own
+        return (other._scene,), own, (other._names, other._placed)
+
+
+class CollisionManager(Objects):
+    """Collisions and distances of named objects. Accepts any object with `vertices` and `faces`, or a Body.
+
+    in_collision_...: return a bool; with return_names also the set of colliding objects, or of pairs of them; with
+    return_data also a list of ContactData. min_distance_...: return a float, inf without objects; with return_names
+    also the closest object or pair; with return_data also a DistanceData. transform: (4, 4) float. Methods raise
+    ValueError for a name that is unknown. Without flags, queries return a bool or float alone, else a tuple.
+    """
 
     def add_object(self, name: Hashable, mesh: _Mesh, transform: _Pose = None) -> Body:
         """Add an object, or replace the one of this name. Returns its Body."""
         body = body_of(mesh)
-        key = self._scene.add(body, _pose_of(transform))
-        if name in self._keys:
-            self.remove_object(name)
-        self._keys[name], self._names[key] = key, name
+        self._add(name, body, _pose_of(transform))
         return body
 
     def remove_object(self, name: Hashable) -> None:
         """Remove an object."""
-        self._scene.remove(self._known(name))
-        del self._names[self._keys.pop(name)]
+        self._remove(name)
 
     def set_transform(self, name: Hashable, transform: npt.ArrayLike) -> None:
         """Move an object."""
@@ -208,68 +226,35 @@ class CollisionManager:
 
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Return whether any two objects collide. Pairs of names are in alphabetical order."""
-        return self._collide(None, return_names, return_data, _sorted_names)
+        return self._collide((), return_names, return_data, _sorted_names)
 
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Return whether any object collides with one of another manager. This manager's names come first."""
-        _check_manager(other_manager)
-        return self._collide(other_manager, return_names, return_data, lambda a, b: (a, b))
+        return self._collide(self._manager(other_manager), return_names, return_data, lambda a, b: (a, b))
 
     def min_distance_single(
         self, mesh: _Mesh, transform: _Pose = None, return_name: bool = False, return_data: bool = False
     ) -> Any:
         """Return the distance from a mesh to the closest object. In DistanceData the mesh is called '__external'."""
-        distance, names, data = self._nearest((body_of(mesh), _pose_of(transform)), "__external")
+        distance, names, data = self._nearest((body_of(mesh), _pose_of(transform)))
         return _answer(distance, (return_name, names[1]), (return_data, data))
 
     def min_distance_internal(self, name: Hashable = None, return_names: bool = False, return_data: bool = False) -> Any:
         """Return the minimum distance between two objects; `name`: between this one and the others. Names are in
         alphabetical order.
         """
-        one = None if name is None else self._placed(self._known(name))
-        others = self if name is None else self._without(name)
-        distance, names, data = others._nearest(one, name)
+        one: Any = () if name is None else self._placed(self._known(name))
+        distance, names, data = self._without(name)._nearest(one, name) if one else self._nearest(one)
         return _answer(distance, (return_names, _sorted_names(*names)), (return_data, data))
 
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Return the minimum distance to the objects of another manager. This manager's name comes first."""
-        _check_manager(other_manager)
-        distance, names, data = self._nearest(other_manager)
+        distance, names, data = self._nearest(self._manager(other_manager))
         return _answer(distance, (return_names, names), (return_data, data))
-
-    def _known(self, name: Hashable) -> int:
-        if name not in self._keys:
-            raise ValueError(f"{name} not in collision manager!")
-        return self._keys[name]
-
-    def _placed(self, key: int) -> _Placed:
-        return self._scene.body(key), self._scene.pose(key)
-
-    def _without(self, name: Hashable) -> CollisionManager:
-        """Return a manager of all objects but one."""
-        out = CollisionManager()
-        for key, other in self._names.items():
-            if name is None or other != name:
-                out.add_object(other, *self._placed(key))
-        return out
-
-    def _selected(self, other: _Other, outside: Any = "__external") -> tuple[tuple[Any, ...], _Side, _Side]:
-        """Return the arguments that select the others in the scene's functions, and both sides of the pairs that
-        these find: of all objects (None), with those of another manager, or with a body at a pose, called `outside`.
-        """
-        own = self._names, self._placed
-        if other is self:
-            other = self._without(None)  # with itself: each object intersects itself
-        if isinstance(other, CollisionManager):
-            return (other._scene,), own, (other._names, other._placed)
-        if other is None:
-            return (), own, own
-        placed = other
-        return placed, ({-1: outside}, lambda _: placed), own
 
     def _collide(self, other: _Other, names: bool, data: bool, named: Callable[[Any, Any], Any]) -> Any:
         others, (first, first_placed), (second, second_placed) = self._selected(other)
@@ -284,7 +269,7 @@ class CollisionManager:
                 contacts.append(ContactData(pair, faces[i], point=point, normal=normal, depth=depth))
         return _answer(bool(found), (names, {named(*pair) for _, _, pair in found}), (data, contacts))
 
-    def _nearest(self, other: _Other, outside: Any = None) -> tuple[float, tuple[Any, Any], DistanceData | None]:
+    def _nearest(self, other: _Other, outside: Any = "__external") -> tuple[float, tuple[Any, Any], DistanceData | None]:
         """Return distance, names and data of the closest pair."""
         others, (first, _), (second, _) = self._selected(other, outside)
         found = self._scene.nearest(*others, solids=True)

@@ -7,12 +7,10 @@
 >>> fcl.collide(fcl.CollisionObject(box), near, fcl.CollisionRequest(), result), result.is_collision
 (1, True)
 
-Meshes (BVHModel) and boxes are exact. Round shapes are inscribed polyhedra with `facets` facets around: they
-deviate by at most 0.0012 of the radius for 64 facets. Intersections are decided exactly for these polyhedra.
-
-As in FCL, a mesh is a surface and a shape is a solid: an object inside a shape collides with it. Contacts have the
-normal and depth of their contact manifold; signed distances of shapes are proven. Unsupported features raise
-Unsupported: Halfspace, Plane, OcTree, costs, motions other than CCDM_TRANS and CCDM_LINEAR.
+As in FCL, a mesh is a surface and a shape is a solid: an object inside a shape collides with it. Round shapes are
+inscribed polyhedra with `facets` facets around, for which answers are exact: they deviate by at most 0.0012 of the
+radius for 64 facets. Halfspace, Plane, OcTree, costs, and motions other than CCDM_TRANS and CCDM_LINEAR raise
+Unsupported.
 """
 
 from __future__ import annotations
@@ -28,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from .collision import CollisionManager, Shown, contacts_of
+from .collision import Objects, Shown, contacts_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -80,7 +78,7 @@ class Transform:
             self.setQuatRotation(given[0]) if np.size(given[0]) == 4 else self.setRotation(given[0])
 
     def __repr__(self) -> str:
-        return f"<lrbscope.fcl.Transform {self.getRotation().tolist()}, {self.getTranslation().tolist()}>"
+        return f"<{type(self).__module__}.{type(self).__name__} {self._pose[:3].tolist()}>"
 
     def getTranslation(self) -> _Floats:
         return self._pose[:3, 3].copy()
@@ -127,6 +125,9 @@ class CollisionGeometry(Shown):
     _node_type = NODE_TYPE.BV_UNKNOWN
     _made: Body | None = None
 
+    def __init_subclass__(cls, node_type: NODE_TYPE = NODE_TYPE.BV_UNKNOWN) -> None:
+        cls._node_type = node_type or cls._node_type
+
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_"):  # a dimension, which the body depends on
             self._made = None
@@ -157,10 +158,8 @@ class CollisionGeometry(Shown):
         return self._made
 
 
-class BVHModel(CollisionGeometry):
+class BVHModel(CollisionGeometry, node_type=NODE_TYPE.BV_OBBRSS):
     """A triangle mesh: beginModel(), then addSubModel(), addTriangle() or addVertex(), then endModel()."""
-
-    _node_type = NODE_TYPE.BV_OBBRSS
 
     def __init__(self) -> None:
         self._state = 0  # 1: after beginModel(), 2: after endModel()
@@ -207,12 +206,10 @@ class BVHModel(CollisionGeometry):
         return np.array(self._vertices).reshape(-1, 3), self._triangles
 
 
-class Convex(CollisionGeometry):
+class Convex(CollisionGeometry, node_type=NODE_TYPE.GEOM_CONVEX):
     """A convex polyhedron: vertices (n, 3), the number of faces, and for each face its number of corners
     followed by the corners, in one flat list.
     """
-
-    _node_type = NODE_TYPE.GEOM_CONVEX
 
     def __init__(self, vertices: npt.ArrayLike, num_faces: int, faces: Iterable[int]) -> None:
         rest = iter(flat := [operator.index(i) for i in faces])
@@ -230,10 +227,8 @@ class Convex(CollisionGeometry):
         return self._vertices, self._faces
 
 
-class TriangleP(CollisionGeometry):
+class TriangleP(CollisionGeometry, node_type=NODE_TYPE.GEOM_TRIANGLE):
     """A triangle of three points, (3,) each."""
-
-    _node_type = NODE_TYPE.GEOM_TRIANGLE
 
     def __init__(self, a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> None:
         self.a, self.b, self.c = (_core._numbers(v, "corner", (3,)) for v in (a, b, c))
@@ -242,18 +237,15 @@ class TriangleP(CollisionGeometry):
         return np.array([self.a, self.b, self.c]), np.array([[0, 1, 2]])
 
 
-class Box(CollisionGeometry):
+class Box(CollisionGeometry, node_type=NODE_TYPE.GEOM_BOX):
     """A box with these side lengths, centred at the origin."""
-
-    _node_type = NODE_TYPE.GEOM_BOX
 
     def __init__(self, x: float, y: float, z: float) -> None:
         self.side = np.array([x, y, z], dtype=float)
 
     def _surface(self) -> _Surface:
         corners = np.array([[i >> 2 & 1, i >> 1 & 1, i & 1] for i in range(8)]) - 0.5
-        sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-        return corners * self.side, [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]
+        return corners * self.side, [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 
 
 def _revolved(profile: list[tuple[float, float]]) -> _Surface:
@@ -275,20 +267,17 @@ def _arc(radius: float, begin: float, end: float, z: float = 0) -> list[tuple[fl
 
 
 @dataclass(eq=False, repr=False)
-class Sphere(CollisionGeometry):
+class Sphere(CollisionGeometry, node_type=NODE_TYPE.GEOM_SPHERE):
     """A sphere."""
 
-    _node_type = NODE_TYPE.GEOM_SPHERE
     radius: float
 
     def _surface(self) -> _Surface:
         return _revolved(_arc(self.radius, -math.pi / 2, math.pi / 2))
 
 
-class Ellipsoid(CollisionGeometry):
+class Ellipsoid(CollisionGeometry, node_type=NODE_TYPE.GEOM_ELLIPSOID):
     """An ellipsoid with these radii along x, y and z."""
-
-    _node_type = NODE_TYPE.GEOM_ELLIPSOID
 
     def __init__(self, a: float, b: float, c: float) -> None:
         self.radii = np.array([a, b, c], dtype=float)
@@ -299,10 +288,9 @@ class Ellipsoid(CollisionGeometry):
 
 
 @dataclass(eq=False, repr=False)
-class Cylinder(CollisionGeometry):
+class Cylinder(CollisionGeometry, node_type=NODE_TYPE.GEOM_CYLINDER):
     """A cylinder of height lz along z, centred at the origin."""
 
-    _node_type = NODE_TYPE.GEOM_CYLINDER
     radius: float
     lz: float
 
@@ -313,19 +301,15 @@ class Cylinder(CollisionGeometry):
         return [(0, -half), (r, -half), (r, half), (0, half)]
 
 
-class Capsule(Cylinder):
+class Capsule(Cylinder, node_type=NODE_TYPE.GEOM_CAPSULE):
     """A cylinder of height lz along z with a hemisphere on either end."""
-
-    _node_type = NODE_TYPE.GEOM_CAPSULE
 
     def _profile(self, r: float, half: float) -> list[tuple[float, float]]:
         return _arc(r, -math.pi / 2, 0, -half) + _arc(r, 0, math.pi / 2, half)
 
 
-class Cone(Cylinder):
+class Cone(Cylinder, node_type=NODE_TYPE.GEOM_CONE):
     """A cone of height lz along z, base down, with the midpoint of its axis at the origin."""
-
-    _node_type = NODE_TYPE.GEOM_CONE
 
     def _profile(self, r: float, half: float) -> list[tuple[float, float]]:
         return [(0, -half), (r, -half), (0, half)]
@@ -352,9 +336,7 @@ class CollisionObject(Transform):
             raise ValueError("a CollisionObject needs a geometry")
         super().__init__(tf or Transform())
         self._geom = geom
-
-    def __repr__(self) -> str:
-        return f"<lrbscope.fcl.CollisionObject of {self._geom!r} at {self.getTransform()!r}>"
+        self._is_shape = not isinstance(geom, BVHModel)
 
     def getObjectType(self) -> OBJECT_TYPE:
         return OBJECT_TYPE.OT_GEOM if self._is_shape else OBJECT_TYPE.OT_BVH
@@ -378,10 +360,6 @@ class CollisionObject(Transform):
         """The lrbscope.Body of its geometry."""
         return self._geom._body()
 
-    @property
-    def _is_shape(self) -> bool:
-        return not isinstance(self._geom, BVHModel)
-
 
 @dataclass(eq=False, repr=False)
 class Contact(Shown):
@@ -390,8 +368,8 @@ class Contact(Shown):
     o2: CollisionGeometry | None = None
     b1: int = -1
     b2: int = -1
-    normal: _Floats = field(default_factory=lambda: np.zeros(3))
     pos: _Floats = field(default_factory=lambda: np.zeros(3))
+    normal: _Floats = field(default_factory=lambda: np.zeros(3))
     penetration_depth: float = 0.0
 
 
@@ -473,6 +451,12 @@ class DistanceData(Shown):
     done: bool = False
 
 
+def _check_objects(*objects: Any) -> None:
+    for o in objects:
+        if not isinstance(o, CollisionObject):
+            raise TypeError(f"expected a CollisionObject, got {type(o).__name__}")
+
+
 def _holds(o1: CollisionObject, o2: CollisionObject, relation: str) -> bool:
     """Return True if a shape contains the other object. A mesh is a surface and contains nothing."""
     holder = {"a_inside_b": o2, "b_inside_a": o1}.get(relation)
@@ -502,21 +486,20 @@ def _contact_of_shapes(o1: CollisionObject, o2: CollisionObject) -> Contact:
         normal = normal / depth
     elif normals := _core.contact_manifolds(o1.body, o2.body, o2.pose, o1.pose).normals.tolist():  # they touch
         normal = np.array(normals[0])
-    return Contact(*_ids(o1, o2), normal, np.mean(points, axis=0), depth)
+    return Contact(*_ids(o1, o2), np.mean(points, axis=0), normal, depth)
 
 
 def _contacts(o1: CollisionObject, o2: CollisionObject, result: Result, full: bool) -> Iterator[Contact]:
     """Yield a Contact for each pair of triangles of two meshes, or for each triangle of a mesh in a shape."""
-    zero = np.zeros(3)
-    found: Iterable[Any] = ((i, zero, zero, 0.0) for i in range(len(result.pairs)))
+    found: Iterable[Any] = zip(range(len(result.pairs)))
     if full and len(result.pairs):
         found = contacts_of(result, (o1.body, o1.pose), (o2.body, o2.pose))
     seen = set()
-    for i, pos, normal, depth in found:
-        c = Contact(*_ids(o1, o2, *result.pairs[i]), normal, pos, depth)
-        if (c.b1, c.b2) not in seen:
-            seen.add((c.b1, c.b2))
-            yield c
+    for i, *values in found:
+        ids = _ids(o1, o2, *result.pairs[i])
+        if ids[2:] not in seen:
+            seen.add(ids[2:])
+            yield Contact(*ids, *values)
     shape, mesh = (o1, o2) if o1._is_shape else (o2, o1)
     if not shape._is_shape or result.relation == "separate":
         return
@@ -541,6 +524,7 @@ def collide(
     o1: CollisionObject, o2: CollisionObject, request: CollisionRequest | None = None, result: CollisionResult | None = None
 ) -> int:
     """Find the contacts of two objects. Returns their number; adds them to `result`."""
+    _check_objects(o1, o2)
     request, result = request or CollisionRequest(), result or CollisionResult()
     full, shapes = bool(request.enable_contact), o1._is_shape and o2._is_shape
     mode: Any = "any" if shapes or not (full or request.num_max_contacts > 1) else "all"
@@ -561,6 +545,7 @@ def distance(
 
     0 for intersecting meshes, -1 if a shape and another object overlap. Updates `result` if it is smaller.
     """
+    _check_objects(o1, o2)
     request, result = request or DistanceRequest(), result or DistanceResult()
     found = _core.distance(o1.body, o2.body, o2.pose, o1.pose)
     value, points = found.upper, list(found.points)
@@ -592,7 +577,7 @@ def defaultDistanceCallback(o1: CollisionObject, o2: CollisionObject, cdata: Dis
     return cdata.done or nearest <= 0, nearest
 
 
-class DynamicAABBTreeCollisionManager:
+class DynamicAABBTreeCollisionManager(Objects):
     """Many objects. Poses are read at each query, so that setup() and update() do nothing; parameters of FCL's
     tree have no effect.
     """
@@ -602,73 +587,67 @@ class DynamicAABBTreeCollisionManager:
     tree_topdown_level = tree_init_level = 0
     octree_as_geometry_collide, octree_as_geometry_distance = True, False
 
-    def __init__(self) -> None:
-        self._manager = CollisionManager()  # in which the names are the objects
-
-    def __repr__(self) -> str:
-        return f"<lrbscope.fcl.DynamicAABBTreeCollisionManager of {self.size()} objects>"
-
     def registerObjects(self, other_objs: Iterable[CollisionObject]) -> None:
         for o in other_objs:
             self.registerObject(o)
 
     def registerObject(self, obj: CollisionObject) -> None:
-        if not isinstance(obj, CollisionObject):
-            raise TypeError(f"expected a CollisionObject, got {type(obj).__name__}")
-        self._manager.add_object(obj, obj.body, obj.pose)
+        _check_objects(obj)
+        self._add(obj, obj.body, obj.pose)
 
     def unregisterObject(self, obj: CollisionObject) -> None:
-        if obj in self._manager._keys:
-            self._manager.remove_object(obj)
+        if obj in self._keys:
+            self._remove(obj)
 
-    def setup(self) -> None:
+    def setup(self, arg: CollisionObject | Sequence[CollisionObject] | None = None) -> None:
         """Do nothing."""
 
-    def update(self, arg: CollisionObject | Sequence[CollisionObject] | None = None) -> None:
-        """Do nothing."""
+    update = setup
 
     def getObjects(self) -> list[CollisionObject]:
-        return list(self._manager._keys)
+        return list(self._keys)
 
     def clear(self) -> None:
-        self._manager = CollisionManager()
+        super().__init__()
 
     def empty(self) -> bool:
-        return not self._manager._keys
+        return not self._keys
 
     def size(self) -> int:
-        return len(self._manager._keys)
+        return len(self._keys)
 
-    def _moved(self) -> CollisionManager:
-        """Return the manager with the objects' current poses and bodies."""
-        manager = self._manager
-        for o, key in list(manager._keys.items()):
-            if o.body is not manager._scene.body(key):
-                manager.add_object(o, o.body)
-        manager._scene.move(list(manager._names), np.array([o.pose for o in manager._names.values()]))
-        return manager
+    def _moved(self) -> DynamicAABBTreeCollisionManager:
+        """Give the objects their current poses and bodies."""
+        for o in self.getObjects():
+            if o.body is not self._scene.body(self._keys[o]):
+                self._add(o, o.body, o.pose)
+        self._scene.move(list(self._names), np.array([o.pose for o in self._names.values()]))
+        return self
 
     def _arguments(self, args: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Return the scene, the arguments that select the others in its functions, a function from pairs of
-        keys to objects, and data and callback.
+        """Return the arguments that select the others in the scene's functions, a function from pairs of keys to
+        objects, data and callback.
         """
         if len(args) not in (2, 3) or not callable(args[-1]):
             raise ValueError("expected data and callback, optionally after an object or a manager")
-        other = args[0] if len(args) == 3 and args[0] is not self else None
-        is_object = isinstance(other, CollisionObject)
-        manager = self._moved()
-        whose = (other.body, other.pose) if is_object else None if other is None else other._moved()
-        others, (first, _), (second, _) = manager._selected(whose, other)
-        objects_of = lambda a, b: (second[b], first[a]) if is_object else (first[a], second[b])
-        return (manager._scene, others, objects_of, *args[-2:])
+        other, step = args[0] if len(args) == 3 else self, 1
+        whose: Any = ()
+        if not isinstance(other, DynamicAABBTreeCollisionManager):
+            _check_objects(other)
+            whose, step = (other.body, other.pose), -1  # the manager's objects come first
+        elif other is not self:
+            whose = other._moved()
+        self._moved()
+        others, (first, _), (second, _) = self._selected(whose, other)
+        return (others, lambda a, b: (first[a], second[b])[::step], *args[-2:])
 
     def collide(self, *args: Any) -> None:
         """collide(data, callback), (object, data, callback) or (manager, data, callback).
 
         Calls callback(o1, o2, data) for objects with overlapping boxes, until it returns True.
         """
-        scene, others, objects_of, data, callback = self._arguments(args)
-        for a, b in scene.near(0, *others)[0].tolist():
+        others, objects_of, data, callback = self._arguments(args)
+        for a, b in self._scene.near(0, *others)[0].tolist():
             if callback(*objects_of(a, b), data):
                 return
 
@@ -678,12 +657,12 @@ class DynamicAABBTreeCollisionManager:
         Calls callback(o1, o2, data), which returns whether to stop and the minimum distance so far, for
         objects whose boxes are closer than that, closest first.
         """
-        scene, others, objects_of, data, callback = self._arguments(args)
-        likely = scene.nearest_boxes(*others)
+        others, objects_of, data, callback = self._arguments(args)
+        likely = self._scene.nearest_boxes(*others)
         if likely is None:
             return
         done, nearest = callback(*objects_of(*likely[:2]), data)
-        keys, gaps = scene.near(0.0 if done else max(nearest, 0.0), *others)
+        keys, gaps = self._scene.near(0.0 if done else max(nearest, 0.0), *others)
         for pair, gap in zip(map(tuple, keys.tolist()), gaps):
             if done or gap > nearest:
                 return
@@ -711,6 +690,7 @@ def continuousCollide(
     (CCDM_LINEAR). Returns a time from 0 to 1, 1 if they do not collide: there is no contact before it, and
     contact at most toc_err later. Objects within rounding errors of contact count as colliding.
     """
+    _check_objects(o1, o2)
     request, result = request or ContinuousCollisionRequest(), result or ContinuousCollisionResult()
     motions = [_motion(o, end, request.ccd_motion_type) for o, end in ((o1, tf1_end), (o2, tf2_end))]
     tolerance = min(request.toc_err, 1.0)
