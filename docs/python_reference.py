@@ -17,6 +17,7 @@ MODULES = {  # module: its title
     "lrbscope": "lrbscope",
     "lrbscope.many": "lrbscope.many: poses without end, clusters",
     "lrbscope.fcl": "lrbscope.fcl: the interface of python-fcl",
+    "lrbscope.capture": "lrbscope.capture: captures of other engines",
 }
 SPECIAL = ("__len__", "__getitem__", "__iter__", "__bool__", "__float__", "__contains__", "__str__", "__call__")
 built = os.path.isdir(os.environ.get("PYTHONPATH", "nowhere"))

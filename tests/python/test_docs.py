@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 
 import lrbscope
+import lrbscope.capture
 import lrbscope.collision
 import lrbscope.fcl
 import lrbscope.many
+from lrbscope import capture
 from shapes import ball_arrays, cube_arrays, shifted
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
@@ -23,7 +25,7 @@ ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 def documented():
     """Return (name, docstring) of the modules and of all public functions, classes and their members."""
     found = []
-    for module in (lrbscope, lrbscope.collision, lrbscope.fcl, lrbscope.many):
+    for module in (lrbscope, lrbscope.capture, lrbscope.collision, lrbscope.fcl, lrbscope.many):
         found.append((module.__name__, module.__doc__))
         names = getattr(module, "__all__", [n for n in vars(module) if not n.startswith("_")])
         for name in names:
@@ -49,9 +51,10 @@ def test_everything_public_has_a_docstring():
 
 
 @pytest.mark.parametrize("name", [name for name, text in DOCUMENTED if text and ">>>" in text])
-def test_docstrings_do_as_they_say(name, cube):
+def test_docstrings_do_as_they_say(name, cube, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     text = dict(DOCUMENTED)[name]
-    names = {**vars(lrbscope), **vars(lrbscope.collision), "cube": cube, "shifted": shifted, "np": np}
+    names = {**vars(lrbscope), **vars(lrbscope.collision), **vars(lrbscope.capture), "cube": cube, "shifted": shifted, "np": np}
     test = doctest.DocTestParser().get_doctest(text, names, name, None, 0)
     assert test.examples
     said = []
@@ -67,11 +70,13 @@ def blocks(page):
     return [(text[: m.start()].count("\n") + 1, m.group(1)) for m in found]
 
 
-@pytest.mark.parametrize("page", ["docs/python.md", "docs/formats.md", "README.md"])
+@pytest.mark.parametrize("page", ["docs/python.md", "docs/capture.md", "docs/formats.md", "README.md"])
 def test_blocks_of_pages_run(page, tmp_path):
     """All blocks of a page as one script, in a folder with the files that they read."""
     lrbscope.Body(*ball_arrays(4)).save(tmp_path / "cow.obj")
     lrbscope.Body(*cube_arrays(1.3)).save(tmp_path / "man.obj")
+    query = [capture.chunk("QRYB", query=1), capture.chunk("EVTS", query=1, events=[(0, 0, 0, 1, 255, 1)]), capture.chunk("QRYE", query=1)]
+    capture.write(tmp_path / "run.lrbcap", capture.begin("engine") + query)
     (tmp_path / "poses.json").write_text(
         json.dumps([shifted(i, 0, 0)[:3].ravel().tolist() for i in range(2)])
     )

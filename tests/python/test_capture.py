@@ -1,0 +1,90 @@
+"""lrbscope.capture: what lrbscope_capture.h records is read, and written again byte for byte."""
+
+import os
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+import lrbscope
+from lrbscope import capture
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+HEADERS = os.path.join(HERE, "..", "..", "trace", "include")
+PROGRAM = os.path.join(os.path.dirname(lrbscope.__file__), "..", "..", "bin", "lrbscope")
+needs_compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """Return a capture by lrbscope_capture.h."""
+    folder = tmp_path_factory.mktemp("recorded")
+    source = os.path.join(HERE, "..", "examples", "record.c")
+    subprocess.run(["cc", "-std=c99", "-I", HEADERS, source, "-o", folder / "record"], check=True)
+    plain = {name: value for name, value in os.environ.items() if not name.startswith("LRBCAP_")}
+    subprocess.run([folder / "record"], cwd=folder, env=plain, check=True)
+    return folder / "c.lrbcap"
+
+
+@needs_compiler
+def test_what_a_program_recorded(recorded):
+    chunks = capture.read(recorded)
+    fields = {c.letters: c.fields() for c in reversed(chunks)}  # the first of each kind
+    assert fields["HEAD"].name == "engine é" and fields["MESH"].name == "knöt"
+    assert fields["MESH"].vertices[3].tolist() == [0.1, 0.2, 1] and fields["MESH"].faces.tolist() == [[0, 2, 1], [0, 1, 3]]
+    tree = fields["TREE"]
+    assert (tree.mesh, tree.nodes, tree.child.tolist(), tree.prim.tolist()) == (1, 3, [1, 2], [1, 0])
+    assert tree.volumes[2].tolist() == [0, 0.25, 0, 1, 1, 1] and tree.float_volumes.shape == (0, 6)
+    one, two = capture.queries(chunks)
+    assert (one.query, one.kind, one.tree_a, one.tree_b, one.verdict, one.pairs, one.n_events) == (1, 1, 1, 2, 1, 1, 4)
+    assert one.pose_a[:, 3].tolist() == [4, 5, 6] and np.array_equal(one.pose_b, np.eye(3, 4)) and one.ticks > 0
+    assert one.events.tolist() == [(0, 0, 0, 1, 255, 1), (0, 2, 0, 0, 255, 1), (0, 1, 0, 1, 255, 1), (1, 1, 0, 1, 255, 1)]
+    assert two.events[["a", "b", "met"]].tolist() == [(4000000000, 300, 0), (1, 0, 1)] and two.verdict == 0
+
+
+@needs_compiler
+def test_chunks_are_written_as_they_were_read(recorded, tmp_path, rng):
+    made = [capture.chunk(c.letters, **vars(c.fields()))._replace(time=c.time) for c in capture.read(recorded)]
+    capture.write(tmp_path / "again", made)
+    assert (tmp_path / "again").read_bytes() == recorded.read_bytes()
+    events = np.zeros(3000, capture.EVENT)
+    for name, limit in (("kind", 4), ("a", 2**32), ("b", 2**32), ("met", 3), ("axis", 256), ("tests", 256)):
+        events[name] = rng.integers(0, limit, 3000) >> rng.integers(0, limit.bit_length(), 3000)
+    assert np.array_equal(capture.chunk("EVTS", query=1, events=events).fields().events, events)
+    floats = capture.chunk("TREE", volume=2, first_child=[0, 0], first_prim=[0, 0], ids=[7], float_volumes=[[1, 2, 3, 4]]).fields()
+    assert (floats.options, floats.ids.tolist(), floats.float_volumes.tolist(), len(floats.volumes)) == (3, [7], [[1, 2, 3, 4]], 0)
+
+
+@needs_compiler
+def test_files_that_are_cut_off_or_none(recorded, tmp_path):
+    whole, cut, events = recorded.read_bytes(), tmp_path / "cut", capture.chunk("EVTS", events=[(0, 1, 200, 1, 255, 1)])
+    cut.write_bytes(whole[:-33])
+    assert [c.letters for c in capture.read(cut)] == [c.letters for c in capture.read(recorded)][:-2]
+    cut.write_bytes(b"solid")
+    for call, said in (
+        (lambda: capture.read(cut), "cut: expected a capture of version 1"),
+        (lambda: capture.chunk("VALU", query=1, least=0), "VALU: expected .*, got least"),
+        (lambda: capture.Chunk("VALU", 0, bytes(25)).fields(), "VALU: expected 24 bytes, found 25"),
+        (lambda: events._replace(content=events.content[:-1]).fields(), "EVTS: expected [0-9]+ bytes, found"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            call()
+
+
+@pytest.mark.skipif(not os.path.exists(PROGRAM), reason="the program was not built")
+def test_answers_are_checked(tmp_path):
+    """A triangle does not meet one that is 9 away, whatever the engine says."""
+    far = np.eye(3, 4) + np.diag([9, 0, 0, 0])[:3, [3, 1, 2, 0]]
+    for verdict, said in ((0, "right"), (1, "wrong")):
+        made = capture.begin("python")
+        made.append(capture.chunk("MESH", number=1, vertices=np.eye(3), faces=[[0, 1, 2]]))
+        leaf = {"first_child": [0, 0], "first_prim": [0, 1], "prim": [0], "volumes": [[0, 0, 0, 1, 1, 1]]}
+        made.append(capture.chunk("TREE", number=1, mesh=1, volume=1, **leaf))
+        made.append(capture.chunk("QRYB", query=1, kind=2, tree_a=1, tree_b=1, thread=1, pose_b=far))
+        made.append(capture.chunk("QRYE", query=1, verdict=verdict))
+        capture.write(tmp_path / "made.lrbcap", made)
+        query, sums = capture.check(tmp_path / "made.lrbcap", program=PROGRAM)
+        assert query["verdict"] == said and sums["verdicts"][said] == 1
+    with pytest.raises(ValueError, match="nothing.lrbcap: no such file"):
+        capture.check(tmp_path / "nothing.lrbcap", program=PROGRAM)
