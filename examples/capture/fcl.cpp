@@ -4,17 +4,9 @@
 // each pose how many pairs of triangles intersect, or the distance, and on stderr the time of a query, the
 // least of ROUNDS.
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <iostream>
-#include <sstream>
-#include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fcl/config.h>
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -23,7 +15,7 @@
 #include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
 #include <fcl/narrowphase/distance.h>
 #define LRBCAP_IMPLEMENTATION  // in one source file of a program
-#include <lrbscope_capture.h>
+#include "bodies.hpp"
 
 namespace {
 
@@ -62,44 +54,32 @@ struct DistanceTraversal final : fcl::detail::MeshDistanceTraversalNodeOBBRSSd {
 };
 
 struct Body {
-  std::vector<double> vertices;
-  std::vector<std::uint32_t> triangles;
+  Triangles mesh;
   Model model;
   std::uint32_t tree = 0;  ///< its number in the capture
 };
 
-/// Reads vertices and faces of an OBJ; a polygon becomes a fan.
-void read_obj(Body& body, const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw std::runtime_error(path + ": cannot open the file");
-  for (std::string line, word; std::getline(in, line);) {
-    std::istringstream words(line);
-    words >> word;
-    if (word == "v") {
-      for (int k = 0; k < 3; ++k) words >> body.vertices.emplace_back();
-    } else if (word == "f") {
-      std::vector<std::uint32_t> corners;
-      while (words >> word) corners.push_back(static_cast<std::uint32_t>(std::stoul(word) - 1));
-      for (std::size_t i = 2; i < corners.size(); ++i)
-        for (const std::uint32_t v : {corners[0], corners[i - 1], corners[i]}) body.triangles.push_back(v);
-    }
-  }
-}
-
-/// Reports mesh and tree to the recorder, with the volumes that FCL tests: OBB, or RSS for distances.
-void describe(Body& body, const std::string& name, bool distance) {
-  std::vector<std::uint32_t> first_child{0}, child, first_prim{0}, prim;
+/// Reads a body, and reports its mesh and tree with the volumes that FCL tests: OBB, or RSS for distances.
+void load(Body& body, const std::string& path, bool distance) {
+  body.mesh = read_obj(path);
+  const auto& [xyz, corners] = body.mesh;
+  std::vector<fcl::Vector3d> vertices;
+  std::vector<fcl::Triangle> triangles;
+  for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) vertices.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+    triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
+  body.model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
+  body.model.addSubModel(vertices, triangles);
+  body.model.endModel();
+  std::vector<Node> nodes(static_cast<std::size_t>(body.model.getNumBVs()));
   std::vector<double> volumes;
-  for (int i = 0; i < body.model.getNumBVs(); ++i) {
-    const auto& node = body.model.getBV(i);
-    if (node.isLeaf()) {
-      prim.push_back(static_cast<std::uint32_t>(node.primitiveId()));
-    } else {
-      child.push_back(static_cast<std::uint32_t>(node.leftChild()));
-      child.push_back(static_cast<std::uint32_t>(node.rightChild()));
-    }
-    first_child.push_back(static_cast<std::uint32_t>(child.size()));
-    first_prim.push_back(static_cast<std::uint32_t>(prim.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto& node = body.model.getBV(static_cast<int>(i));
+    if (node.isLeaf())
+      nodes[i].triangles = {static_cast<std::uint32_t>(node.primitiveId())};
+    else
+      nodes[i].children = {static_cast<std::uint32_t>(node.leftChild()),
+                           static_cast<std::uint32_t>(node.rightChild())};
     const auto& box = node.bv.obb;
     const auto& rss = node.bv.rss;
     for (int k = 0; k < 3; ++k) volumes.push_back(distance ? rss.To[k] : box.To[k]);
@@ -108,41 +88,17 @@ void describe(Body& body, const std::string& name, bool distance) {
         volumes.push_back(distance ? rss.axis(k, axis) * rss.l[axis] : box.axis(k, axis) * box.extent[axis]);
     if (distance) volumes.push_back(rss.r);
   }
-  lrbcap_tree tree = {};
-  tree.mesh = LRBCAP_MESH(name.c_str(), body.vertices.size() / 3, body.vertices.data(),
-                          body.triangles.size() / 3, body.triangles.data());
-  tree.nodes = static_cast<std::uint32_t>(body.model.getNumBVs());
-  tree.volume = distance ? LRBCAP_RSS : LRBCAP_OBB;
-  tree.first_child = first_child.data();
-  tree.child = child.data();
-  tree.first_prim = first_prim.data();
-  tree.prim = prim.data();
-  tree.volumes = volumes.data();
-  body.tree = LRBCAP_TREE(&tree);
+  body.tree = describe(body.mesh, path, distance ? LRBCAP_RSS : LRBCAP_OBB, nodes, volumes);
 }
 
-void load(Body& body, const std::string& path, bool distance) {
-  read_obj(body, path);
-  std::vector<fcl::Vector3d> vertices;
-  std::vector<fcl::Triangle> triangles;
-  for (std::size_t i = 0; i + 2 < body.vertices.size(); i += 3)
-    vertices.emplace_back(body.vertices[i], body.vertices[i + 1], body.vertices[i + 2]);
-  for (std::size_t i = 0; i + 2 < body.triangles.size(); i += 3)
-    triangles.emplace_back(body.triangles[i], body.triangles[i + 1], body.triangles[i + 2]);
-  body.model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
-  body.model.addSubModel(vertices, triangles);
-  body.model.endModel();
-  describe(body, path, distance);
-}
-
-fcl::Transform3d transform(const std::array<double, 12>& pose) {
+fcl::Transform3d transform(const Pose& pose) {
   fcl::Transform3d out = fcl::Transform3d::Identity();
   for (int k = 0; k < 12; ++k) out.matrix()(k / 4, k % 4) = pose[static_cast<std::size_t>(k)];
   return out;
 }
 
 /// Returns the distance, with B at a pose.
-double query_distance(const Body& a, const Body& b, const std::array<double, 12>& pose) {
+double query_distance(const Body& a, const Body& b, const Pose& pose) {
   fcl::DistanceResultd result;
   DistanceTraversal traversal;
   fcl::detail::initialize(traversal, std::as_const(a.model), fcl::Transform3d::Identity(),
@@ -155,8 +111,8 @@ double query_distance(const Body& a, const Body& b, const std::array<double, 12>
 }
 
 /// Returns the number of pairs that intersect, with B at a pose.
-std::size_t query(const Body& a, const Body& b, const std::array<double, 12>& pose) {
-  const fcl::CollisionRequestd request(a.triangles.size() * b.triangles.size(), false);
+std::size_t query(const Body& a, const Body& b, const Pose& pose) {
+  const fcl::CollisionRequestd request(a.mesh.corners.size() * b.mesh.corners.size(), false);
   fcl::CollisionResultd result;
   Traversal traversal;
   fcl::detail::initialize(traversal, std::as_const(a.model), fcl::Transform3d::Identity(),
@@ -178,14 +134,7 @@ int main(int argc, char** argv) try {
   Body a, b;
   load(a, argv[1], distance);
   load(b, argv[2], distance);
-  std::vector<std::array<double, 12>> poses;
-  std::ifstream in(argv[3]);
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream numbers(line);
-    std::array<double, 12> pose;
-    for (double& x : pose) numbers >> x;
-    if (numbers) poses.push_back(pose);
-  }
+  const std::vector<Pose> poses = read_poses(argv[3]);
   std::cout.precision(15);
   std::vector<double> least(poses.size(), 1e30);
   for (int round = 0; round < rounds; ++round)
