@@ -1,5 +1,5 @@
-"""Captures of other engines: read, iterate, check, write. A capture is a list of chunks, whose fields docs/capture.md describes. This
-file alone needs only NumPy.
+"""Captures of other engines: read, iterate, check, write. A capture is a list of chunks. FIELDS names their fields, which
+docs/capture.md describes. This file alone needs only NumPy.
 
 >>> made = begin("my engine 1.2")
 >>> made.append(chunk("MESH", number=1, name="triangle", vertices=np.eye(3), faces=[[0, 1, 2]]))
@@ -27,17 +27,15 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-__all__ = ["EVENT", "Chunk", "begin", "check", "chunk", "queries", "read", "write"]
+__all__ = ["EVENT", "FIELDS", "Chunk", "begin", "check", "chunk", "queries", "read", "write"]
 
 EVENT = np.dtype([("kind", "u1"), ("a", "<u4"), ("b", "<u4"), ("met", "u1"), ("axis", "u1"), ("tests", "u1")])
 """dtype: events. kind: 0 nodes, 1 triangles, 2 counter, 3 phase; axis: 255 for none."""
 
 _Path = Union[str, PathLike[str]]
 _MAGIC = b"LRBCAP\r\n\x01\0\0\0\x04\x03\x02\x01"
-_QUERY = "query:u4 kind:u4 tree_a:u4 tree_b:u4 zero:u8 thread:u4 zero:u4 pose_a:f8:3,4 pose_b:f8:3,4"
 _SIZE = "(0,6,4,12,10,2*n_directions)[volume]"
-# The fields of each chunk: name, type, and the shape as an expression of the fields before; without: one number, or all text.
-_FIELDS = {
+FIELDS = {
     "HEAD": "name:text",
     "SYNC": "wall_ns:u8",
     "STOP": "wall_ns:u8",
@@ -46,15 +44,16 @@ _FIELDS = {
     "TREE": "number:u4 mesh:u4 replaces:u4 nodes:u4 volume:u4 n_directions:u4 options:u4 zero:u4 ids:u4:nodes*(options&1) "
     "first_child:u4:nodes+1 child:u4:first_child[-1] first_prim:u4:nodes+1 prim:u4:first_prim[-1] "
     f"volumes:f8:nodes*(~options>>1&1),{_SIZE} float_volumes:f4:nodes*(options>>1&1),{_SIZE} directions:f8:n_directions,3",
-    "QRYB": f"zero:u8 {_QUERY}",
+    "QRYB": "zero:u8 query:u4 kind:u4 tree_a:u4 tree_b:u4 zero:u8 thread:u4 zero:u4 pose_a:f8:3,4 pose_b:f8:3,4",
     "EVTS": "query:u4 thread:u4 before:u8 n_events:u4 part:u4 events:event:n_events",
     "VALU": "query:u8 lower:f8 upper:f8",
     "QRYE": "ticks:u8 query:u4 verdict:u4 pairs:u8 n_events:u8 zero:u8",
 }
+"""dict: for each chunk the fields: name, type, and the shape by the fields before; without one: a number, or the rest as text."""
 
 
 def _layout(letters: str) -> list[list[str]]:
-    return [(field + "::").split(":")[:3] for field in _FIELDS[letters].split()]
+    return [(field + "::").split(":")[:3] for field in FIELDS[letters].split()]
 
 
 class Chunk(NamedTuple):
