@@ -309,33 +309,6 @@ TEST_CASE("small triangles on large ones, where the kernel's floats are strained
   CHECK(from_cache > 500);
 }
 
-TEST_CASE("a small triangle above the long edge of an obtuse sliver: coherent queries while it descends") {
-  RandomEngine random(1);
-  std::size_t meeting = 0, from_cache = 0;
-  for (int i = 0; i < 1500; ++i) {
-    const Eigen::Matrix3d turn = shapes::random_rotation(random);
-    const double height = std::pow(10, uniform(random, -7.5, -5));
-    const double gap = uniform(random, 0.2, 1) * 3e-8, size = height * uniform(random, 0.1, 1);
-    const Vector3d tip(0, height + gap, 0);
-    // The sliver's first corner is far from the others, and they from each other.
-    const LrbRep a = soup(
-                     {{Vector3d(0, 0, 0), turn * Vector3d(-1, height, 0), turn * Vector3d(1, height, 0)}}),
-                 b = soup({{turn * tip, turn * (tip + Vector3d(size, 0, 0.1 * size)),
-                            turn * (tip + Vector3d(-size, 0, size))}});
-    CoherentQuery coherent(a, b, {}, CoherentQuery::CacheUse::always);
-    CAPTURE(i);
-    for (int k = -3; k < 11; ++k) {
-      const Pose p = Pose::translation(turn * Vector3d(0, -k * gap / (4 + i % 4), 0));
-      const auto& now = coherent.collide(Pose{}, p);
-      REQUIRE(now.pairs == brute_force(a, Pose{}, b, p).pairs);
-      meeting += now.pairs.size();
-    }
-    from_cache += coherent.statistics().from_cache;
-  }
-  CHECK(meeting > 2500);
-  CHECK(from_cache > 2500);
-}
-
 TEST_CASE("boxes of open bodies: touching they are not disjoint, one ulp apart they are; only faces count") {
   const auto triangle = [](const Vector3d& at, double size = 1) {
     Mesh mesh;

@@ -13,6 +13,8 @@
 
 #include "bench/cases/families.hpp"
 #include "engine/tree/kernel_boxes.inl"
+#include "tests/support/bodies.hpp"
+#include "tests/support/margins.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include "tests/support/tree_content.hpp"
 #include <lrbscope/lrb_rep.hpp>
@@ -74,6 +76,61 @@ using Range3 = std::array<Range, 3>;
 struct Scene {
   const LrbRep *a, *b;
   Pose pose_a, pose_b;
+};
+
+/// Two leaves of a body, and a simplex of each, by three numbers in [0, 1).
+struct LeafPair {
+  const LrbRep& body = bumps();
+  const ObbTree& tree = body.tree();
+  std::uint32_t index[2];
+  int lane[2];
+
+  explicit LeafPair(std::span<const double> genes) {
+    std::vector<std::uint32_t> leaves;
+    for (std::uint32_t n = 0; n < tree.nodes().size(); ++n)
+      if (tree.nodes()[n].is_leaf) leaves.push_back(n);
+    for (std::size_t side = 0; side < 2; ++side) {
+      index[side] = leaves[static_cast<std::size_t>(genes[side] * static_cast<double>(leaves.size()))];
+      lane[side] = static_cast<int>(genes[2] * node(side).count);
+    }
+  }
+  const TreeNode& node(std::size_t side) const { return tree.nodes()[index[side]]; }
+  const LeafBlock& block(std::size_t side) const { return tree.blocks()[node(side).first]; }
+
+  /// Returns how much of Between::edge_error two edges of a simplex use. map: from the body to the kernel's
+  /// axes; at(block, corner, axis, lane): a corner there, by the kernel.
+  template <class At>
+  double share(std::size_t side, const Eigen::Matrix3d& map, const Between& w, At&& at) const {
+    VertexId v[3];
+    body.simplex(block(side).simplex[lane[side]], v);
+    double most = 0;
+    for (int corner = 0; corner < 2; ++corner) {
+      const Eigen::Vector3d exact = map * (body.vertices()[v[corner + 1]] - body.vertices()[v[corner]]);
+      for (int i = 0; i < 3; ++i) {
+        const float edge =
+            at(block(side), corner + 1, i, lane[side]) - at(block(side), corner, i, lane[side]);
+        most = std::max(most, std::abs(exact[i] - double{edge}));
+      }
+    }
+    return most / w.edge_error[side];
+  }
+
+  /// Returns the upper end of a leaf's content along d.
+  double end(std::size_t side, const Eigen::Vector3d& d) const {
+    double most = -INFINITY;
+    for (int k = 0; k < node(side).count; ++k) {
+      VertexId v[3];
+      body.simplex(block(side).simplex[k], v);
+      for (const VertexId corner : v) most = std::max(most, d.dot(body.vertices()[corner]));
+    }
+    return most;
+  }
+
+ private:
+  static const LrbRep& bumps() {
+    static const LrbRep rep = test::closed(shapes::bumpy_sphere(1, 3));
+    return rep;
+  }
 };
 
 /// The simplices that each box of a node must hold.

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
@@ -21,6 +22,11 @@ struct Margin {
   double least = 1.0 / 3;
   int tries = 20'000;
 };
+
+/// A vector with coordinates from -1 to 1.
+inline Eigen::Vector3d vector_of(std::span<const double> genes) {
+  return {2 * genes[0] - 1, 2 * genes[1] - 1, 2 * genes[2] - 1};
+}
 
 /// Searches by chance, and from the best input so far by changes of one gene, large and small.
 inline double worst_share(const Margin& margin) {

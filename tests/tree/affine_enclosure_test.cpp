@@ -15,7 +15,6 @@ namespace lrb {
 void run_affine_kernel_under_test(TreeKernel& k);
 }
 #include "engine/tree/affine_kernel.inl"
-#include "tests/support/bodies.hpp"
 #include "tests/support/exact_boxes.hpp"
 
 using namespace lrb;
@@ -102,6 +101,23 @@ void check_verdicts(AffineScene scene, RandomEngine& random, Checked& checked) {
   check_outcome(s, candidates_of(s, k, run_affine_kernel_under_test), random, 20, checked);
 }
 
+/// Edges of A's (side 0) or B's simplices on the world's axes, under any two maps.
+template <std::size_t kSide>
+double share_of_edges(std::span<const double> genes) {
+  const LeafPair at(genes);
+  Pose pose[2];
+  for (std::size_t i = 0; i < 18; ++i)
+    pose[i / 9].r(static_cast<int>(i % 9 / 3), static_cast<int>(i % 3)) = 2 * genes[3 + i] - 1;
+  pose[1].t = std::exp2(40 * genes[21] - 20) * test::vector_of(genes.subspan(22));
+  AffineTerms terms;
+  const TreeKernel k = set_up_affine_kernel(at.tree, pose[0], at.tree, pose[1], 3, terms);
+  Corners corners[2];
+  const Between w = corners_of(k, at.node(0), at.node(1), Skewed{}, corners[0], corners[1]);
+  return at.share(
+      kSide, pose[kSide].r * std::ldexp(1, -terms.exponent), w,
+      [&](const LeafBlock&, int corner, int i, int lane) { return corners[kSide].x[corner][i][lane]; });
+}
+
 using test::closed;
 
 Pose sized(Pose pose, double r, double t) {
@@ -146,4 +162,10 @@ TEST_CASE("pairs culled by boxes under affine maps are disjoint in exact arithme
     check_verdicts(s, random, checked);
   }
   check_extent(total, checked, 500'000, 0.1);
+}
+
+TEST_CASE("margins of edges under affine maps are needed, and suffice") {
+  const test::Margin rows[] = {{"edges of A", 25, share_of_edges<0>, 0.02, 6000},
+                               {"edges of B", 25, share_of_edges<1>, 0.18, 6000}};
+  test::check_margins(rows);
 }

@@ -10,13 +10,15 @@
 #include "scenarios/bodies/shapes.hpp"
 
 #define LRB_TREE_KERNEL_NAME run_tree_kernel_for_enclosure
+#define LRB_DISTANCE_KERNEL_NAME run_distance_kernel_for_enclosure
 namespace lrb {
+struct DistanceKernel;
 void run_tree_kernel_for_enclosure(TreeKernel& k);
-}
+void run_distance_kernel_for_enclosure(DistanceKernel& k);
+}  // namespace lrb
+#include "engine/distance/distance_kernel.inl"
 #include "engine/tree/tree_kernel.inl"
-#include "tests/support/bodies.hpp"
 #include "tests/support/exact_boxes.hpp"
-#include "tests/support/margins.hpp"
 
 using namespace lrb;
 
@@ -59,50 +61,54 @@ class Seen {
   std::vector<Exact3> on_a_;
 };
 
-/// Edges of A's (side 0) or B's simplices on the axes of A's nodes. Doubles are exact enough, since the
-/// kernel has floats.
+/// Two leaves of a body at two poses, which are exact enough in doubles, since the kernels have floats.
+template <int kFar>
+struct PosedLeaves : LeafPair {
+  Pose a, b;
+
+  explicit PosedLeaves(std::span<const double> genes)
+      : LeafPair(genes),
+        a(Pose::rotation(test::vector_of(genes.subspan(3)), 6 * genes[6])),
+        b(Pose::rotation(test::vector_of(genes.subspan(7)), 6 * genes[10],
+                         std::exp2(kFar * genes[11] - 20) * test::vector_of(genes.subspan(12)))) {}
+};
+
+/// Edges of A's (side 0) or B's simplices on the axes of A's nodes.
 template <std::size_t kSide, int kFar>
 double share_of_edges(std::span<const double> genes) {
-  static const LrbRep body = test::closed(shapes::bumpy_sphere(1, 3));
-  const auto vector = [](std::span<const double> g) {
-    return Eigen::Vector3d(2 * g[0] - 1, 2 * g[1] - 1, 2 * g[2] - 1);
-  };
-  const Pose a = Pose::rotation(vector(genes), 6 * genes[3]),
-             b = Pose::rotation(vector(genes.subspan(4)), 6 * genes[7],
-                                std::exp2(kFar * genes[8] - 20) * vector(genes.subspan(9)));
-  const TreeKernel k = set_up_kernel(body.tree(), a, body.tree(), b);
-  std::vector<const TreeNode*> leaves;
-  for (const TreeNode& n : body.tree().nodes())
-    if (n.is_leaf) leaves.push_back(&n);
-  const auto pick = [](double gene, std::size_t n) {
-    return static_cast<std::size_t>(gene * static_cast<double>(n));
-  };
-  const TreeNode* const node[] = {leaves[pick(genes[12], leaves.size())],
-                                  leaves[pick(genes[13], leaves.size())]};
-  const Between w = between(k, *node[0], *node[1]);
-  const LeafBlock& block = body.tree().blocks()[node[kSide]->first];
-  const std::size_t lane = pick(genes[14], node[kSide]->count);
-  VertexId v[3];
-  body.simplex(block.simplex[lane], v);
-  double most = 0;
-  for (std::size_t corner = 0; corner < 2; ++corner) {
-    Eigen::Vector3d exact =
-        (body.vertices()[v[corner + 1]] - body.vertices()[v[corner]]) / body.tree().unit();
-    if (kSide == 1) exact = a.r.transpose() * (b.r * exact);
-    for (int i = 0; i < 3; ++i) {
-      float at[2];
-      for (std::size_t end = 0; end < 2; ++end) {
-        const auto& x = block.corner[corner + end];
-        at[end] = kSide == 0
-                      ? x[i][lane]
+  const PosedLeaves<kFar> at(genes);
+  const Between w = between(set_up_kernel(at.tree, at.a, at.tree, at.b), at.node(0), at.node(1));
+  Eigen::Matrix3d axes;
+  for (int i = 0; i < 9; ++i) axes(i / 3, i % 3) = at.node(0).frame[i / 3][i % 3];
+  if (kSide == 1) axes *= at.a.r.transpose() * at.b.r;
+  return at.share(kSide, axes / at.tree.unit(), w, [&](const LeafBlock& block, int corner, int i, int lane) {
+    const auto& x = block.corner[corner];
+    return kSide == 0 ? x[i][lane]
                       : w.t[i] + w.r[i][0] * x[0][lane] + w.r[i][1] * x[1][lane] + w.r[i][2] * x[2][lane];
-      }
-      const auto& axis = node[0]->frame[i];
-      most = std::max(most, std::abs(axis[0] * exact[0] + axis[1] * exact[1] + axis[2] * exact[2] -
-                                     double{at[1] - at[0]}));
-    }
+  });
+}
+
+/// Slab between the contents of two leaves, along the direction that the distance query keeps.
+double share_of_slab(std::span<const double> genes) {
+  const PosedLeaves<40> at(genes);
+  DistanceKernel k{};
+  k.tree = set_up_kernel(at.tree, at.a, at.tree, at.b);
+  std::vector<NodeEnd> ends[2];
+  for (std::size_t side = 0; side < 2; ++side) {
+    ends[side].resize(at.tree.nodes().size());
+    k.ends[side] = ends[side].data();
   }
-  return most / w.edge_error[kSide];
+  const Eigen::Vector3f direction = test::vector_of(genes.subspan(15)).normalized().cast<float>();
+  turn_to(k, direction.data());
+  const float width = end_of<Side::b>(k, at.index[1]) - end_of<Side::a>(k, at.index[0]) + k.ahead;
+  // The same exactly, and the offset of the roots' origins, in B's coordinates and then in A's.
+  const Eigen::Vector3d d = direction.cast<double>() / at.tree.unit(),
+                        d_b = at.b.r.transpose() * (at.a.r * d);
+  const double apart = d.dot(at.a.r.transpose() * at.b.t);
+  const auto& root = at.tree.nodes()[0].origin;
+  const Eigen::Vector3d origin = at.tree.unit() * Eigen::Vector3d(root[0], root[1], root[2]);
+  const double errors = apart + (d_b - d).dot(origin) - double{k.ahead};
+  return 1 + (width - (apart - at.end(1, -d_b) - at.end(0, d))) / errors;
 }
 
 Share check_nodes(const Scene& s) {
@@ -222,10 +228,11 @@ TEST_CASE("boxes and balls contain all simplices below them, at any scale, aspec
     check_tree(closed(shapes::translated(test::stretched(shapes::icosphere(1), by), {1, 1, 1})));
 }
 
-TEST_CASE("margins of edges are needed, and suffice") {
+TEST_CASE("margins of edges and slabs are needed, and suffice") {
   const test::Margin rows[] = {{"own edges", 15, share_of_edges<0, 0>, 0.08},
                                {"turned edges", 15, share_of_edges<1, 0>, 0.029},
-                               {"far edges", 15, share_of_edges<1, 40>, 0.35}};
+                               {"far edges", 15, share_of_edges<1, 40>, 0.35},
+                               {"slabs", 18, share_of_slab, 0.01}};
   test::check_margins(rows);
 }
 

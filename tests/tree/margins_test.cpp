@@ -14,6 +14,7 @@ namespace lrb::margins {
 namespace {
 
 using Eigen::Vector3d;
+using test::vector_of;
 using Real =
     boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>, boost::multiprecision::et_off>;
 using Genes = std::span<const double>;
@@ -24,12 +25,9 @@ const LrbRep& body() {
   return rep;
 }
 
-Vector3d vector(Genes genes) {
-  return {2 * genes[0] - 1, 2 * genes[1] - 1, 2 * genes[2] - 1};
-}
 /// Up to 1e12.
 Vector3d far(Genes genes) {
-  return std::exp2(40 * genes[3]) * vector(genes);
+  return std::exp2(40 * genes[3]) * vector_of(genes);
 }
 
 /// A coordinate of a point at a pose, exactly.
@@ -40,8 +38,8 @@ Real placed(const Pose& pose, const Vector3d& x, int i) {
 }
 
 double share_of_determinant(Genes genes) {
-  const Vector3d p[] = {vector(genes), vector(genes.subspan(3)), vector(genes.subspan(6)),
-                        vector(genes.subspan(9))};
+  const Vector3d p[] = {vector_of(genes), vector_of(genes.subspan(3)), vector_of(genes.subspan(6)),
+                        vector_of(genes.subspan(9))};
   const auto found = exact::PlaneSide(p[0].data(), p[1].data(), p[2].data()).determinant(p[3].data());
   Real d[3][3], det = 0;
   for (int i = 0; i < 3; ++i)
@@ -58,8 +56,9 @@ double share_of_separation(Genes genes) {
   Motion motion[2];
   for (std::size_t side = 0; side < 2; ++side) {
     const Genes g = genes.subspan(4 + 7 * side);
-    motion[side] = Motion::turning(Pose::rotation(vector(g), 6 * g[3], centre + vector(genes.subspan(20))),
-                                   3 * g[4] * x, centre, {0, g[5], g[6]});
+    motion[side] =
+        Motion::turning(Pose::rotation(vector_of(g), 6 * g[3], centre + vector_of(genes.subspan(20))),
+                        3 * g[4] * x, centre, {0, g[5], g[6]});
   }
   const MovingBody a(body(), motion[0].pieces()[0]), b(body(), motion[1].pieces()[0]);
   PairMotion pair(a, b, {SimplexId(0), SimplexId(0)});
@@ -85,7 +84,7 @@ double share_of_separation(Genes genes) {
 double share_of_affine_slack(Genes genes) {
   Pose pose[2];
   for (int k = 0; k < 18; ++k) pose[k / 9].r(k % 9 / 3, k % 3) = 2 * genes[static_cast<std::size_t>(k)] - 1;
-  const Vector3d x[2] = {vector(genes.subspan(18)), vector(genes.subspan(21))};
+  const Vector3d x[2] = {vector_of(genes.subspan(18)), vector_of(genes.subspan(21))};
   pose[0].t = far(genes.subspan(24));
   pose[1].t = pose[0].apply(x[0]) - pose[1].r * x[1];
   AffineTerms terms;
@@ -114,7 +113,7 @@ double share_of_wrapper_slack(Genes genes) {
   Pose pose[2];
   for (std::size_t side = 0; side < 2; ++side)
     pose[side] =
-        Pose::rotation(vector(genes.subspan(4 * side)), 6 * genes[3 + 4 * side], far(genes.subspan(8)));
+        Pose::rotation(vector_of(genes.subspan(4 * side)), 6 * genes[3 + 4 * side], far(genes.subspan(8)));
   const ObbTree& tree = body().tree();
   TreeKernel k = set_up_kernel(tree, pose[0], tree, pose[1]);
   const double before = k.slack;
@@ -130,7 +129,7 @@ double share_of_wrapper_slack(Genes genes) {
 
 /// Points in the plane of a triangle, with whole coordinates.
 double share_of_triangle_plane(Genes genes) {
-  const auto whole = [&](Genes g) { return Vector3d((0x1p40 * vector(g)).array().round()); };
+  const auto whole = [&](Genes g) { return Vector3d((0x1p40 * vector_of(g)).array().round()); };
   const Vector3d a = whole(genes), u = whole(genes.subspan(3)), v = u + whole(genes.subspan(6)), b = a + u,
                  c = a + v;
   construct::CheckedTriangle triangle;
