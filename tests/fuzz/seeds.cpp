@@ -31,6 +31,9 @@ std::vector<std::string> meshes() {
       '\0' + points +
       "# note\nvn 0 0 1\nvt 0 0\ng x\nusemtl y\nf 1 3 2\nf 1/1 2/1 4/1\nf 2//1 3//1 4//1\nf -4/1/1 -1 -2\n");
   out.push_back('\0' + std::string("v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 \\\n3 1\n"));
+  // A concave polygon, one with a bridge to a hole, and one that touches and crosses itself.
+  out.push_back('\0' + std::string("v 0 0 0\nv 6 0 0\nv 6 6 1\nv 0 6 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\n"
+                                   "f 1 2 3 4 5\nf 1 2 3 4 1 5 6 7 5\nf 1 2 7 5 3 2 6 4\n"));
   return out;
 }
 

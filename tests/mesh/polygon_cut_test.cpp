@@ -1,4 +1,4 @@
-// The triangles of polygons on a grid of integers, against areas and winding numbers in integers.
+// The triangles of polygons on a grid of integers, in planes of any slope.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "tests/support/polygon_triangles.hpp"
 #include <lrbscope/mesh.hpp>
 
 namespace lrb::polygons {
@@ -33,17 +34,6 @@ Int doubled_area(const Outline& o) {
   Int sum = 0;
   for (std::size_t i = 1; i + 1 < o.size(); ++i) sum += doubled_area(o[0], o[i], o[i + 1]);
   return sum;
-}
-
-/// Returns how often the outline winds around a point that is on none of its lines.
-int winding(const Outline& o, P p) {
-  int turns = 0;
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    const P a = o[i], b = o[(i + 1) % o.size()];
-    const int up = a.y <= p.y ? 1 : -1;
-    if ((a.y <= p.y) != (b.y <= p.y) && side(a, b, p) == up) turns += up;
-  }
-  return turns;
 }
 
 bool is_between(P a, P b, P p) {
@@ -106,34 +96,10 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 void check_cut(Outline o, bool whole, std::mt19937_64& random) {
   if (random() % 2 == 0) std::reverse(o.begin(), o.end());
   std::rotate(o.begin(), o.begin() + static_cast<std::ptrdiff_t>(random() % o.size()), o.end());
+  const std::vector<Eigen::Vector3d> x = positions(o, static_cast<int>(random() % 4));
   Triangles triangles;
-  const PolygonCut cut = cut_polygon(positions(o, static_cast<int>(random() % 4)), triangles);
-  REQUIRE(triangles.size() == o.size() - 2);
-  if (whole) REQUIRE(cut != PolygonCut::folded);
-  if (cut == PolygonCut::folded) return;
-  // The same orientation for all, and the area of the outline.
-  Int sum = 0, sizes = 0;
-  for (const auto& [i, j, k] : triangles) {
-    sum += doubled_area(o[i], o[j], o[k]);
-    sizes += std::abs(doubled_area(o[i], o[j], o[k]));
-  }
-  CHECK(sum == doubled_area(o));
-  CHECK(sizes == std::abs(sum));
-  // Samples beside corners, on a finer grid.
-  constexpr Int kFine = 1 << 20, kReach = 3 * kFine;
-  for (P& p : o) p = {p.x * kFine, p.y * kFine};
-  for (int i = 0; i < 40; ++i) {
-    P p = o[random() % o.size()];
-    p = {p.x + static_cast<Int>(random() % (2 * kReach)) - kReach,
-         p.y + static_cast<Int>(random() % (2 * kReach)) - kReach};
-    int covered = 0;
-    bool on_line = false;
-    for (const auto& t : triangles) {
-      for (int k = 0; k < 3; ++k) on_line |= is_between(o[t[k]], o[t[(k + 1) % 3]], p);
-      covered += winding({o[t[0]], o[t[1]], o[t[2]]}, p);
-    }
-    if (!on_line) CHECK(covered == winding(o, p));
-  }
+  CHECK(test::fault_of_triangles(x) == nullptr);
+  if (whole) REQUIRE(cut_polygon(x, triangles) != PolygonCut::folded);
 }
 
 }  // namespace
