@@ -284,15 +284,15 @@ function startScene() {
   const strip = stripOfRun(scene, events, selection, work.ofStep || new Map());
   const map = scene.map ? new ProofMap(scene, events, selection, view) : null;
   const tabs = new Tabs();
+  tabs.listeners.push(() => table.follow());
   explainCells();
   if (view) printView(view);
   const lead = document.querySelector(".lead"); // it may be cut at the end
   if (lead) lead.title = lead.textContent;
   for (const row of document.querySelectorAll(".tools, .keys, header .numbers")) showMore(row);
-  const panelMark = showMore(document.querySelector(".panel"));
+  showMore(document.querySelector(".panel"));
   selection.listeners.push((what) => {
     if (what === "pick") markAbout(events, selection);
-    panelMark();
   });
   const loader = new TraceLoader(scene, events, (poses) => {
     if (wrappers) wrappers.at = -1;

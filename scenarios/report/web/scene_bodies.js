@@ -295,8 +295,8 @@ export class FlatFill {
 // ---- one body in the view: its real faces, the lids of its wrapper, separate regions, and the boxes of its
 // tree
 
-// Exploded view: additional offset for each layer, as a share of the body's radius; as in the frames.
-const LAYER_STEP = 0.12;
+// Exploded view: way of the outermost layer, as a share of the body's radius.
+const SPREAD = 1.1;
 
 export class BodyView {
   /** `lens`: see fadingLines(). */
@@ -498,7 +498,10 @@ export class BodyView {
   /** Shows the lids of the wrapper: its pseudo faces. */
   showLids(onBoundary) {
     const { realCount } = this.body, shown = [...this.lidFaces.filter(onBoundary)];
-    this.lids.show(onBoundary);
+    this.isShown = this.isShown || new Uint8Array(this.body.faceCount);
+    this.isShown.fill(0);
+    for (const f of shown) this.isShown[f] = 1;
+    this.lids.show((f) => this.isShown[f]);
     if (this.fills) this.fills.wrapper.show(shown);
     else this.put("lidEdges", this.lines(edgesOf(this.body, shown), 0.25, { opens: true }));
     this.lidCount = shown.filter((f) => f >= realCount).length;
@@ -524,40 +527,57 @@ export class BodyView {
     this.reached = this.extremes;
   }
 
-  /** Shows regions separately, moved outward by a share of their offset; `open`: lids are translucent. */
-  showRegions(regions, share, open) {
+  /** Shows regions alone, with translucent lids; `share` above 0: exploded. The lids of the outer layers then
+      rise from the body, one layer after the other, and of what they leave the outermost is shown. */
+  showRegions(regions, share) {
     this.clearPieces();
-    const solid = { faces: [], shifts: [] }, glass = { faces: [], shifts: [] }, ends = [];
+    const { body } = this, glass = { faces: [], shifts: [] }, solid = { faces: [], shifts: [] }, ends = [],
+      isBare = (f) => body.outer[f] === NONE || this.rise(body.outer[f], share) > 0;
     for (const r of regions) {
-      const shift = share > 0 ? this.explodeShift(r, share) : [0, 0, 0];
-      for (const [list, faces] of [[open ? glass : solid, this.body.lids(r)], [solid, this.body.floor(r)]])
+      const rises = this.rise(r, share) > 0, shift = rises ? this.explodeShift(r, share) : [0, 0, 0],
+        lids = share > 0 && !rises ? body.lids(r).filter(isBare) : body.lids(r),
+        floor = share > 0 ? [] : body.floor(r);
+      for (const [list, faces] of [[glass, lids], [solid, floor]])
         for (const face of faces) {
           list.faces.push(face);
           list.shifts.push(shift);
         }
-      const edges = edgesOf(this.body, [...this.body.lids(r), ...this.body.floor(r)]);
-      for (const v of edges) ends.push(...this.point(v).map((x, i) => x + shift[i]));
+      for (const v of edgesOf(body, [...lids, ...floor]))
+        ends.push(...this.point(v).map((x, i) => x + shift[i]));
     }
     this.pieces = [
-      new FaceMesh(this.body, solid.faces, this.materials.piece, solid.shifts),
-      new FaceMesh(this.body, glass.faces, this.materials.openLids, glass.shifts),
+      new FaceMesh(body, solid.faces, this.materials.piece, solid.shifts),
+      new FaceMesh(body, glass.faces, this.materials[share > 0 ? "lids" : "openLids"], glass.shifts),
     ];
     this.pieces[1].mesh.renderOrder = 2;
     if (share > 0 && ends.length)
       this.reached = this.farthest((visit) => {
+        for (const x of this.extremes) visit(...x);
         for (let i = 0; i < ends.length; i += 3) visit(ends[i], ends[i + 1], ends[i + 2]);
       });
     this.group.add(...this.pieces.map((p) => p.mesh));
-    this.put("pieceEdges", this.thin(ends, 0.6));
+    this.put("pieceEdges", this.thin(ends, share > 0 ? 0.35 : 0.6));
   }
 
+  /** Returns how far a region rises in an exploded view, in layers: the outermost first. */
+  rise(region, share) {
+    const { layer } = this.body;
+    this.layers = this.layers || 1 + layer.reduce((most, l) => Math.max(most, l), 0);
+    return Math.max(0, share * this.layers - (this.layers - 1 - layer[region]));
+  }
+
+  /** Returns the way of a region: where its lids look. */
   explodeShift(region, share) {
-    const centroid = this.centroidOf([...this.body.lids(region), ...this.body.floor(region)]);
-    const out = centroid.map((x, i) => x - this.centroid[i]),
-      length = Math.hypot(...out);
-    if (length === 0) return out;
-    const way = length + LAYER_STEP * this.radius * (1 + this.body.layer[region]);
-    return out.map((x) => (x * share * way) / length);
+    const { body } = this, out = new THREE.Vector3(), lids = body.lids(region);
+    for (const f of lids) {
+      const [o, ...rest] = [...body.face(f)].map((v) => new THREE.Vector3(...this.point(v))),
+        ways = rest.map((p) => p.sub(o));
+      if (body.dim === 2) ways.push(new THREE.Vector3(0, 0, 1));
+      ways.slice(1).forEach((way, k) => out.add(ways[k].clone().cross(way)));
+    }
+    if (out.length() === 0)
+      out.set(...this.centroidOf(lids)).sub(new THREE.Vector3(...this.centroid));
+    return out.setLength((SPREAD * this.radius * this.rise(region, share)) / this.layers).toArray();
   }
 
   /** Shows faces that have a counter in the exact colour of the scale, without lighting; on a ghost, these

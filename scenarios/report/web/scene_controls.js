@@ -81,7 +81,8 @@ export class Timeline {
     const [first, last] = [0, -1].map((at) => digits(events.stepNumbers.at(at)));
     byId("step-count").textContent = `step ${digits(events.stepNumber(selection.event))} (${first}–${last})`;
     const [here, all] = [selection.event, this.lastHere].map((i) => digits(i - this.firstHere + 1));
-    byId("event-place").textContent = `event ${here} / ${all}`;
+    byId("event-place").textContent = events.firstOfStep.length > 1 ? `event ${here} / ${all}`
+        : `event ${digits(events.id(selection.event))} (0–${digits(events.id(this.lastHere))})`;
   }
 
   // -- playback: the wrappers of this step are refined, one region after the other; or all events; or the
@@ -211,7 +212,8 @@ export class ViewControls {
       ["proof", now.why],
     ])
       byId(id).setAttribute("aria-pressed", on);
-    byId("isolate").disabled = !now.isolate && !(picked && picked.region !== NONE);
+    byId("isolate").disabled =
+        !now.isolate && !(picked && this.view.bodies[picked.side].hasLids(picked.region));
     byId("explode").value = now.explode;
     if (!camera.plane) byId("slice").value = now.slice;
     byId("boxes").value = now.boxes;
@@ -259,7 +261,8 @@ export class ViewControls {
   isolatePicked() {
     const picked = this.selection.picked;
     if (this.view.now.isolate) return this.isolate(null);
-    if (picked && picked.region !== NONE) this.isolate({ side: picked.side, region: picked.region });
+    if (picked && this.view.bodies[picked.side].hasLids(picked.region))
+      this.isolate({ side: picked.side, region: picked.region });
   }
   orthographic() {
     this.view.camera.setOrthographic(!this.view.camera.orthographic);

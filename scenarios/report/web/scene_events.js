@@ -161,6 +161,7 @@ export class EventTable {
 
   /** Scrolls, if necessary, to the selected event, or to the last one before it that is listed. */
   follow() {
+    if (this.box.closest("[hidden]")) return; // resize() follows when it is shown
     this.row = Math.max(0, lastAtMost(this.rows, this.selection.event));
     if (this.row < this.first || this.row >= this.first + this.fitting - 1)
       this.scrollTo(this.row - Math.floor(this.fitting / 3));

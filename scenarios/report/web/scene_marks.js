@@ -404,14 +404,13 @@ export class Legend {
     if (now.by === "region" && withLids.length)
       items.push([colours.categories[0],
           `pseudo faces, a colour for each region${events.passes ? "; pale: of earlier passes" : ""}`]);
-    const { contact } = colours, seen = curves?.group.visible;
+    const { contact } = colours, seen = curves?.group.visible, kind = events.kind[this.view.selection.event];
     if (seen && curves.now.length > 0) items.push([contact, "contact", null, "line"]);
     if (seen && curves.dashed) items.push([contact, "contact, hidden", null, "dashed"]);
     for (const [name, colour, words] of MARKED)
-      if (marks.shown.get(name)?.parts.length)
+      if (marks.shown.get(name)?.parts.length && !(name === "attempt" && kind === events.REGION))
         items.push(
-          name === "tested" && events.kind[this.view.selection.event] === events.CONTACT
-            ? [colours.contact, "intersecting pair"]
+          name === "tested" && kind === events.CONTACT ? [colours.contact, "intersecting pair"]
             : [colours[colour], name === "refined" && events.passes ? "lids that are new in this pass"
               : words],
         );

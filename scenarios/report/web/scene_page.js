@@ -353,7 +353,8 @@ export class PageAddress {
       else if (typeof change[name] === "string" && text) change[name] = text;
     }
     const body = change.isolate && this.events.bodies[change.isolate.side];
-    if (change.isolate && !(body && change.isolate.region < body.regionCount)) change.isolate = null;
+    if (change.isolate && !(body && change.isolate.region < body.regionCount
+        && body.hasLids(change.isolate.region))) change.isolate = null;
     controls.change(change);
     if (words.includes("orthographic") && !this.view.camera.orthographic) controls.orthographic();
   }

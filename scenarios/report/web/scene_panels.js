@@ -146,7 +146,6 @@ export class Panel {
     this.bodies = events.bodies;
     this.selection = selection;
     this.wrappers = wrappers;
-    this.filterBy = () => {}; // called with a face or region, to list its events
     selection.listeners.push((what) => {
       if (what === "event") this.showEvent();
       if (what === "pick") this.showPicked();
@@ -228,7 +227,7 @@ export class Panel {
         : this.regionRows(body, picked.region)),
       ...(this.events.passes ? [] : this.countRows(body, picked)),
     ]);
-    byId("picked-isolate").disabled = picked.region === NONE;
+    byId("picked-isolate").disabled = !body.hasLids(picked.region);
   }
 
   faceRows(body, face) {

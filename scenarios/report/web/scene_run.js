@@ -107,6 +107,10 @@ export class Body {
   lids(region) {
     return this.lidsOf.of(region);
   }
+  /** Returns true if the page has the corners of a region's lids: of large bodies it may not. */
+  hasLids(region) {
+    return region !== NONE && this.lids(region).every((f) => this.offsets[f] < this.offsets[f + 1]);
+  }
   floor(region) {
     return this.floorOf.of(region);
   }
@@ -388,7 +392,7 @@ export class Wrappers {
     this.bare = events.passes !== null; // wrappers start as the bodies themselves
     this.outermost = bodies.map((b) => b.outer.reduce((n, cell) => n + (cell === NONE ? 1 : 0), 0));
     this.at = -1; // the event after which the wrappers are current
-    this.version = 0; // incremented whenever a wrapper changes
+    this.versions = bodies.map(() => 0); // incremented whenever the wrapper of a body changes
     this.reset();
   }
 
@@ -396,7 +400,7 @@ export class Wrappers {
     for (const flags of this.excluded) flags.fill(this.bare ? 1 : 0);
     for (const flags of this.discarded) if (flags) flags.fill(0);
     this.sizes = this.bare ? this.bodies.map((b) => b.realCount) : this.outermost.slice(); // of boundaries
-    this.version++;
+    this.versions = this.versions.map((n) => n + 1);
   }
 
   /** The solid is always included, the outside never: `solid` selects which of the two NONE means. */
@@ -425,7 +429,7 @@ export class Wrappers {
     if (this.events.kind[event] !== this.events.REFINE) this.coarsen(side, region);
     else this.refine(side, region, this.byFace ? this.refinedFace(event, side, region) : -1);
     this.sizes[side] += this.visibleOf(side, region) - before;
-    this.version++;
+    this.versions[side]++;
   }
 
   /** Returns the face that a refinement removes if wrappers are refined face by face; -1: the entire

@@ -233,7 +233,7 @@ export class SceneView extends BodiesCanvas {
   /** Cuts the wrappers open in front of the step's contacts. */
   open() {
     const { now, lens, camera } = this, least = LEAST_HOLE * this.reach().radius,
-      isOpen = now.open && now.by === "kind" && !camera.plane;
+      isOpen = now.open && now.by === "kind" && !camera.plane && now.explode === 0;
     setHoles(lens, (isOpen ? this.curves.now : []).map((curve) => {
       const points = curve.map((p) => new THREE.Vector3(...p)),
         { centre } = ballOf(new THREE.Box3().setFromPoints(points));
@@ -276,9 +276,9 @@ export class SceneView extends BodiesCanvas {
     this.views.forEach((view, side) => {
       const shown = lids && !isolate && !exploded && !insideOnly;
       view.lids.mesh.visible = view.lidEdges.visible = shown;
-      view.lookInside(!ghost && !isolate && !exploded, shown);
+      view.lookInside(!ghost && !isolate, shown);
       if (shown)
-        this.once(`lids${side}`, this.wrappers.version, () =>
+        this.once(`lids${side}`, this.wrappers.versions[side], () =>
           view.showLids((f) => this.wrappers.onBoundary(side, f)),
         );
       this.once(`ghost${side}`, ghost || Boolean(isolate), () => view.ghost(ghost || Boolean(isolate)));
@@ -286,10 +286,10 @@ export class SceneView extends BodiesCanvas {
       this.once(
         `pieces${side}`,
         isolate ? `isolate ${isolate.side} ${isolate.region}` : exploded
-            ? `explode ${explode} ${this.wrappers.version}` : "",
+            ? `explode ${explode} ${this.wrappers.versions[side]}` : "",
         () => {
-          if (exploded) view.showRegions(this.includedRegions(side), explode, false);
-          else if (isolate && isolate.side === side) view.showRegions([isolate.region], 0, true);
+          if (exploded) view.showRegions(this.includedRegions(side), explode);
+          else if (isolate && isolate.side === side) view.showRegions([isolate.region], 0);
           else view.clearPieces();
           this.keys.paint = null;
         },
@@ -298,8 +298,9 @@ export class SceneView extends BodiesCanvas {
   }
 
   includedRegions(side) {
-    return Array.from({ length: this.bodies[side].regionCount }, (_, r) => r).filter((r) =>
-      this.wrappers.included(side, r, true),
+    const body = this.bodies[side];
+    return Array.from({ length: body.regionCount }, (_, r) => r).filter((r) =>
+      this.wrappers.included(side, r, true) && body.hasLids(r),
     );
   }
 

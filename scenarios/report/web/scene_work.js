@@ -126,7 +126,8 @@ export class WorkIcicle {
       amount = micros ? `${short(part.value)} \u00b5s` : plural(part.value, "operation");
     const recorded = events ? plural(events, "event") : "no events: record the run with --events nodes";
     const title = `${part.name}: ${amount}, ${share}; ${recorded}`,
-      words = [`${part.name}  ${share}`, part.name].find((text) => 7.2 * text.length + 14 <= w),
+      words = [`${part.name}  ${amount}, ${share}`, `${part.name}  ${share}`, part.name, share]
+          .find((text) => 7.2 * text.length + 14 <= w),
       rect = svgElement("rect", { x, y, width: w, height, rx: 3 });
     if (colour) rect.style.fill = colour;
     rect.style.fillOpacity = colour ? 0.5 : 0.25;
