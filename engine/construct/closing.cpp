@@ -2,7 +2,8 @@
 // 1. Reduce the points to those near their convex hull.
 // 2. Replace each by a small tetrahedron: the convex hull of the tetrahedra is the first hull moved outward.
 // 3. Simplify that hull outward with two settings (simplify_polytope()).
-// 4. Keep the candidate of least volume that contains all points, tested exactly. A box is the fallback.
+// 4. Keep the candidate of least volume that contains all points, tested exactly. A box is the fallback, or a
+//    prism or tetrahedron for fewer than 12 faces.
 
 #include "engine/construct/closing.hpp"
 
@@ -416,8 +417,17 @@ std::vector<Vector3> tetrahedra_about(std::span<const Vector3> points, double di
   return out;
 }
 
-Mesh box_about(const Eigen::AlignedBox3d& box) {
+/// Returns the box or, if its 12 triangles are too many, a prism of 8 triangles or a tetrahedron around it
+/// with some of its planes: of 2 and 4.5 times its volume.
+Mesh box_about(const Eigen::AlignedBox3d& box, std::uint32_t max_faces) {
   std::vector<Vector3> corners;
+  if (max_faces < 12) {
+    const bool prism = max_faces >= 8;
+    corners = prism ? std::vector<Vector3>{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1}, {2, 0, 1}, {0, 2, 1}}
+                    : std::vector<Vector3>{{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}};
+    for (Vector3& c : corners) c = box.min() + c.cwiseProduct(box.sizes());
+    return convex_hull_mesh(corners);
+  }
   // Bits 0, 1 and 2 of a corner's index choose the upper end in x, y and z.
   for (int i = 0; i < 8; ++i)
     corners.emplace_back(i & 1 ? box.max().x() : box.min().x(), i & 2 ? box.max().y() : box.min().y(),
@@ -475,7 +485,7 @@ Mesh enclosing_polytope(std::span<const Vector3> points, std::uint32_t max_faces
   box.max().array() += distance;
   // Products of coordinates would overflow: no wrapper.
   if (!std::isfinite(box.volume() * box.volume())) return {};
-  Mesh best = box_about(box);
+  Mesh best = box_about(box, max_faces);
   // Steps 1 and 2.
   const Mesh convex = convex_hull_mesh(tetrahedra_about(outermost(points, distance / 8), distance));
   if (convex.face_count() == 0) return best;

@@ -24,7 +24,7 @@ namespace lrb::construct {
 CapVerdict bridge_concavities(FrontMesh& front, ComplexBuilder& complex, const std::vector<bool>& joined,
                               std::uint16_t layer, ConstructProbe* probe);
 
-/// Returns a convex polytope of at most max(max_faces, 12) triangles around the points, or an empty mesh if
+/// Returns a convex polytope of at most max(max_faces, 4) triangles around the points, or an empty mesh if
 /// the coordinates are too large. The points keep a distance of at least a quarter of `distance` times their
 /// largest extent from its faces (up to rounding; confirm with holds()).
 ///

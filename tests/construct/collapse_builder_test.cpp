@@ -17,10 +17,10 @@ using namespace shapes;
 namespace {
 
 /// Checks a body with all that the builder promises. Returns it.
-LrbRep check_built(const Mesh& mesh, std::size_t most = 20) {
+LrbRep check_built(const Mesh& mesh, std::size_t most = 20, const BuildOptions& options = {}) {
   CAPTURE(mesh.name);
   CAPTURE(mesh.face_count());
-  const LrbRep rep = build_lrb(mesh);
+  const LrbRep rep = build_lrb(mesh, options);
   check_keeps_mesh(rep, mesh);
   check_valid(rep);
   CHECK(bad_pairs_by_brute_force(rep) == 0);
@@ -51,6 +51,14 @@ TEST_CASE("bodies of all kinds: valid, embedded according to brute force, few ou
   // Caps cover entire polygons.
   const LrbRep quads = check_built(quad_torus(20, 10));
   for (FaceId f = 0; f < quads.real_face_count(); ++f) CHECK(is_region(quads.outer_cell(f)));
+}
+
+TEST_CASE("an outermost wrapper of few faces on request") {
+  for (const std::uint32_t most : {4u, 6u, 8u, 11u}) {
+    BuildOptions options;
+    options.max_outer_faces = most;
+    for (const Mesh& mesh : {bumpy_sphere(3, 1, 0.4), bowl(16, 8), comb(5)}) check_built(mesh, most, options);
+  }
 }
 
 /// A ball of quads, some cut into triangles, whose vertices are moved along the radius: quads fold.
