@@ -67,7 +67,7 @@ void add_clock_option(App& app, std::optional<trace::Clock>& clock);
 void add_join_option(App& app, bodies::Corners& corners);
 /// Adds --repeat. what: the unit of a query, such as "pose".
 void add_repeat_option(App& app, std::uint32_t& repeat, const std::string& what);
-/// Adds --patch, --max-outer, --lean, --seed and --threads.
+/// Adds --patch, --max-outer, --max-lids, --merge-planes, --lean, --seed and --threads.
 void add_build_options(App& app, BuildOptions& options);
 
 /// Camera options of pictures: --from, --look-at, --zoom, --projection and --up, and --orbit if added. They

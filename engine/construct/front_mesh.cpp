@@ -11,33 +11,15 @@
 #include "engine/mesh/polygon_shape.hpp"
 
 namespace lrb::construct {
-namespace {
-
-/// Triangulates a face: if planar and convex, without degenerate triangles, otherwise by cut_polygon(), which
-/// defines its shape.
-void triangulate(const Mesh& mesh, FaceId f, std::vector<std::array<VertexId, 3>>& triangles) {
-  const auto corners = mesh.face(f);
-  if (corners.size() > 3) {
-    const auto plane = spanning_corners(mesh, corners);
-    // Planar and convex: a triangulation without degenerate triangles exists, and all triangulations have the
-    // same shape.
-    if (plane && is_planar(mesh, corners, *plane) && is_convex(mesh, corners))
-      return triangulate_convex(mesh, corners, triangles);
-  }
-  cut_polygon(mesh, f, triangles);
-}
-
-}  // namespace
-
-FrontMesh::FrontMesh(const Mesh& mesh) : real_faces_(static_cast<std::uint32_t>(mesh.face_count())) {
+FrontMesh::FrontMesh(const Mesh& mesh, std::span<const FaceId> faces) {
   for (VertexId v = 0; v < mesh.vertices.size(); ++v) points_.push_back({mesh.vertices[v], v});
-  add_faces(mesh);
+  add_faces(mesh, faces);
   find_neighbours();
   split_fans();
   find_components();
 }
 
-void FrontMesh::add_faces(const Mesh& mesh) {
+void FrontMesh::add_faces(const Mesh& mesh, std::span<const FaceId> faces) {
   // A pure triangle mesh needs no table of polygons.
   const bool polygons = mesh.face_vertices.size() != 3 * mesh.face_count();
   std::vector<std::array<VertexId, 3>> parts;
@@ -45,8 +27,10 @@ void FrontMesh::add_faces(const Mesh& mesh) {
     triangulate(mesh, f, parts);
     // Triangles of a polygon are consecutive, so that unit() is an index range.
     const Slot first = slot_count();
+    const FaceId number = faces.empty() ? f : faces[f];
+    first_faces_ = std::max(first_faces_, number + 1);
     for (const auto& part : parts) {
-      triangles_.push_back({{part[0], part[1], part[2]}, {kNull, kNull, kNull}, f, kNull});
+      triangles_.push_back({{part[0], part[1], part[2]}, {kNull, kNull, kNull}, number, kNull});
       if (!polygons) continue;
       unit_first_.push_back(first);
       unit_size_.push_back(static_cast<std::uint32_t>(parts.size()));

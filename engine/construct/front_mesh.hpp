@@ -35,8 +35,8 @@ class FrontMesh {
 
   /// Builds the surface of a mesh, which must be closed, oriented, and manifold except for vertices with
   /// several fans. Polygons are triangulated; the triangles of one polygon are in consecutive slots and have
-  /// the same face.
-  explicit FrontMesh(const Mesh& mesh);
+  /// the same face. `faces`: the numbers of the mesh's faces in the complex, if they are not the mesh's.
+  explicit FrontMesh(const Mesh& mesh, std::span<const FaceId> faces = {});
 
   Slot slot_count() const { return static_cast<Slot>(triangles_.size()); }
   std::uint32_t triangle_count() const { return alive_; }
@@ -73,7 +73,7 @@ class FrontMesh {
     Slot first, last;
   };
   SlotRange unit(Slot s) const {
-    return s < unit_first_.size() && triangles_[s].face < real_faces_
+    return s < unit_first_.size() && triangles_[s].face < first_faces_
                ? SlotRange{unit_first_[s], unit_first_[s] + unit_size_[s]}
                : SlotRange{s, s + 1};
   }
@@ -103,7 +103,7 @@ class FrontMesh {
   std::vector<Slot> alive_slots() const;
 
  private:
-  void add_faces(const Mesh& mesh);
+  void add_faces(const Mesh& mesh, std::span<const FaceId> faces);
   void find_neighbours();
   void split_fans();
   void find_components();
@@ -114,7 +114,7 @@ class FrontMesh {
   std::vector<std::uint32_t> degree_;  ///< (|points|)
   std::vector<Slot> unit_first_;       ///< empty if all faces are triangles
   std::vector<std::uint32_t> unit_size_;
-  std::uint32_t real_faces_ = 0;
+  std::uint32_t first_faces_ = 0;  ///< faces from this number on are not of the mesh
   std::uint32_t alive_ = 0;
   std::uint32_t components_ = 0;
 };

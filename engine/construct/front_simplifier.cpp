@@ -92,13 +92,14 @@ FrontSimplifier::FrontSimplifier(FrontMesh& front, ComplexBuilder& complex, cons
       open_(front, frozen),
       geometry_(open_, bounds, kDepth, kNeedleWeight),
       proof_(open_, front, component_boxes),
+      real_faces_(frozen.size()),
       floor_limit_(options.max_lids > 0 ? kFloorPerLid * options.max_lids
                                         : std::max(kMinFloor, kFloorPerInterior * options.patch_interior)),
       queue_(cube(open_.size() / open_.unit())),
       random_(options.seed) {}
 
 void FrontSimplifier::fit(std::uint32_t least, const std::function<void()>& before_level) {
-  const std::size_t real = complex_.face_count();
+  const std::size_t real = real_faces_;
   max_floor_ = floor_limit_;
   double budget = options_.max_lids > 0 ? kFewLidsBudget : kBudget;
   body_.emplace(front_, tree_, open_.unit());

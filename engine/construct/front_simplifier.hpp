@@ -143,6 +143,7 @@ class FrontSimplifier {
   OutwardCollapse geometry_;
   std::optional<SurfaceWalk> body_;  ///< while fitting
   LidProof proof_;
+  const std::size_t real_faces_;
   const std::uint32_t floor_limit_;  ///< maximum number of faces beneath a component
   std::uint32_t max_floor_ = 0;      ///< the same at the current level
   CollapseQueue queue_;

@@ -17,8 +17,8 @@ constexpr std::string_view kMagic("\x89LRB\r\n\x1a\n", 8);
 
 /// The first versions that contain the hash and the tree, and levels of detail.
 constexpr std::uint32_t kFirstWithTree = 2, kFirstWithLevels = 3;
-/// The last version that took all polygons as fans.
-constexpr std::uint32_t kLastWithFans = 3;
+/// The last versions that took all polygons, and those of pseudo faces, as fans.
+constexpr std::uint32_t kLastWithFans = 3, kLastWithFanLids = 4;
 
 class Writer {
  public:
@@ -246,7 +246,7 @@ void save_lrb(const LrbRep& rep, const std::string& path) {
   Writer w;
   // Header, then the complex, then data derived from it, then the checksum of everything before it.
   w.bytes().append(kMagic);
-  w.value(rep.has_cut_faces() ? kLrbFileVersion : kLastWithFans);
+  w.value(rep.has_cut_lids() ? kLrbFileVersion : rep.has_cut_faces() ? kLastWithFanLids : kLastWithFans);
   w.value(static_cast<std::uint32_t>(d.dim));
   w.value(d.real_face_count);
   w.value(static_cast<std::uint32_t>(d.closed) | static_cast<std::uint32_t>(d.self_intersecting) << 1);
@@ -300,7 +300,9 @@ LrbRep load(Reader r, const std::string& name) {
     LrbRep rep =
         with_tree ? LrbRep(std::move(d), std::move(nodes), std::move(blocks), hash) : LrbRep(std::move(d));
     // The regions, tree and levels of such a file belong to the fans.
-    if (version <= kLastWithFans && rep.has_cut_faces()) return LrbRep::without_regions(rep, true);
+    if ((version <= kLastWithFans && rep.has_cut_faces()) ||
+        (version <= kLastWithFanLids && rep.has_cut_lids()))
+      return LrbRep::without_regions(rep, true);
     if (levels) rep.keep_levels(WrapperLevels(rep, std::move(levels->needed), std::move(levels->levels)));
     return rep;
   } catch (const InputError& e) {

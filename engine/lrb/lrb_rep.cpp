@@ -9,6 +9,7 @@
 
 #include "engine/core/geometry.hpp"
 #include "engine/lrb/complex.hpp"
+#include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/float_mode.hpp>
@@ -157,17 +158,44 @@ void LrbRep::derive() {
   hash_ = std::make_shared<FoundHash>();
 }
 
+namespace {
+
+/// Divides a pseudo face as builders do. Returns false if the result is its fan.
+bool cut_lid(std::span<const Eigen::Vector3d> corners, std::vector<std::array<std::uint32_t, 3>>& parts) {
+  Mesh polygon;
+  polygon.vertices.assign(corners.begin(), corners.end());
+  std::vector<VertexId> numbers(corners.size());
+  std::iota(numbers.begin(), numbers.end(), VertexId{0});
+  polygon.add_face(numbers);
+  std::vector<std::array<VertexId, 3>> triangles;
+  triangulate(polygon, 0, triangles);
+  parts.clear();
+  bool is_fan = true;
+  for (const auto& [a, b, c] : triangles) {
+    is_fan &= a == 0u && b == parts.size() + 1 && c == b + 1;
+    parts.push_back({a, b, c});
+  }
+  return !is_fan;
+}
+
+}  // namespace
+
 void LrbRep::cut_polygons() {
   std::vector<Eigen::Vector3d> corners;
   std::vector<std::array<std::uint32_t, 3>> parts;
-  for (FaceId f(whole_faces_); f < d_.real_face_count; ++f) {
+  for (FaceId f(whole_faces_); f < face_count(); ++f) {
     const auto face = d_.face(f);
     if (face.size() == 3) continue;
     corners.clear();
     for (const VertexId v : face) corners.push_back(d_.vertices[v]);
-    const PolygonCut cut = cut_polygon(corners, parts);
-    if (cut == PolygonCut::folded) folded_faces_.push_back(f);
-    if (cut != PolygonCut::ears) continue;
+    if (is_real(f)) {
+      const PolygonCut cut = cut_polygon(corners, parts);
+      if (cut == PolygonCut::folded) folded_faces_.push_back(f);
+      if (cut != PolygonCut::ears) continue;
+    } else {
+      if (!cut_lid(corners, parts)) continue;
+      has_cut_lids_ = true;
+    }
     // The first one: the table holds the fans of all other faces.
     if (triangles_.empty()) {
       std::vector<std::array<VertexId, 3>> all(simplex_count() - whole_faces_);

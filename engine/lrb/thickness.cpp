@@ -31,6 +31,7 @@
 
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/exact/predicates.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 #include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/parallel.hpp>
@@ -161,6 +162,21 @@ NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
   return best;
 }
 
+bool is_on_body(const LrbRep& rep, RegionId r) {
+  if (rep.dim() == 2 || rep.lids(r).size() != 1) return false;
+  const FaceId lid = rep.lids(r)[0];
+  VertexId v[3];
+  rep.simplex(rep.first_simplex(lid), v);
+  const auto at = [&](VertexId i) { return rep.vertices()[i].data(); };
+  if (exact::collinear3d(at(v[0]), at(v[1]), at(v[2]))) return false;
+  return std::all_of(rep.collector(r).begin(), rep.collector(r).end(), [&](FaceId f) {
+    const auto face = rep.face(f);
+    return (rep.is_real(f) || f == lid) && std::all_of(face.begin(), face.end(), [&](VertexId i) {
+             return exact::orient3d(at(v[0]), at(v[1]), at(v[2]), at(i)) == 0;
+           });
+  });
+}
+
 namespace {
 
 using Eigen::Vector3d;
@@ -260,6 +276,7 @@ class RegionMeter {
   /// Returns the region's thickness in units.
   double measure(RegionId r) {
     if (rep_.lids(r).empty()) return std::numeric_limits<double>::infinity();
+    if (is_on_body(rep_, r)) return 0;
     heap_.clear();
     pieces_.clear();
     most_ = found_ = 0;

@@ -142,27 +142,29 @@ class Validator {
                 std::to_string(gap));
   }
 
-  /// Returns a body whose real faces are all faces of the complex.
-  LrbRep complex_as_soup() const {
-    // Every face becomes real, so that the tree of the new body covers pseudo faces as well.
-    LrbData d = rep_.data();
-    d.real_face_count = rep_.face_count();
-    d.inner_cell.assign(rep_.face_count(), kSolid);
-    d.outer_cell.assign(rep_.face_count(), kOutside);
-    d.region_layer.clear();
-    return LrbRep(std::move(d), workers_.count());
+  /// Returns all simplices of the complex as faces with the same numbers.
+  Mesh all_simplices() const {
+    Mesh out;
+    out.dim = rep_.dim();
+    out.vertices = rep_.data().vertices;
+    VertexId v[3] = {};
+    for (SimplexId s = 0; s < rep_.simplex_count(); ++s) {
+      rep_.simplex(s, v);
+      out.add_face(std::span(v, static_cast<std::size_t>(rep_.simplex_size())));
+    }
+    return out;
   }
 
   void check_embedding() {
     if (has_hubs()) return check_embedding_with_hubs();
-    const LrbRep soup = complex_as_soup();
+    const LrbRep soup = LrbRep::without_regions(all_simplices(), false, false, workers_.count());
     std::vector<Pair> pairs;
     for_each_self_pair(soup.tree(), [&](SimplexId s, SimplexId t) {
       // Batches bound the memory and give the workers enough to share.
       pairs.push_back({s, t});
-      if (pairs.size() == kPairsAtOnce) judge(soup, pairs);
+      if (pairs.size() == kPairsAtOnce) judge(pairs);
     });
-    judge(soup, pairs);
+    judge(pairs);
   }
 
   /// Returns true if many bounds of simplices with a common vertex overlap. The plain search then takes
@@ -185,14 +187,7 @@ class Validator {
   /// Runs the same check with a different search for pairs that may intersect. (A degenerate simplex also
   /// counts as convex.)
   void check_embedding_with_hubs() {
-    // One face per simplex, so that face numbers of this mesh are simplex numbers.
-    Mesh simplices;
-    simplices.vertices = rep_.data().vertices;
-    VertexId v[3] = {};
-    for (SimplexId s = 0; s < rep_.simplex_count(); ++s) {
-      rep_.simplex(s, v);
-      simplices.add_face(v);
-    }
+    const Mesh simplices = all_simplices();
     const FacePairs search(simplices, std::vector<FaceUse>(simplices.face_count(), FaceUse::convex));
     std::vector<Pair> pairs;
     // One thread, because the callback appends to a single list. The exact tests in judge() use all threads.
@@ -200,10 +195,10 @@ class Validator {
     search.for_each(
         [&](FaceId s, FaceId t) {
           pairs.push_back({SimplexId(s.value()), SimplexId(t.value())});
-          if (pairs.size() == kPairsAtOnce) judge(rep_, pairs);
+          if (pairs.size() == kPairsAtOnce) judge(pairs);
         },
         alone);
-    judge(rep_, pairs);
+    judge(pairs);
   }
 
   /// Two simplices of the complex, with the result of their test.
@@ -217,20 +212,20 @@ class Validator {
     const double* x[3];
   };
 
-  Corners corners(const LrbRep& soup, SimplexId s) const {
+  Corners corners(SimplexId s) const {
     Corners c;
-    soup.simplex(s, c.id);
-    for (int k = 0; k < soup.simplex_size(); ++k) c.x[k] = rep_.vertices()[c.id[k]].data();
+    rep_.simplex(s, c.id);
+    for (int k = 0; k < rep_.simplex_size(); ++k) c.x[k] = rep_.vertices()[c.id[k]].data();
     return c;
   }
 
   /// Tests many pairs in parallel, then reports on them in order; empties the list.
-  void judge(const LrbRep& soup, std::vector<Pair>& pairs) {
+  void judge(std::vector<Pair>& pairs) {
     // Pass 1, on all threads: exact tests. Each thread writes only to its own pairs.
     workers_.for_each((pairs.size() + kPairsShared - 1) / kPairsShared, [&](std::size_t i, unsigned) {
       const std::size_t end = std::min(pairs.size(), (i + 1) * kPairsShared);
       for (std::size_t k = i * kPairsShared; k < end; ++k) {
-        const Corners s = corners(soup, pairs[k].s), t = corners(soup, pairs[k].t);
+        const Corners s = corners(pairs[k].s), t = corners(pairs[k].t);
         pairs[k].good = rep_.dim() == 3 ? exact::meet_only_in_shared(s.x, s.id, t.x, t.id)
                                         : exact::meet_only_in_shared_2d(s.x, s.id, t.x, t.id);
       }
@@ -239,8 +234,7 @@ class Validator {
     report_.embedding_pairs += pairs.size();
     for (const Pair& p : pairs)
       if (!p.good)
-        judge_meeting(soup.face_of_simplex(p.s), soup.face_of_simplex(p.t), corners(soup, p.s).x,
-                      corners(soup, p.t).x);
+        judge_meeting(rep_.face_of_simplex(p.s), rep_.face_of_simplex(p.t), corners(p.s).x, corners(p.t).x);
     pairs.clear();
   }
 
@@ -249,7 +243,8 @@ class Validator {
     // allowed. Everything else violates the embedding.
     if (rep_.is_real(f) && rep_.is_real(g)) {
       ++report_.real_pairs_meeting;
-    } else if (touches_from_behind(f, g, cf, cg) || touches_from_behind(g, f, cg, cf)) {
+    } else if (is_behind_own(f) || is_behind_own(g) || touches_from_behind(f, g, cf, cg) ||
+               touches_from_behind(g, f, cg, cf)) {
       ++report_.flat_pairs;
     } else {
       violation("faces " + std::to_string(f) + (rep_.is_real(f) ? " (real)" : " (pseudo)") + " and " +
@@ -269,6 +264,13 @@ class Validator {
       if (side > 0) return false;
     }
     return true;
+  }
+
+  /// Returns true if a real face is a part of the lid over it: other faces then meet it only where they meet
+  /// this lid, which is tested itself.
+  bool is_behind_own(FaceId f) const {
+    return rep_.is_real(f) && is_region(rep_.outer_cell(f)) &&
+           is_on_body(rep_, rep_.outer_cell(f).as_region());
   }
 
   bool hides(FaceId lid, FaceId face) const {

@@ -154,6 +154,18 @@ void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
   for (std::size_t i = p.last; i < p.ring.size(); ++i) add(eye, i, i + 1);
 }
 
+void triangulate(const Mesh& mesh, FaceId f, std::vector<std::array<VertexId, 3>>& triangles) {
+  const auto corners = mesh.face(f);
+  if (corners.size() > 3) {
+    const auto plane = spanning_corners(mesh, corners);
+    // Planar and convex: a triangulation without degenerate triangles exists, and all triangulations have the
+    // same shape.
+    if (plane && is_planar(mesh, corners, *plane) && is_convex(mesh, corners))
+      return triangulate_convex(mesh, corners, triangles);
+  }
+  cut_polygon(mesh, f, triangles);
+}
+
 namespace {
 
 /// Chords through the interior of a polygon. Corners are numbered from a proper one; number n is corner 0

@@ -43,6 +43,9 @@ bool is_convex(const Mesh& mesh, std::span<const VertexId> corners);
 void triangulate_convex(const Mesh& mesh, std::span<const VertexId> corners,
                         std::vector<std::array<VertexId, 3>>& triangles);
 
+/// Triangulates a face without degenerate triangles if it is planar and convex, otherwise by cut_polygon().
+void triangulate(const Mesh& mesh, FaceId f, std::vector<std::array<VertexId, 3>>& triangles);
+
 /// Triangulates a polygon with very many corners into triangles of all sizes. Few of them are large, and none
 /// is longer than the part of the boundary that it cuts off, so that their boxes overlap little.
 void triangulate_by_halves(const Mesh& mesh, std::span<const VertexId> corners,

@@ -49,9 +49,10 @@ std::string cache_entry(const Mesh& mesh, const BuildOptions& options) {
   h.add_value(hash_of_array(mesh.face_vertices));
   char name[160];
   std::snprintf(name, sizeof name,
-                "%016" PRIx64 "-v" LRB_VERSION ".%u.%u-patch%u-outer%u-lids%u-seed%" PRIu64 "%s.lrb",
+                "%016" PRIx64 "-v" LRB_VERSION ".%u.%u-patch%u-outer%u-lids%u-seed%" PRIu64 "%s%s.lrb",
                 h.value(), kBuilderVersion, kLrbFileVersion, options.patch_interior, options.max_outer_faces,
-                options.max_lids, options.seed, options.lean ? "-lean" : "");
+                options.max_lids, options.seed, options.lean ? "-lean" : "",
+                options.merge_planes ? "-planes" : "");
   return name;
 }
 

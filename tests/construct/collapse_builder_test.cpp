@@ -53,6 +53,43 @@ TEST_CASE("bodies of all kinds: valid, embedded according to brute force, few ou
   for (FaceId f = 0; f < quads.real_face_count(); ++f) CHECK(is_region(quads.outer_cell(f)));
 }
 
+TEST_CASE("faces in a common plane become regions without volume on request: wrappers of deviation 0") {
+  // A gear; a plate with two holes; stairs at random, with outlines of all kinds.
+  std::vector<Mesh> bodies = {read_mesh(LRB_SOURCE_DIR "/tests/data/gear.obj")};
+  RandomEngine random(7);
+  for (int i = 0; i < 12; ++i) {
+    std::array<int, 6> along_x{}, along_y{};
+    for (auto* heights : {&along_x, &along_y})
+      for (int& height : *heights) height = static_cast<int>(random() % 3);
+    const auto stairs = [&](int x, int y, int z) {
+      return z <= along_x[static_cast<std::size_t>(x)] + along_y[static_cast<std::size_t>(y)];
+    };
+    const auto with_holes = [](int x, int y, int) { return (x != 2 && x != 6) || y != 3; };
+    const bool quads = i % 2 > 0;
+    bodies.push_back(i < 2 ? voxels(9, 7, 1, with_holes, quads) : voxels(6, 6, 5, stairs, quads));
+  }
+  BuildOptions options;
+  options.merge_planes = true;
+  for (const Mesh& mesh : bodies) {
+    const LrbRep rep = check_built(mesh, 60, options);
+    const std::vector<bool> flat = flat_regions(rep);
+    const std::vector<double> thickness = region_thickness(rep);
+    std::size_t faces = rep.real_face_count();  // of the wrapper of deviation 0
+    for (RegionId r = 0; r < rep.region_count(); ++r) {
+      CHECK((thickness[r] == 0) == flat[r]);
+      if (!flat[r]) continue;
+      CHECK(rep.layer(r) == 0);
+      CHECK(rep.lids(r).size() == 1);
+      faces -= rep.floor(r).size() - 1;
+    }
+    CHECK(faces < rep.real_face_count());
+    // 128 planes of two triangles; the two planes of 128 are too large for one polygon.
+    if (mesh.name == bodies[0].name) CHECK(faces == 384);
+  }
+  // Without such faces, nothing changes.
+  CHECK(build_lrb(bumpy_sphere(3, 1, 0.4), options).hash() == build_lrb(bumpy_sphere(3, 1, 0.4)).hash());
+}
+
 TEST_CASE("an outermost wrapper of few faces on request") {
   for (const std::uint32_t most : {4u, 6u, 8u, 11u}) {
     BuildOptions options;

@@ -118,7 +118,7 @@ TEST_CASE("cache: an entry belongs to the coordinates, the settings and the vers
   for (const auto& change : std::initializer_list<void (*)(BuildOptions&)>{
            [](BuildOptions& o) { o.lean = true; }, [](BuildOptions& o) { o.seed = 2; },
            [](BuildOptions& o) { o.patch_interior = 8; }, [](BuildOptions& o) { o.max_outer_faces = 30; },
-           [](BuildOptions& o) { o.max_lids = 12; }}) {
+           [](BuildOptions& o) { o.max_lids = 12; }, [](BuildOptions& o) { o.merge_planes = true; }}) {
     BuildOptions other;
     change(other);
     CHECK(cache_entry(mesh, other) != cache_entry(mesh, options));

@@ -33,6 +33,7 @@ enum class BuildStage : std::uint8_t {
   fill,      ///< turns the rest of each void into a region
   close,     ///< adds a convex wrapper of few faces around everything
   known,     ///< nothing was built: the body was loaded with its regions
+  merge,     ///< makes faces in a common plane regions without volume, each hidden by a polygon
 };
 constexpr auto enum_names(BuildStage) {
   return std::to_array<EnumName<BuildStage>>({{BuildStage::fit, "fitting"},
@@ -40,7 +41,8 @@ constexpr auto enum_names(BuildStage) {
                                               {BuildStage::bridge, "bridging"},
                                               {BuildStage::fill, "filling voids"},
                                               {BuildStage::close, "closing"},
-                                              {BuildStage::known, "known regions"}});
+                                              {BuildStage::known, "known regions"},
+                                              {BuildStage::merge, "merging planes"}});
 }
 
 /// The result for a cap: accepted, or the reason for its rejection. For a cap of too many faces it is the
@@ -166,6 +168,9 @@ struct BuildOptions {
   /// and patch_interior has no effect. 12: fewest tests by recursions with boxes (Recursion::paper_boxes),
   /// 1.9 to 2.2 faces per real face. A few regions are larger: those that bridge, fill or close.
   std::uint32_t max_lids = 0;
+  /// In 3D, first makes faces in exactly the same plane regions without volume, each hidden by a polygon:
+  /// wrappers of deviation 0. Not with `lean`, nor for bodies of at most max_outer_faces triangles.
+  bool merge_planes = false;
   std::uint64_t seed = 1;  ///< seed of the random choices of the builder
   unsigned threads = 1;    ///< 0: number of hardware threads. The result does not depend on it
   /// Called after each pass with its number and the number of faces of the front. May be empty.

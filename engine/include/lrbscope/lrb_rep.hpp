@@ -125,8 +125,8 @@ class LrbRep {
   std::uint32_t depth(RegionId r) const { return depth_[r]; }
 
   /// Return the number of simplices. Simplices are the triangles of each face (cut_polygon(); of a pseudo
-  /// face its fan; 2D: its segment), numbered face by face. Those of real faces come first, in the order of
-  /// the mesh file.
+  /// face that is planar and convex, without degenerate ones; 2D: its segment), numbered face by face. Those
+  /// of real faces come first, in the order of the mesh file.
   std::uint32_t simplex_count() const;
   std::uint32_t real_simplex_count() const;
   bool is_real_simplex(SimplexId s) const { return is_real(face_of_simplex(s)); }
@@ -160,8 +160,9 @@ class LrbRep {
     out[2] = corners[i + 2];
   }
 
-  /// Returns true if a real face is not its fan (PolygonCut::ears).
+  /// Return true if a face, or a pseudo face, is not the fan from its first corner (PolygonCut::ears).
   bool has_cut_faces() const { return !triangles_.empty(); }
+  bool has_cut_lids() const { return has_cut_lids_; }
   /// Returns the real faces that are fans although these do not cover them (PolygonCut::folded).
   std::span<const FaceId> folded_faces() const { return folded_faces_; }
   /// Returns true if this was read from a file of an earlier version, which took all polygons as fans,
@@ -216,7 +217,7 @@ class LrbRep {
   /// (simplices after those of whole faces); empty if all faces are fans.
   std::vector<std::array<VertexId, 3>> triangles_;
   std::vector<FaceId> folded_faces_;
-  bool dropped_fans_ = false;
+  bool dropped_fans_ = false, has_cut_lids_ = false;
   std::uint32_t layer_count_ = 0;
   std::uint64_t serial_ = 0;
   ObbTree tree_;
@@ -227,15 +228,16 @@ class LrbRep {
 };
 
 /// The version of the file format that save_lrb() writes, and the newest one that load_lrb() reads. Files of
-/// bodies without polygons of PolygonCut::ears are also those of version 3, and are written as such.
-inline constexpr std::uint32_t kLrbFileVersion = 4;
+/// bodies without pseudo faces that are not fans are also those of version 4, and those without any such
+/// polygons those of version 3. They are written as such.
+inline constexpr std::uint32_t kLrbFileVersion = 5;
 
 /// Writes an LRB-rep to a binary file (`.lrb`), little-endian: magic, version, the arrays of LrbData, each
 /// preceded by its length, their hash, the OBB tree, the levels of detail if they exist
-/// (LrbRep::has_levels()), and a checksum of all preceding bytes (lrb_checksum()). Version 3 took all
-/// polygons as fans (LrbRep::dropped_fans()). Version 2 had no levels. Version 1 had no levels, hash or tree,
-/// and used FNV-1a as its checksum. The write is atomic. Throws EnvironmentError or InputError as AtomicFile
-/// does.
+/// (LrbRep::has_levels()), and a checksum of all preceding bytes (lrb_checksum()). Version 4 took
+/// pseudo faces as fans, version 3 all polygons (LrbRep::dropped_fans()). Version 2 had no levels. Version 1
+/// had no levels, hash or tree, and used FNV-1a as its checksum. The write is atomic. Throws EnvironmentError
+/// or InputError as AtomicFile does.
 void save_lrb(const LrbRep& rep, const std::string& path);
 
 /// Reads an LRB-rep from a `.lrb` file of this version or an older one. Throws InputError if the file is
