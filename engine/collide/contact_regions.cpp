@@ -53,9 +53,15 @@ class FeatureNames {
   const SurfaceGraph& graph_;
 };
 
-Edge ordered(std::uint32_t p, std::uint32_t q) {
-  return {std::min(p, q), std::max(p, q)};
+Edge ordered(std::uint32_t p, std::uint32_t q, std::uint32_t piece) {
+  return {std::min(p, q), std::max(p, q), piece};
 }
+
+/// Orders edges by their points; of those with equal points, sets and sort() with unique() keep the first.
+struct ByPoints {
+  static auto points(const Edge& e) { return std::pair(e[0], e[1]); }
+  bool operator()(const Edge& d, const Edge& e) const { return points(d) < points(e); }
+};
 
 void number_corners(QueryContext& context, const CollideResult& result) {
   ContactGraph& graph = context.contact.graph;
@@ -83,23 +89,27 @@ void number_corners(QueryContext& context, const CollideResult& result) {
 void find_curves_and_outlines(ContactGraph& graph) {
   graph.outlines.clear();
   graph.curves.clear();
-  std::map<Edge, std::uint32_t> polygon_sides;
+  std::map<Edge, std::uint32_t, ByPoints> polygon_sides;
   // Count the polygons at each side.
-  for (const auto& piece : graph.pieces)
+  for (std::uint32_t i = 0; i < graph.pieces.size(); ++i) {
+    const auto& piece = graph.pieces[i];
     for (std::size_t c = 0; piece.count >= 3 && c < piece.count; ++c)
-      ++polygon_sides[ordered(piece.corners[c], piece.corners[(c + 1) % piece.count])];
+      ++polygon_sides[ordered(piece.corners[c], piece.corners[(c + 1) % piece.count], i)];
+  }
   for (const auto& [edge, count] : polygon_sides)
     // A side of two polygons is interior to the contact area.
     if (count % 2 != 0) graph.outlines.push_back(edge);
   // Segments that are a side of a polygon belong to its outline, and segments of length 0 are points.
-  for (const auto& piece : graph.pieces) {
+  for (std::uint32_t i = 0; i < graph.pieces.size(); ++i) {
+    const auto& piece = graph.pieces[i];
     if (piece.count != 2) continue;
-    const Edge e = ordered(piece.corners[0], piece.corners[1]);
+    const Edge e = ordered(piece.corners[0], piece.corners[1], i);
     if (e[0] != e[1] && (polygon_sides.empty() || !polygon_sides.contains(e))) graph.curves.push_back(e);
   }
   // A segment along an edge occurs in each pair at that edge: keep one.
   std::sort(graph.curves.begin(), graph.curves.end());
-  graph.curves.erase(std::unique(graph.curves.begin(), graph.curves.end()), graph.curves.end());
+  const auto same = [](const Edge& d, const Edge& e) { return ByPoints::points(d) == ByPoints::points(e); };
+  graph.curves.erase(std::unique(graph.curves.begin(), graph.curves.end(), same), graph.curves.end());
 }
 
 void label_components(ContactGraph& graph, DisjointSets& sets) {
@@ -126,7 +136,8 @@ ContactGraph& built_graph(QueryContext& context, const CollideResult& result) {
 /// edges, otherwise open chains between ends or branch points. Uses every edge once.
 class Chainer {
  public:
-  explicit Chainer(ContactBuffers& buffers) : b_(buffers), graph_(buffers.graph) {
+  Chainer(ContactBuffers& buffers, const CollideResult& result)
+      : b_(buffers), graph_(buffers.graph), result_(result) {
     b_.edges.assign(graph_.outlines.begin(), graph_.outlines.end());
     b_.edges.insert(b_.edges.end(), graph_.curves.begin(), graph_.curves.end());
     b_.is_used.assign(b_.edges.size(), 0);
@@ -137,7 +148,7 @@ class Chainer {
     for (std::size_t p = 2; p < first.size(); ++p) first[p] += first[p - 1];
     b_.ends.resize(2 * b_.edges.size());
     for (std::uint32_t e = 0; e < b_.edges.size(); ++e)
-      for (const std::uint32_t p : b_.edges[e]) b_.ends[first[p + 1]++] = e;
+      for (const std::size_t end : {0, 1}) b_.ends[first[b_.edges[e][end] + 1]++] = e;
   }
 
   void add_loops(std::vector<ContactRegion>& regions) {
@@ -158,10 +169,12 @@ class Chainer {
 
   void walk(std::uint32_t from, std::uint32_t edge, std::vector<ContactRegion>& regions) {
     b_.chain.assign(1, from);
+    b_.chained.clear();
     bool closed = false;
     std::uint32_t p = from;
     while (true) {
       b_.is_used[edge] = 1;
+      b_.chained.push_back(half_edge(p, graph_.pieces[b_.edges[edge][2]]));
       // Go to the other end of the edge.
       p = b_.edges[edge][0] == p ? b_.edges[edge][1] : b_.edges[edge][0];
       const std::span<const std::uint32_t> at = ends_at(p);
@@ -177,10 +190,19 @@ class Chainer {
     loop.closed = closed;
     loop.points.reserve(b_.chain.size());
     for (const std::uint32_t q : b_.chain) loop.points.push_back(graph_.points[q]);
+    loop.half_edges = b_.chained;
+  }
+
+  ContactHalfEdge half_edge(std::uint32_t from, const ContactGraph::Piece& piece) const {
+    const auto c = static_cast<std::size_t>(std::find(piece.corners.begin(), piece.corners.end(), from) -
+                                            piece.corners.begin());
+    const exact::ContactCorner& start = result_.contacts[piece.pair].corners[c];
+    return {piece.pair, start.on_a, start.on_b};
   }
 
   ContactBuffers& b_;
   const ContactGraph& graph_;
+  const CollideResult& result_;
 };
 
 using Eigen::Vector3d;
@@ -314,7 +336,7 @@ class RegionMaker {
         rank[r] = std::max(rank[r], static_cast<std::uint8_t>(std::min(piece.count, 3U)));
       }
     for (std::uint32_t r = 0; r < regions.size(); ++r) average(regions[r], rank[r]);
-    Chainer(ctx_.contact).add_loops(regions);
+    Chainer(ctx_.contact, result_).add_loops(regions);
     for (std::uint32_t r = 0; r < regions.size(); ++r) {
       for (const ContactLoop& loop : regions[r].loops) regions[r].length += loop_length(loop);
       // Regions of curves have the area spanned by their loops; coplanar ones have their area already.

@@ -221,7 +221,7 @@ struct EnclosedBuffers {
 /// vertex, an edge, or the interior of a simplex). The pairs on both sides of an edge yield the same
 /// features, so pieces are connected by comparing integers, never coordinates.
 struct ContactGraph {
-  using Edge = std::array<std::uint32_t, 2>;
+  using Edge = std::array<std::uint32_t, 3>;  ///< two points, ascending, and a piece with this side
   struct Piece {
     std::uint32_t pair;                    ///< index into CollideResult::pairs
     std::uint32_t count;                   ///< 1: point, 2: segment, 3 or more: polygon
@@ -247,6 +247,7 @@ struct ContactBuffers {
   std::vector<std::uint32_t> ends;       ///< edges that end at a point, ascending; point by point
   std::vector<std::uint8_t> is_used;     ///< by edge
   std::vector<std::uint32_t> chain;      ///< points
+  std::vector<ContactHalfEdge> chained;  ///< from these
   std::vector<std::uint32_t> counts;     ///< number of pairs, by component
   EnclosedBuffers enclosed[2];           ///< vertices of A and of B
 };

@@ -159,6 +159,15 @@ py::list curves_of(const ContactRegion& r) {
   return out;
 }
 
+py::list half_edges_of(const ContactRegion& r) {
+  py::list out;
+  for (const ContactLoop& loop : r.loops)
+    out.append(column(loop.half_edges, [](const ContactHalfEdge& e) {
+      return std::array<std::uint32_t, 5>{e.pair, e.on_a.dim, e.on_a.index, e.on_b.dim, e.on_b.index};
+    }));
+  return out;
+}
+
 void bind_region(py::module_& m) {
   py::class_<ContactRegion> c(
       m, "ContactRegion",
@@ -166,6 +175,11 @@ void bind_region(py::module_& m) {
   property(c, "pairs", "(i,) uint32: indices into Result.pairs, ascending.", &ContactRegion::pairs);
   property(c, "curves", "list of ((q, 3) float64, bool): the points of each curve, and whether it is closed.",
            &curves_of);
+  property(
+      c, "half_edges",
+      "list of (s, 5) uint32: from each point of a curve to the next, the index into Result.pairs, and where "
+      "it starts on A's and B's triangle: on a corner, an edge or inside (0, 1, 2), and on which.",
+      &half_edges_of);
   property(c, "length", "float: of all curves.", &ContactRegion::length);
   property(c, "area", "float: of the coplanar contact or the area spanned by closed curves; unit squared.",
            &ContactRegion::area);

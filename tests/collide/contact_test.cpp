@@ -154,6 +154,50 @@ TEST_CASE("a stick through both walls of a bowl has four regions, each a closed 
     for (const ContactLoop& loop : region.loops) CHECK(loop.closed);
 }
 
+/// Checks that each half-edge runs along its loop, in simplices that neighbour those of the one before.
+void check_half_edges(const LrbRep& a, const LrbRep& b, const CollideResult& r) {
+  for (const ContactRegion& region : r.regions)
+    for (const ContactLoop& loop : region.loops) {
+      const std::size_t n = loop.half_edges.size();
+      REQUIRE(n + (loop.closed ? 0 : 1) == loop.points.size());
+      for (std::size_t i = 0; i < n; ++i) {
+        const ContactHalfEdge& e = loop.half_edges[i];
+        CHECK(std::binary_search(region.pairs.begin(), region.pairs.end(), e.pair));
+        const PairContactRecord& of_pair = r.contacts[e.pair];
+        const auto begin = of_pair.corners.begin(), end = begin + of_pair.corner_count;
+        const auto is_at = [&](const Eigen::Vector3d& x) {
+          return [&x](const exact::ContactCorner& c) { return near(c.x, x); };
+        };
+        const auto start = std::find_if(begin, end, is_at(loop.points[i]));
+        REQUIRE(start != end);
+        CHECK((start->on_a == e.on_a && start->on_b == e.on_b));
+        CHECK(std::any_of(begin, end, is_at(loop.points[(i + 1) % loop.points.size()])));
+        if (i == 0 && !loop.closed) continue;
+        const ContactHalfEdge& before = loop.half_edges[(i + n - 1) % n];
+        for (const auto& [rep, side, start_on] :
+             {std::tuple(&a, &SimplexPair::a, e.on_a), std::tuple(&b, &SimplexPair::b, e.on_b)}) {
+          VertexId now[3], then[3];
+          rep->simplex(r.pairs[e.pair].*side, now);
+          rep->simplex(r.pairs[before.pair].*side, then);
+          const auto has = [&](VertexId v) { return std::count(then, then + 3, v) > 0; };
+          // Inside a simplex it is the same one; across an edge and at a corner they have these in common.
+          if (start_on.dim == 2) CHECK(r.pairs[e.pair].*side == r.pairs[before.pair].*side);
+          if (start_on.dim < 2) CHECK(has(now[start_on.index]));
+          if (start_on.dim == 1) CHECK(has(now[(start_on.index + 1) % 3]));
+        }
+      }
+    }
+}
+
+TEST_CASE("half-edges around contacts lead from simplex to neighbouring simplex of both bodies") {
+  const LrbRep bowl = closed(shapes::bowl(24, 12, 0.2)), ball = closed(shapes::icosphere(3));
+  const LrbRep stick = closed(shapes::box({-3, -0.05, -0.45}, {3, 0.04, -0.36})), box = closed(shapes::box());
+  check_half_edges(bowl, stick, contact(bowl, stick, Pose{}));
+  check_half_edges(ball, ball, contact(ball, ball, Pose::rotation({1, 2, 3}, 0.3, {1.6, 0, 0})));
+  check_half_edges(box, box, contact(box, box, Pose::translation({0.25, 0.5, 1})));
+  check_half_edges(box, box, contact(box, box, Pose::translation({0.5, 0.25, 0.125})));
+}
+
 TEST_CASE("two spheres meet in one circle") {
   const LrbRep ball = closed(shapes::icosphere(4));
   Pose p = Pose::rotation({1, 2, 3}, 0.3, {1.6, 0, 0});

@@ -220,6 +220,8 @@ def test_members_of_results(cube, ball):
     (region,) = r.regions
     ((curve, closed),) = region.curves
     lengths = np.linalg.norm(np.diff(np.vstack([curve, curve[:1]]), axis=0), axis=1)
+    (half_edges,) = region.half_edges
+    assert half_edges.shape == (len(curve), 5) and set(half_edges[:, 0]) <= set(region.pairs)
     assert closed and np.isclose(lengths.sum(), region.length) and region.pairs.tolist() == list(range(12))
     assert collide(cube, cube, shifted(0.5, 0, 0), interiors_overlap=True).interiors_overlap is True
     assert collide(cube, cube, shifted(1, 0, 0), interiors_overlap=True).interiors_overlap is False

@@ -81,10 +81,21 @@ namespace lrb {
 /// The intersection of the simplices of one pair.
 using PairContactRecord = exact::PairContact;
 
+/// A half-edge of a loop: it runs from a point of the loop to the next one, in one simplex of each body. In
+/// the list of its loop, the half-edges after and before it are its neighbours on both surfaces.
+struct ContactHalfEdge {
+  std::uint32_t pair = 0;  ///< index into CollideResult::pairs: its simplices, and so its faces
+  /// Where it starts on these simplices. On an edge: it comes from the simplex beyond, that of the half-edge
+  /// before.
+  exact::Feature on_a, on_b;
+};
+
 /// A chain of points along which the surfaces cross or touch.
 struct ContactLoop {
   std::vector<Eigen::Vector3d> points;  ///< world frame; the first point of a closed loop is not repeated
   bool closed = false;
+  std::vector<ContactHalfEdge>
+      half_edges;  ///< from each point to the next; of a closed loop, also from the last
 };
 
 /// A connected component of the intersection of the two surfaces (cf. contact manifold). Vertices with equal
