@@ -396,7 +396,8 @@ export class Legend {
         `${bodies.length > 1 ? `${SIDES[side]}: ` : ""}${b.name}${counting ? ` without ${now.by}` : ""}`,
         pale ? colours.edge(side) : null,
       ]),
-      withLids = bodies.filter((_, side) => views[side].lids.mesh.visible && views[side].lidCount);
+      withLids = bodies.filter((_, side) =>
+          views[side].pieces.length || (views[side].lids.mesh.visible && views[side].lidCount));
     if (now.by === "kind")
       for (const { side } of withLids)
         items.push([colours.lid(side), `pseudo faces${bodies.length > 1 ? ` of ${SIDES[side]}` : ""}`,
