@@ -213,26 +213,50 @@ class FigureJob {
     return pose;
   }
 
-  /// Returns a target's box in a view of the current state.
-  AlignedBox2d box_of(const Inset& inset, const render::DrawList& list, const render::Camera& camera) const {
+  /// Returns the boxes of the largest contacts in a view of the current state, from left to right. Those that
+  /// overlap are one. Of the others it returns none, because the insets would be too small.
+  std::vector<AlignedBox2d> contact_boxes(const Inset& inset, const render::Projection& projection) const {
+    constexpr std::size_t kMax = 3;
+    std::vector<AlignedBox2d> out;
+    for (const ContactRegion& region : state_.contacts()) {
+      AlignedBox2d box;
+      for (const Eigen::Vector3d& x : render::contact_points({&region, 1}))
+        if (const auto at = projection.to_pixel(x)) box.extend(*at);
+      std::erase_if(out, [&](const AlignedBox2d& other) {
+        const bool joined = other.intersects(box);
+        if (joined) box.extend(other);
+        return joined;
+      });
+      if (!box.isEmpty()) out.push_back(box);
+    }
+    if (out.empty()) throw InputError(inset.option + ": expected a panel with a contact, found none in it");
+    const auto sort_by = [&out](const auto& value) {
+      std::sort(out.begin(), out.end(), [&](const auto& p, const auto& q) { return value(p) < value(q); });
+    };
+    sort_by([](const AlignedBox2d& box) { return -box.diagonal().norm(); });
+    if (out.size() > kMax) out.resize(kMax);
+    sort_by([](const AlignedBox2d& box) { return box.center().x(); });
+    return out;
+  }
+
+  /// Returns the boxes of a target's insets in a view of the current state.
+  std::vector<AlignedBox2d> boxes_of(const Inset& inset, const render::DrawList& list,
+                                     const render::Camera& camera) const {
     const Target& target = inset.target;
+    const render::Projection projection(camera, kViewSide, kViewSide, render::bounds(list));
+    if (target.kind == Target::Kind::contact) return contact_boxes(inset, projection);
     std::vector<Eigen::Vector3d> points;
-    if (target.kind == Target::Kind::contact) {
-      points = render::contact_points(state_.contacts());
-      if (points.empty())
-        throw InputError(inset.option + ": expected a panel with a contact, found none in it");
-    } else if (target.kind == Target::Kind::face) {
+    if (target.kind == Target::Kind::face) {
       points = run::corners_of(rep_of(target), FaceId(target.number), pose_of(target));
     } else {
       for (const Eigen::Vector3d& x : run::region_corners(rep_of(target), RegionId(target.number)))
         points.push_back(pose_of(target).apply(x));
     }
-    const render::Projection projection(camera, kViewSide, kViewSide, render::bounds(list));
     AlignedBox2d out;
     for (const Eigen::Vector3d& x : points)
       if (const auto at = projection.to_pixel(x)) out.extend(*at);
     if (out.isEmpty()) throw InputError(inset.option + ": is behind the camera of its panel");
-    return out;
+    return {out};
   }
 
   /// A panel or an inset.
@@ -264,20 +288,19 @@ class FigureJob {
   }
 
   /// Adds an inset: the target with its surroundings, in a square. Its magnification is limited, so that its
-  /// frame in the panel can be seen, and so that it is larger than in the panel.
+  /// frame in the panel can be seen, and so that it shows more than the panel, of a large target the middle.
   void add_inset(std::size_t b, std::size_t i, std::size_t panel, std::size_t k) {
     constexpr double kFaceRoom = 4, kRoom = 1.7;  // sides of the square, in sizes of the target
-    constexpr double kLeast = 1.5, kMax = 12, kWhole = 1.1;
+    constexpr double kLeast = 2, kMax = 12;
     const BlockLayout& block = layout_.blocks[b];
     const auto& [inset, target] = inset_boxes_[panel][k];
     Piece piece{panels_[b][i].view, panels_[b][i].moment, b, panel, {}, 0, inset};
     piece.place.box = block.panels[i].insets[k];
     const double side = piece.place.box.sizes().x(),
                  room = inset->target.kind == Target::Kind::face ? kFaceRoom : kRoom,
-                 exact = side / (std::max(target.sizes().maxCoeff(), 1e-9 * kViewSide) * block.scale),
-                 least = std::clamp(exact / kWhole, 1.0, kLeast);
+                 exact = side / (std::max(target.sizes().maxCoeff(), 1e-9 * kViewSide) * block.scale);
     piece.magnification =
-        inset->magnification > 0 ? inset->magnification : std::clamp(exact / room, least, kMax);
+        inset->magnification > 0 ? inset->magnification : std::clamp(exact / room, kLeast, kMax);
     piece.scale = piece.magnification * block.scale;
     const Vector2d half = 0.5 * piece.place.box.sizes() / piece.scale;
     piece.shown = {target.center() - half, target.center() + half};
@@ -498,19 +521,22 @@ class FigureJob {
 
   /// Determines the content and size of each panel, and the entries of the common legend.
   void survey() {
-    panels_.clear(), blocks_.clear(), captions_.clear(), key_.clear(), inset_boxes_.clear();
+    panels_.clear(), blocks_.clear(), captions_.clear(), key_.clear(), inset_boxes_.clear(), bar_.reset();
     for (const View& view : frames_.views) {
       if (blocks_.empty() || !figure_.contact_sheet) blocks_.emplace_back(), panels_.emplace_back();
       for (std::size_t i = 0; i < moments(); ++i) {
         const render::Scene shown = scene(view, i);
         if (!shows_anything(view)) continue;
         run::merge_key(key_, shown.key);
-        if (shown.scale) bar_ = shown.scale;
+        // The text may end with the panel's largest value. That of all is in the longest text, or the last.
+        const auto order = [](const std::string& text) { return std::pair(text.size(), text); };
+        if (shown.scale && (!bar_ || order(bar_->text) < order(shown.scale->text))) bar_ = shown.scale;
         blocks_.back().seen.push_back(seen_box(shown.list, camera(view, i)));
         inset_boxes_.emplace_back();
         for (const Inset& inset : figure_.insets)
           if (inset.panel == letter_of(captions_.size()))
-            inset_boxes_.back().emplace_back(&inset, box_of(inset, shown.list, camera(view, i)));
+            for (const AlignedBox2d& box : boxes_of(inset, shown.list, camera(view, i)))
+              inset_boxes_.back().emplace_back(&inset, box);
         blocks_.back().insets.push_back(inset_boxes_.back().size());
         const std::string text = shortened(state_.short_caption());
         captions_.push_back(view.title.empty()      ? text
