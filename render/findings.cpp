@@ -286,7 +286,8 @@ CloseUp close_up(const Mesh& mesh, const MeshReport& report, MeshFault kind,
   // Step 1: the affected faces, and an average normal.
   const Parts parts = parts_of(mesh, kind, report[kind].first.front());
   const std::vector<FaceId> at = faces_at(mesh, parts);
-  const bool is_ambiguous = kind == MeshFault::flipped_face || kind == MeshFault::duplicate_face;
+  const bool is_ambiguous = kind == MeshFault::flipped_face || kind == MeshFault::duplicate_face ||
+                            kind == MeshFault::reversed_face;
   CloseUp out;
   Vector3d n = Vector3d::Zero(), centroid = Vector3d::Zero();
   std::set<VertexId> own(parts.vertices.begin(), parts.vertices.end());

@@ -293,7 +293,7 @@ void write_caption(Image& panel, const std::string& text, float height, const St
   }
 }
 
-/// The grid of panels: the whole mesh, then one panel per kind.
+/// The grid of panels: the whole mesh, then one panel per kind, then further loops of open edges.
 struct Grid {
   explicit Grid(std::size_t kinds)
       : panels(static_cast<int>(kinds) + 1),
@@ -304,9 +304,9 @@ struct Grid {
   int panels, across, down;
 };
 
-/// Draws the whole mesh or, if there is a `kind`, a close-up of its first finding.
+/// Draws the whole mesh or, if there is a `kind`, a close-up of its first finding, or of a later loop.
 Image draw_one(Rasterizer& rasterizer, const FaultyMesh& faulty, const Look& look, const MeshFault* kind,
-               const PixelRect& place, float text) {
+               std::size_t loop, const PixelRect& place, float text) {
   findings::Options options;
   options.loops = faulty.loops;
   options.crossings = faulty.crossings;
@@ -316,7 +316,8 @@ Image draw_one(Rasterizer& rasterizer, const FaultyMesh& faulty, const Look& loo
   options.height = place.height;
   CameraFit fit = whole_camera(faulty, look);
   if (kind != nullptr) {
-    const findings::CloseUp close = findings::close_up(faulty.mesh, faulty.report, *kind, faulty.loops);
+    const findings::CloseUp close =
+        findings::close_up(faulty.mesh, faulty.report, *kind, std::span(faulty.loops).subspan(loop));
     options.focus = *kind;
     options.near = bounds(close.points);
     fit = close_camera(faulty, *kind, close);
@@ -334,7 +335,11 @@ std::optional<Image> picture_of(const FaultyMesh& given, const Look& requested) 
   FaultyMesh faulty{mesh, given.report, given.loops, given.crossings};
   for (auto& ends : faulty.crossings)
     for (Eigen::Vector3d& x : ends) x = findings::to_unit_size(given.mesh, x);
-  const Grid grid(kinds.size());
+  constexpr std::size_t kMaxLoops = 4;
+  std::vector<MeshFault> shown = kinds;
+  for (std::size_t loop = 1; loop < std::min(faulty.loops.size(), kMaxLoops); ++loop)
+    shown.push_back(MeshFault::open_edge);
+  const Grid grid(shown.size());
   Look look = requested;
   for (Look::View& view : look.views)
     if (view.look_at) view.look_at = findings::to_unit_size(given.mesh, *view.look_at);
@@ -357,14 +362,16 @@ std::optional<Image> picture_of(const FaultyMesh& given, const Look& requested) 
     PixelRect place{0, 0, grid.width_of(picture.width()), grid.height_of(picture.height())};
     place.x = i % grid.across * (place.width + kGap);
     place.y = i / grid.across * (place.height + kGap);
-    const MeshFault* kind = i == 0 ? nullptr : &kinds[static_cast<std::size_t>(i) - 1];
-    Image panel = draw_one(rasterizer, faulty, look, kind, place, text);
-    write_caption(
-        panel,
-        panel_letter(static_cast<std::size_t>(i)) + " " +
-            (kind == nullptr ? "the whole"
-                             : findings::caption(*kind, faulty.report[*kind], mesh.dim, faulty.loops)),
-        text, style);
+    const auto panel_number = static_cast<std::size_t>(i);
+    const MeshFault* kind = i == 0 ? nullptr : &shown[panel_number - 1];
+    const std::size_t loop = panel_number > kinds.size() ? panel_number - kinds.size() : 0;
+    Image panel = draw_one(rasterizer, faulty, look, kind, loop, place, text);
+    const std::string what = kind == nullptr ? "the whole"
+                             : loop > 0
+                                 ? "loop " + std::to_string(loop) + ", of " +
+                                       counted(faulty.loops[loop].edges(), "open edge", "open edges")
+                                 : findings::caption(*kind, faulty.report[*kind], mesh.dim, faulty.loops);
+    write_caption(panel, panel_letter(panel_number) + " " + what, text, style);
     panel.stroke(panel.rect(), style.rule);
     picture.paste(panel, place.x, place.y);
   }
