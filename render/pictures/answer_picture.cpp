@@ -29,9 +29,11 @@ Scene scene_of(const PosedBodies& bodies, std::span<const ContactRegion> contact
   return build_scene(bodies.in_scene(), highlight, options);
 }
 
-/// Makes all faces translucent, and drops their edges.
-void make_translucent(DrawList& list, std::uint8_t alpha) {
+/// Makes faces translucent, and drops their edges: all, or those that look in a direction. The others are
+/// then seen from inside, and show the shape.
+void make_translucent(DrawList& list, std::uint8_t alpha, const Vector3d& way = Vector3d::Zero()) {
   for (DrawTriangle& t : list.triangles) {
+    if (!way.isZero() && (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]).dot(way) <= 0) continue;
     t.layer = Layer::translucent;
     t.colour.a = alpha;
     t.edges = 0;
@@ -117,15 +119,26 @@ struct AnswerPicture {
     overlay.counters.push_back({"at most", std::isfinite(upper) ? digits(upper) : "not known"});
   }
 
-  Image draw(const Look& look) {
+  /// Returns the direction of the picture, beside `across`.
+  ViewDirection direction(const Look& look) const {
     const Vector3d up = look.first_view().up;
+    return view_beside(across.norm() > 0 ? across : up.unitOrthogonal(), up);
+  }
+
+  /// Opens the bodies towards the viewer, so that no face in front hides what is marked.
+  void open(const Look& look) {
+    std::erase_if(scene.key, [](const LegendItem& item) { return item.text.ends_with("hidden"); });
+    make_translucent(scene.list, 60, direction(look).from);
+  }
+
+  Image draw(const Look& look) {
     FitOptions fit;
-    fit.view = view_beside(across.norm() > 0 ? across : up.unitOrthogonal(), up);
+    fit.view = direction(look);
     overlay.key = scene.key;
     CameraFit camera = fit_points(whole, bodies.dim(), fit);
     if (alone) {
       const Framing framing{whole, {}, bodies.dim()};
-      fit.view = {look.first_view().from, up};
+      fit.view = {look.first_view().from, look.first_view().up};
       camera = [view = look.first_view(), framing](double width, double height) {
         return camera_for(view, framing, width, height);
       };
@@ -251,12 +264,11 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
   if (const auto vector = separation_vector_of(result.depth, result.translation, bodies, found.regions)) {
     Pose apart = bodies.pose_b;
     apart.t += result.translation;
-    make_translucent(p.scene.list, 105);  // so that no face hides the vector or the contacts
-    std::erase_if(p.scene.key, [](const LegendItem& item) { return item.text.ends_with("hidden"); });
+    p.across = result.translation;
+    p.open(look);
     p.add_ghost(apart, 26);
     add_separation_vector(p.scene, *vector, bodies.dim());
     p.show(*vector);
-    p.across = result.translation;
     p.overlay.event = "depth " + vector->text + ": the arrow separates B from A";
     p.scene.key.push_back({Mark::translucent, palette::body(Side::b), "B after separation"});
   } else {
@@ -273,7 +285,8 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
 
 Image picture_of(const ManifoldResult& result, double margin, const PosedBodies& bodies, const Look& look) {
   AnswerPicture p(bodies);
-  make_translucent(p.scene.list, 140);
+  if (!result.manifolds.empty()) p.across = result.manifolds[0].normal;
+  p.open(look);
   std::vector<ContactMark> marks;
   for (const ContactManifold& manifold : result.manifolds)
     for (const ManifoldPoint& point : manifold.points) {
@@ -282,7 +295,6 @@ Image picture_of(const ManifoldResult& result, double margin, const PosedBodies&
     }
   const std::size_t count = marks.size();
   add_contact_points(p.scene, marks, margin, size_of(bodies), style_of(look.style));
-  if (count > 0) p.across = result.manifolds[0].normal;
   const std::size_t manifolds = result.manifolds.size();
   p.overlay.event_colour = palette::kContact;
   p.overlay.event = group_digits(manifolds) + (manifolds == 1 ? " manifold, " : " manifolds, ") +
@@ -368,6 +380,46 @@ void add_plane(DrawList& list, const std::array<Vector3d, 2>& nearest, double si
   add_sheet(list, {midpoint + u + v, midpoint - u + v, midpoint - u - v, midpoint + u - v});
 }
 
+/// Returns the boxes whose gap decides a pair; nullopt if no boxes do.
+std::optional<SeparatingBoxes> deciding_boxes(const PairExplanation& pair, const PosedBodies& bodies) {
+  const bool of_faces = pair.decided_by == DecidedBy::face_boxes;
+  if (!of_faces && pair.decided_by != DecidedBy::node_boxes) return {};
+  SeparatingBoxes out{of_faces ? pair.face_boxes : pair.nodes.back(), {}, of_faces};
+  const BoxPair* before = pair.nodes.size() > 1 ? &pair.nodes[pair.nodes.size() - 2] : nullptr;
+  const SimplexId simplices[] = {pair.pair.a, pair.pair.b};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const ObbTree& tree = (side == 0 ? bodies.a : bodies.b).tree();
+    std::uint32_t node = out.pair.node[side];
+    int child = kWhole;  // of a node that was not descended
+    if (of_faces) {
+      const auto& block = tree.blocks()[tree.nodes()[node].first].simplex;
+      child = static_cast<int>(std::find(std::begin(block), std::end(block), simplices[side]) -
+                               std::begin(block));
+    } else if (before != nullptr && before->node[side] != node) {
+      child = static_cast<int>(node - tree.nodes()[before->node[side]].first);
+      node = before->node[side];
+    }
+    out.boxes[side] = box_of(tree, node, child, side == 0 ? bodies.pose_a : bodies.pose_b);
+  }
+  return out;
+}
+
+std::vector<Vector3d> box_corners(const SeparatingBoxes& disjoint) {
+  std::vector<Vector3d> out;
+  for (const WorldBox& box : disjoint.boxes)
+    for (int i = 0; i < 8; ++i)
+      out.emplace_back(box.centre + (i & 1 ? 1 : -1) * box.half[0] + (i & 2 ? 1 : -1) * box.half[1] +
+                       (i & 4 ? 1 : -1) * box.half[2]);
+  return out;
+}
+
+void add_key_of_boxes(std::vector<LegendItem>& key, int dim) {
+  for (const Side side : {Side::a, Side::b})
+    key.push_back(
+        {Mark::line, palette::edge_of(palette::body(side)), "box of " + std::string(name_of(side)) + "'s"});
+  key.push_back({dim == 2 ? Mark::line : Mark::translucent, kSeparationColour, "between the boxes"});
+}
+
 }  // namespace
 
 Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
@@ -389,24 +441,40 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
   for (int i = 0; i < pair.contact.corner_count && !apart; ++i) points.push_back(pair.contact.corners[i].x);
   for (const Vector3d& x : points) add_mark(scene.list, x, palette::kContact, 5);
   if (points.size() > 1) outline(scene.list, points, palette::kContact, 4);
-  if (apart && in_3d && pair.distance > 0)
+  const std::optional<SeparatingBoxes> boxes = deciding_boxes(pair, bodies);
+  Vector3d across = pair.nearest[1] - pair.nearest[0];
+  if (boxes) {
+    // The bodies are ghosts around the two boxes and the gap between them, which is seen from the side.
+    make_translucent(scene.list, 60);
+    add_boxes(scene.list, *boxes, style_of(StyleName::screen), true);
+    const Square square = separating_square(*boxes, bodies.dim());
+    if (in_3d) add_sheet(scene.list, {square.begin(), square.end()});
+    if (!in_3d) outline(scene.list, {square[0], square[1]}, kSeparationColour, 3);
+    across = (square[0] - square[2]).cross(square[1] - square[3]);
+    for (const Vector3d& x : box_corners(*boxes)) both.push_back(x);
+  } else if (apart && in_3d && pair.distance > 0) {
     add_plane(scene.list, pair.nearest, bounds(both).diagonal().norm());
+  }
 
   Overlay overlay;
   overlay.title = bodies.a.name() + ", simplex " + std::to_string(pair.pair.a) + "  ·  " + bodies.b.name() +
                   ", simplex " + std::to_string(pair.pair.b);
-  overlay.event = apart                             ? "apart by " + short_number(pair.distance)
-                  : pair.meet == exact::Meet::cross ? "the faces cross"
-                                                    : "the faces touch";
+  overlay.event =
+      boxes ? "apart by " + short_number(pair.distance) + ", their boxes by " + short_number(boxes->pair.gap)
+      : apart                           ? "apart by " + short_number(pair.distance)
+      : pair.meet == exact::Meet::cross ? "the faces cross"
+                                        : "the faces touch";
   overlay.key = std::move(scene.key);
   overlay.key.push_back({Mark::line, palette::kContact, apart ? "closest points" : "contact"});
-  if (apart && in_3d) overlay.key.push_back({Mark::translucent, palette::kGreen, "separating plane"});
+  if (boxes)
+    add_key_of_boxes(overlay.key, bodies.dim());
+  else if (apart && in_3d)
+    overlay.key.push_back({Mark::translucent, palette::kGreen, "separating plane"});
 
   FitOptions fit;
-  const Vector3d across = pair.nearest[1] - pair.nearest[0];
   if (in_3d) fit.view = apart && across.norm() > 0 ? view_beside(across) : onto_both(of_a, of_b);
   const auto camera = [&](double width, double height) {
-    return in_3d ? fit_contact(both, bounds(bodies.points()), width, height, fit, 2.5, 0.001)
+    return in_3d ? fit_contact(both, bounds(bodies.points()), width, height, fit, boxes ? 1.2 : 2.5, 0.001)
                  : fit_top(both, width, height, 0.3);
   };
   const Panel panel{std::move(scene.list), camera, "", false};
@@ -418,12 +486,7 @@ namespace {
 /// Returns the points of a close-up: the points of both bodies that are closest to the plane, or both boxes.
 std::vector<Vector3d> close_points(const WalkExplanation& walk) {
   if (walk.plane) return {walk.plane->reach.begin(), walk.plane->reach.end()};
-  std::vector<Vector3d> out;
-  for (const WorldBox& box : walk.nearest_boxes->boxes)
-    for (int i = 0; i < 8; ++i)
-      out.emplace_back(box.centre + (i & 1 ? 1 : -1) * box.half[0] + (i & 2 ? 1 : -1) * box.half[1] +
-                       (i & 4 ? 1 : -1) * box.half[2]);
-  return out;
+  return box_corners(*walk.nearest_boxes);
 }
 
 /// Returns a close camera that looks along the plane, so that the gap is visible.
@@ -461,12 +524,11 @@ Image picture_of(const WalkExplanation& walk, const PosedBodies& bodies) {
   const std::vector<Vector3d> points = bodies.points();
   std::vector<Panel> panels = {{scene.list, fit_points(points, dim), square ? "Overview" : ""}};
   if (square) {
-    for (const Side side : {Side::a, Side::b})
-      if (!walk.plane)
-        overlay.key.push_back({Mark::line, palette::edge_of(palette::body(side)),
-                               "box of " + std::string(name_of(side)) + "'s"});
-    overlay.key.push_back({dim == 2 ? Mark::line : Mark::translucent, kSeparationColour,
-                           walk.plane ? "separating plane" : "between the boxes"});
+    if (walk.plane)
+      overlay.key.push_back(
+          {dim == 2 ? Mark::line : Mark::translucent, kSeparationColour, "separating plane"});
+    else
+      add_key_of_boxes(overlay.key, dim);
     panels.push_back(
         {scene.list, camera_along(walk, *square, dim, bounds(points)), "Closest to the separating plane"});
   }

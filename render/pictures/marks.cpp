@@ -388,16 +388,21 @@ std::optional<Square> separating_square(const WalkExplanation& walk, const Posed
   return {};
 }
 
+void add_boxes(render::DrawList& list, const SeparatingBoxes& disjoint, const render::Style& style,
+               bool through) {
+  constexpr float kLine = 1.5F;
+  for (const Side side : {Side::a, Side::b}) {
+    const WorldBox& box = disjoint.boxes[static_cast<std::size_t>(side)];
+    add_box(list, box.centre, box.half, {style.edge_of(style.body(side)), kLine, 0, through});
+  }
+}
+
 void add_separating_plane(render::DrawList& list, const WalkExplanation& walk, const PosedBodies& bodies,
                           const render::Style& style, bool through) {
   constexpr float kLine = 1.5F, kStrip = 3;
   const std::optional<Square> square = separating_square(walk, bodies);
   if (!square) return;
-  if (!walk.plane)
-    for (const Side side : {Side::a, Side::b}) {
-      const WorldBox& box = walk.nearest_boxes->boxes[static_cast<std::size_t>(side)];
-      add_box(list, box.centre, box.half, {style.edge_of(style.body(side)), kLine, 0, through});
-    }
+  if (!walk.plane) add_boxes(list, *walk.nearest_boxes, style, through);
   render::DrawLine border;
   border.colour = kSeparationColour;
   border.layer = render::Layer::translucent;

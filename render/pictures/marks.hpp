@@ -154,6 +154,10 @@ Square separating_square(const SeparatingBoxes& boxes, int dim);
 /// neither.
 std::optional<Square> separating_square(const WalkExplanation& walk, const PosedBodies& bodies);
 
+/// Adds two boxes that are disjoint, as lines in their bodies' edge colours.
+void add_boxes(render::DrawList& list, const SeparatingBoxes& disjoint, const render::Style& style,
+               bool through);
+
 /// Adds a translucent convex polygon in the colour of separating planes.
 void add_sheet(render::DrawList& list, const std::vector<Eigen::Vector3d>& corners);
 
