@@ -63,8 +63,12 @@ class FrameJob {
   render::Image picture(std::size_t i, bool plain = false) {
     std::vector<Panel> panels;
     for (const render::Look::View& view : look_.views) {
-      const auto camera = [&, i](double width, double height) {
-        return camera_for(view, framing_, width, height, progress(i));
+      render::Look::View seen = view;
+      // A panel of a montage is looked at alone: without a contact it shows the whole.
+      if (plain && view.camera == render::FrameSpec::Camera::contact && !state.in_contact())
+        seen.camera = render::FrameSpec::Camera::scene;
+      const auto camera = [this, seen, i](double width, double height) {
+        return camera_for(seen, framing_, width, height, progress(i));
       };
       panels.push_back({list(view, plain), camera, view.title});
     }
