@@ -79,7 +79,7 @@ constexpr Style kPrint = {.paper = kWhite,
                           .edge_ink = kBlack,
                           .solid_ink = palette::kSolidInk,
                           .solid_share = {0.48, 0.28},
-                          .lid_pale = {0.45, 0.85},
+                          .lid_pale = {0.80, 0.90},
                           .edge_share = {0.80, 0.50},
                           .weight = 0.7F,
                           .rising = false};
