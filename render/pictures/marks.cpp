@@ -340,7 +340,7 @@ void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int d
   const Vector3d across = dim == 2 ? Vector3d::UnitZ().cross(along) : along.unitOrthogonal();
   add_barbs(scene.list, way, across, kSeparationColour);
   if (dim == 3) add_barbs(scene.list, way, along.cross(across), kSeparationColour);
-  write_beside(scene.list, way.from, kTextOff, way.text, kSeparationColour);
+  write_beside(scene.list, way.from, kTextOff, way.text, render::palette::kInk);
   scene.key.push_back({render::LegendItem::Mark::arrow, kSeparationColour, "B leaves A this way"});
 }
 

@@ -24,7 +24,8 @@ Image draw_panel(Rasterizer& rasterizer, const Panel& panel, const Look& look, i
 }
 
 std::vector<PixelRect> panel_places(const PixelRect& picture, std::size_t panels, double scale) {
-  const int gap = static_cast<int>(std::lround(4 * scale)), n = static_cast<int>(panels);
+  // A hairline: the views of one state are nearer to each other than the states of a montage.
+  const int gap = std::max(1, static_cast<int>(std::lround(scale))), n = static_cast<int>(panels);
   const bool columns = picture.width >= picture.height;
   const int whole = columns ? picture.width : picture.height, each = (whole - gap * (n - 1)) / n;
   std::vector<PixelRect> out;
