@@ -36,7 +36,9 @@ Given::Given(const Signature& signature, py::handle self, py::detail::value_and_
   if (positional.size() > begin + signature.positional) reject("too many positional arguments");
   for (std::size_t i = begin; i < positional.size(); ++i) values_[i - begin] = positional[i];
   for (const auto& [key, value] : named) {
-    const auto name = key.cast<std::string>();
+    // A lone surrogate, which no parameter has, becomes an escape sequence.
+    const std::string name =
+        py::reinterpret_steal<py::bytes>(PyUnicode_AsEncodedString(key.ptr(), "utf-8", "backslashreplace"));
     std::size_t i = 0;
     while (i < all.size() && all[i].name != name) ++i;
     if (i == all.size()) reject("got an unexpected keyword argument '" + name + "'");

@@ -1,5 +1,5 @@
 #pragma once
-/// Pickles: the members of a value as bytes, for the same version of lrbscope.
+/// Pickles: the members of a value as bytes, for the same version of lrbscope and of the members.
 
 #include <optional>
 #include <string>
@@ -10,6 +10,9 @@
 #include <lrbscope/core/fields.hpp>
 
 namespace lrb::python {
+
+/// Version of what pickles have. Increase it when a class that can be pickled gets other members.
+inline constexpr int kPickleVersion = 1;
 
 /// Calls visit(members...) for a record without bases.
 template <class Record, class Visit>

@@ -16,13 +16,14 @@ py::object parsed_json(const std::string& json) {
 }
 
 Archive::Archive(const py::tuple& state) : reads_(true) {
-  if (state.size() != 2 || std::string(py::str(state[0])) != trace::lrbscope_version())
+  const py::tuple expected = this->state();
+  if (state.size() != 3 || !state[0].equal(expected[0]) || !state[1].equal(expected[1]))
     throw InputError("the pickle comes from another version of lrbscope; pickle the object again");
-  all_ = state[1].cast<std::string>();
+  all_ = state[2].cast<std::string>();
 }
 
 py::tuple Archive::state() const {
-  return py::make_tuple(trace::lrbscope_version(), py::bytes(all_));
+  return py::make_tuple(trace::lrbscope_version(), kPickleVersion, py::bytes(all_));
 }
 
 void Archive::bytes(char* at, std::size_t n) {

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -294,8 +295,10 @@ def test_managers_keep_objects():
     nearest(m)
     with pytest.raises(ValueError, match="callback"):
         m.collide(fcl.CollisionData())
-    with pytest.raises(TypeError, match="CollisionObject"):
-        m.registerObject(3)
+    like = SimpleNamespace(body=a.body, pose=a.pose)
+    for call, *rest in (m.registerObject,), (m.collide, 0, print), (m.distance, 0, print), (fcl.collide, a), (fcl.distance, a):
+        with pytest.raises(TypeError, match="expected a CollisionObject, got SimpleNamespace"):
+            call(like, *rest)
 
 
 def test_callbacks(rng):

@@ -163,6 +163,7 @@ REFUSED = [
     (r"Body.load('a\udcff')", InputError, r"\\xff"),
     (r"Body.load(b'a\xff')", InputError, r"\\xff"),
     (r"Body(*cube_arrays(), name='a\udcff')", InputError, "name: expected a valid Unicode string"),
+    (r"Body(*cube_arrays(), **{'a\udcff': 1})", TypeError, r"unexpected keyword argument 'a\\udcff'"),
     ("Body.load(3)", TypeError, "expected a path, got int"),
     ("Body(*cube_arrays(), lean='yes')", TypeError, "lean: expected True or False, got str"),
     ("Body(*cube_arrays(), threads=-1)", InputError, "threads: expected an integer of at least 0, got -1"),
