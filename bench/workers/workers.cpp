@@ -86,7 +86,8 @@ Child::Child(Child&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       output_(std::exchange(other.output_, -1)),
       unfinished_(std::move(other.unfinished_)),
-      unread_(std::move(other.unread_)) {}
+      unread_(std::move(other.unread_)),
+      status_(other.status_) {}
 
 bool Child::read() {
   static constexpr std::size_t kPiece = 1 << 16;
@@ -122,11 +123,11 @@ void Child::kill() {
 }
 
 int Child::wait() {
-  int status = 0;
-  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  // Only once: -1 would stand for any child.
+  while (pid_ > 0 && waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
   }
   pid_ = -1;
-  return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+  return WIFSIGNALED(status_) ? -WTERMSIG(status_) : WEXITSTATUS(status_);
 }
 
 std::vector<std::string> lines_of(const std::vector<std::string>& command, std::chrono::seconds limit,
@@ -189,7 +190,8 @@ void MemoryFile::write(std::string_view text) const {
 
 namespace {
 
-constexpr int kMaxTimeouts = 3;      // number of consecutive time-outs after which a method is abandoned
+// Number of consecutive time-outs after which a method is abandoned, and of errors after which a run ends.
+constexpr int kMaxTimeouts = 3, kMaxErrors = 3;
 constexpr int kBadInput = 2;         // an exit code that does not count as a crash
 constexpr std::uint64_t kAhead = 8;  // questions sent ahead of their answers; they fit the buffer of a pipe
 
@@ -225,7 +227,7 @@ Worker::Clock::time_point after(std::chrono::duration<double> limit) {
 void Worker::begin(Task task) {
   task_ = std::move(task);
   next_ = sent_ = task_.begin;
-  hung_ = 0;
+  hung_ = errors_ = 0;
   if (!done()) start();
 }
 
@@ -259,10 +261,12 @@ void Worker::receive() {
   std::string line;
   auto next = Child::Next::line;
   while (!done() && (next = child_->next_line(Clock::now(), line)) == Child::Next::line) {
-    if (const std::string error = error_in(line); !error.empty())
-      throw EnvironmentError(command_.front() + ": " + error);
+    if (const std::string error = error_in(line); !error.empty()) {
+      if (++errors_ == kMaxErrors) throw EnvironmentError(command_.front() + ": " + error);
+      return go_on({false, error});
+    }
     task_.on_line(next_++, line);
-    hung_ = 0;
+    hung_ = errors_ = 0;
     ask_ahead();
     deadline_ = after(task_.limit);
   }

@@ -39,7 +39,7 @@ class Child {
   /// that is already there.
   Next next_line(std::chrono::steady_clock::time_point deadline, std::string& line);
   void kill();
-  /// Waits for the end. Returns an exit code, or -signal.
+  /// Waits for the end. Returns an exit code, or -signal; the same again if it is called again.
   int wait();
 
  private:
@@ -47,6 +47,7 @@ class Child {
   int output_ = -1;
   std::string unfinished_;
   std::deque<std::string> unread_;
+  int status_ = 0;  ///< of waitpid()
 
   /// Reads the available output. Returns false at the end.
   bool read();
@@ -113,9 +114,9 @@ struct Greeting {
 };
 
 /// A worker program that answers sequences of numbered questions. The process goes on from one sequence to
-/// the next. If it crashes or hangs, a new one continues after the current question. If several consecutive
-/// questions hang, the remaining ones are skipped and count as time-outs, so that the running time is
-/// bounded.
+/// the next. If it crashes, hangs or answers with an error, a new one continues after the current question.
+/// If several consecutive questions hang, the remaining ones are skipped and count as time-outs, so that the
+/// running time is bounded.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
@@ -133,7 +134,7 @@ class Worker {
       : command_(std::move(command)), greeting_(std::move(greeting)) {}
 
   /// Begins a sequence; the one before must be done. Throws EnvironmentError, as do the following functions,
-  /// if the program cannot be started or an answer is an error.
+  /// if the program cannot be started or several consecutive answers are errors.
   void begin(Task task);
   bool done() const { return next_ == task_.end; }
   int output() const { return child_->output(); }
@@ -160,6 +161,7 @@ class Worker {
   std::uint64_t next_ = 0;  ///< question of the next answer
   std::uint64_t sent_ = 0;  ///< questions before this one have been sent
   int hung_ = 0;            ///< consecutive questions that hung
+  int errors_ = 0;          ///< consecutive answers that are errors
   std::optional<Pipe> pipe_;
   std::optional<Child> child_;
   Clock::time_point deadline_;

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/engines/costs.hpp"
+#include "bench/workers/workers.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::test {
@@ -69,6 +70,22 @@ capture::Event event(capture::EventKind kind, std::uint32_t a, std::uint32_t b, 
 }
 
 }  // namespace
+
+TEST_CASE("an error in place of an answer is that of one question; three in a row end the run") {
+  const char* const script =
+      "while read -r x <&3; do [ $x != bad ] || { echo '{\"error\": \"no\"}'; exit 2; }; echo $x; done";
+  workers::Worker worker({"/bin/sh", "-c", script});
+  std::vector<std::string> out;
+  const auto ask = [&](const std::vector<std::string>& questions) {
+    out.clear();
+    worker.run({0, questions.size(), [&](std::uint64_t k) { return questions[k]; }, std::chrono::seconds(60),
+                [&](std::uint64_t, const std::string& line) { out.push_back(line); },
+                [&](std::uint64_t, const workers::WorkerFailure& why) { out.push_back(why.message); }});
+    return out;
+  };
+  CHECK(ask({"1", "bad", "bad", "2", "bad"}) == std::vector<std::string>{"1", "no", "no", "2", "no"});
+  CHECK_THROWS_WITH_AS(ask({"bad", "bad", "bad", "1"}), "/bin/sh: no", EnvironmentError);
+}
 
 TEST_CASE("percentiles are values of the sorted list, and quantities that are not reported have none") {
   constexpr std::size_t kPoses = 250;
