@@ -1,7 +1,9 @@
 #include "tools/command_line.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <sstream>
 #include <string_view>
@@ -206,10 +208,15 @@ std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::
     in >> low >> to >> high;
     const auto number = [](double x) { return io::number_text(x, 6); };
     const std::size_t from = value + kValue.size();
+    const std::string found = text.substr(from, range - from);
+    const bool is_bounded = high < std::numeric_limits<float>::max();
+    const bool is_finite = std::isfinite(std::strtod(found.c_str(), nullptr));
+    constexpr std::size_t kLong = 40;
     return text.substr(0, value) + ": expected " +
-           (high < std::numeric_limits<float>::max() ? number(low) + " to " + number(high)
-                                                     : "at least " + number(low)) +
-           ", found " + text.substr(from, range - from);
+           (is_bounded  ? number(low) + " to " + number(high)
+            : is_finite ? "at least " + number(low)
+                        : "a finite number of at least " + number(low)) +
+           ", found " + (found.size() > kLong ? in_quotes(found) : found);
   }
   if (const std::size_t equals = text.find(" = "); text.starts_with(kUnread) && equals != std::string::npos)
     return text.substr(kUnread.size(), equals - kUnread.size()) + ": cannot read " +

@@ -209,11 +209,15 @@ void check_frame_size(const render::Look& spec) {
   constexpr int kMax = 8192, kMaxPixels = 48'000'000;
   render::Look in_file = spec;
   to_pixels(in_file);
-  if (in_file.width > kMax || in_file.height > kMax || in_file.width * in_file.height > kMaxPixels)
-    throw InputError(
-        "frames of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " would have " +
-        std::to_string(in_file.width) + "x" + std::to_string(in_file.height) +
-        " pixels at this dpi, more than 8192 per side or 48,000,000 in all; lower --dpi or --size");
+  if (in_file.width <= kMax && in_file.height <= kMax && in_file.width * in_file.height <= kMaxPixels) return;
+  const auto text = [](const render::Look& of) {
+    return std::to_string(of.width) + "x" + std::to_string(of.height);
+  };
+  const bool scaled = in_file.width != spec.width;
+  throw InputError("frames of " + text(spec) +
+                   (scaled ? " with " + text(in_file) + " pixels at this dpi" : "") +
+                   ": expected at most 8192 pixels per side and 48,000,000 in all; lower " +
+                   (scaled ? "--dpi or --size" : "--size"));
 }
 
 namespace {
