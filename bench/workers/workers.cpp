@@ -227,7 +227,7 @@ Worker::Clock::time_point after(std::chrono::duration<double> limit) {
 void Worker::begin(Task task) {
   task_ = std::move(task);
   next_ = sent_ = task_.begin;
-  hung_ = errors_ = 0;
+  hung_ = 0;
   if (!done()) start();
 }
 

@@ -77,15 +77,16 @@ class DepthFinder {
   double hull_width(const Vector3d& n) const;
   double along_lower(const Vector3d& n);
   std::uint64_t steps() const { return separation_search_.query_count() + located_; }
-  bool is_spent(double share = 1);
+  bool is_spent();
 
   QueryContext& query_;
   const CollideResult& result_;
   const UnitBodies& bodies_;
   SeparationSearch& separation_search_;
   std::uint64_t max_steps_;
-  std::uint64_t located_ = 0;  ///< number of points located in both bodies
-  bool is_cut_ = false;        ///< the limit ended a search
+  std::uint64_t located_ = 0;      ///< number of points located in both bodies
+  double share_ = kShareOfSearch;  ///< of the limit, for the present search
+  bool is_cut_ = false;            ///< the limit ended a search
   BoundsProbeAdapter* adapter_;
   double reported_lower_ = 0;             ///< lower bound on the depth, world units; only with an adapter
   std::uint64_t grown_ = 0;               ///< number of expansion steps; only with an adapter
@@ -156,10 +157,10 @@ DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const
   for (const Side side : {Side::a, Side::b}) whole_[static_cast<int>(side)] = shrunken(side);
 }
 
-/// Returns true, and notes it, once a share of the limit of steps is reached.
-bool DepthFinder::is_spent(double share) {
+/// Returns true, and notes it, once the present search has used its share of the limit.
+bool DepthFinder::is_spent() {
   const bool is_now =
-      max_steps_ > 0 && static_cast<double>(steps()) >= share * static_cast<double>(max_steps_);
+      max_steps_ > 0 && static_cast<double>(steps()) >= share_ * static_cast<double>(max_steps_);
   is_cut_ = is_cut_ || is_now;
   return is_now;
 }
@@ -251,7 +252,7 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   // The grid is refined only while no common point is found.
   for (int grid = kStartGrid; grid <= kFinestStartGrid && !(most > 0); grid *= 2)
     for (const Vector3d& x : starts(box, grid)) {
-      if (is_spent(kShareOfSearch)) break;
+      if (is_spent()) break;
       const double clearance = common_clearance(x, shift);
       // Every common point may help the proof of overlap later.
       if (clearance > 0 && shift.isZero(0)) common_.push_back(x);
@@ -264,7 +265,7 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   if (!(most > 0)) return std::nullopt;
   unsigned tries = 0;
   // Compass search: step along each axis, and halve the step when no step gains.
-  for (double step = most; step > kStartStep * most && tries < kMaxSteps && !is_spent(kShareOfSearch);) {
+  for (double step = most; step > kStartStep * most && tries < kMaxSteps && !is_spent();) {
     bool moved = false;
     for (int k = 0; k < 3; ++k)
       for (const double sign : {-1.0, 1.0}) {
@@ -373,7 +374,7 @@ void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
 /// Rotates the direction by decreasing angles while that shortens the translation.
 void DepthFinder::refine(double& best, Vector3d& best_n) {
   unsigned tries = 0;
-  for (double step = kFirstTurn; step > kMinTurn && tries < kMaxSteps && !is_spent(kShareOfSearch);) {
+  for (double step = kFirstTurn; step > kMinTurn && tries < kMaxSteps && !is_spent();) {
     // Two axes normal to the direction; small rotations towards each, both ways.
     const Vector3d across = best_n.unitOrthogonal(), other = best_n.cross(across);
     bool shorter = false;
@@ -404,6 +405,7 @@ double DepthFinder::raise_lower(double known, double& best, Vector3d& best_n) {
   // Nothing to gain, or no common point to start from. No depth exceeds 1 unit, the size of both bodies.
   if (known >= kNarrowDepth * best || !proof.begin(common_, std::min(best, kUnitReach * 0.5))) return known;
   constexpr unsigned kPart = kMaxRoomPoints / kRoomLooks;
+  share_ = 1;
   for (unsigned part = 0; part < kRoomLooks && proof.lower() < kNarrowDepth * best && !is_spent(); ++part) {
     // Alternate between proving and searching in the direction where the proof got stuck.
     const auto most = max_steps_ > 0 ? std::min<std::uint64_t>(kPart, max_steps_ - steps()) : kPart;
@@ -442,7 +444,7 @@ DepthFinder::Depth DepthFinder::depth() {
   // Steps 3 and 4, for bodies that are not convex, which may be separated before their hulls are.
   if (!convex) {
     for (const Vector3d& n : directions()) {
-      if (is_spent(kShareOfSearch)) break;
+      if (is_spent()) break;
       improve(n, best, best_n);
     }
     if (best < kInfinity) refine(best, best_n);
@@ -467,7 +469,9 @@ DepthFinder::Depth DepthFinder::depth() {
 /// next step, where another common point is searched.
 double DepthFinder::along_lower(const Vector3d& n) {
   double from = 0, lower = 0;
-  for (unsigned step = 0; step < kMaxWaySteps && !is_spent(); ++step) {
+  share_ = 1;
+  // The first step is cheap for convex bodies.
+  for (unsigned step = 0; step < kMaxWaySteps && (step == 0 || !is_spent()); ++step) {
     // Convex sets of the bodies with B at the current translation.
     const std::optional<Common> sets = common_sets(from * n, WholeTriangles::yes);
     if (!sets) break;
@@ -493,7 +497,7 @@ ProvedInterval DepthFinder::along(const Vector3d& n) {
   // Candidates, the shortest first: the lower bound itself, the first separating sample, the width of the
   // hulls.
   std::optional<double> upper = separation_search_.prove_along(n, lower);
-  if (!upper)
+  if (!upper && !is_spent())
     upper = separation_search_.prove_along(n, separation_search_.least_separation(n, width, kWaySamples));
   if (!upper) upper = separation_search_.prove_along(n, width);
   const UnitFrame& frame = bodies_.frame;

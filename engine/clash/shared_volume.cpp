@@ -246,11 +246,20 @@ double volume_at_most(const UnitBody& body) {
 /// Finds the pairs of overlapping boxes in the cells of a grid across y and z.
 class Grid {
  public:
-  Grid(const std::vector<Seen>& triangles, std::size_t side)
-      : triangles_(triangles), side_(side), begin_(side * side + 1) {
+  explicit Grid(const std::vector<Seen>& triangles) : triangles_(triangles) {
+    // About as many cells as triangles; fewer and wider columns if triangles cover many cells.
+    constexpr std::size_t kEntries = 8;  // of a triangle, on average
+    rows_ = columns_ = static_cast<std::size_t>(std::sqrt(static_cast<double>(triangles.size()))) + 1;
+    const auto entries = [&] {
+      std::size_t count = 0;
+      for (const Seen& t : triangles) count += covered(t.box, 0, rows_) * covered(t.box, 1, columns_);
+      return count;
+    };
+    while (columns_ > 1 && entries() > kEntries * triangles.size()) columns_ /= 2;
     // Counts first; then each cell's triangles are in one array, in ascending order.
+    begin_.resize(rows_ * columns_ + 1);
     for (const Seen& t : triangles) each_cell(t, [&](std::size_t cell) { ++begin_[cell + 1]; });
-    for (std::size_t cell = 0; cell < side * side; ++cell) begin_[cell + 1] += begin_[cell];
+    for (std::size_t cell = 0; cell + 1 < begin_.size(); ++cell) begin_[cell + 1] += begin_[cell];
     in_.resize(begin_.back());
     std::vector<std::size_t> end = begin_;
     for (std::uint32_t i = 0; i < triangles.size(); ++i)
@@ -260,7 +269,7 @@ class Grid {
   /// Calls use(s) for all triangles s near t: by the first row of cells that both share, then by number.
   template <class Use>
   void each_near(const Seen& t, const Use& use) {
-    std::size_t row = row_of(t.box.min().x());
+    std::size_t row = place(t.box.min().x(), rows_);
     found_.clear();
     const auto end_row = [&] {
       std::sort(found_.begin(), found_.end());
@@ -268,31 +277,36 @@ class Grid {
       found_.clear();
     };
     each_cell(t, [&](std::size_t cell) {
-      if (cell / side_ != row) end_row();
-      row = cell / side_;
+      if (cell / columns_ != row) end_row();
+      row = cell / columns_;
       for (std::size_t k = begin_[cell]; k < begin_[cell + 1]; ++k) {
         // A pair is reported only in the first cell that both boxes share.
         const Vector2d first = t.box.min().cwiseMax(triangles_[in_[k]].box.min());
-        if (cell == row_of(first.x()) * side_ + row_of(first.y())) found_.push_back(in_[k]);
+        if (cell == place(first.x(), rows_) * columns_ + place(first.y(), columns_)) found_.push_back(in_[k]);
       }
     });
     end_row();
   }
 
  private:
-  std::size_t row_of(double y) const {
+  /// Returns the row or column of a coordinate, of `count`.
+  static std::size_t place(double x, std::size_t count) {
     // Clamped, so that rounding at the border is harmless.
-    const double share = std::clamp(y + 0.5, 0.0, 1.0) * static_cast<double>(side_);
-    return std::min(static_cast<std::size_t>(share), side_ - 1);
+    const double share = std::clamp(x + 0.5, 0.0, 1.0) * static_cast<double>(count);
+    return std::min(static_cast<std::size_t>(share), count - 1);
+  }
+  static std::size_t covered(const Eigen::AlignedBox2d& box, int axis, std::size_t count) {
+    return place(box.max()[axis], count) - place(box.min()[axis], count) + 1;
   }
   template <class Use>
   void each_cell(const Seen& t, const Use& use) const {
-    for (std::size_t k = row_of(t.box.min().x()); k <= row_of(t.box.max().x()); ++k)
-      for (std::size_t l = row_of(t.box.min().y()); l <= row_of(t.box.max().y()); ++l) use(k * side_ + l);
+    const std::size_t first = place(t.box.min().y(), columns_), last = place(t.box.max().y(), columns_);
+    for (std::size_t k = place(t.box.min().x(), rows_); k <= place(t.box.max().x(), rows_); ++k)
+      for (std::size_t l = first; l <= last; ++l) use(k * columns_ + l);
   }
 
   const std::vector<Seen>& triangles_;
-  std::size_t side_;
+  std::size_t rows_, columns_;
   std::vector<std::size_t> begin_;  ///< by cell, its first place in in_
   std::vector<std::uint32_t> in_, found_;
 };
@@ -348,8 +362,7 @@ UnitBody limited(const UnitBody& body, const Eigen::AlignedBox3d& box, int zoom)
 
 ProvedInterval volume_of(const UnitBodies& bodies, double error_of_corners) {
   const std::vector<Seen> a = seen_of(bodies.body[0]), b = seen_of(bodies.body[1]);
-  // About as many cells as triangles.
-  Grid grid(b, static_cast<std::size_t>(std::sqrt(static_cast<double>(b.size()))) + 1);
+  Grid grid(b);
   Sum sum;
   for (const Seen& t : a) grid.each_near(t, [&](const Seen& s) { add_pair(t, s, sum); });
   // The error from the rounding of all corners is added once, at the end.

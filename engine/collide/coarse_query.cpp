@@ -88,9 +88,11 @@ std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const Col
     if (step.exact()) break;
     // Different tolerances can yield the same levels: each is tried once.
     if (steps.empty() || step.a != steps.back().a || step.b != steps.back().b) steps.push_back(step);
+    // Of coplanar faces in regions: no level is finer.
+    if (std::max(step.a ? step.a->bound : 0, step.b ? step.b->bound : 0) == 0) break;
   }
   // The last step is as fine as the request: its level, or the bodies themselves.
-  const CoarseStep last = step_of(a, b, request.tolerance, request);
+  const CoarseStep last = request.tolerance > 0 ? step_of(a, b, request.tolerance, request) : CoarseStep{};
   if (steps.empty() || last.a != steps.back().a || last.b != steps.back().b) steps.push_back(last);
   return steps;
 }

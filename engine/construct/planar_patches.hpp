@@ -17,8 +17,8 @@ struct MergedFaces {
 
 /// Merges connected faces with area and equal normals in exactly the same plane, if these are at most `most`
 /// triangles of the front. The outline of a polygon may be concave, and walks edges to holes in both
-/// directions. No vertex is on one of its triangles (triangulate()) but their corners. Merges neither
-/// `frozen` faces nor those at vertices with several fans. `front`: of the mesh itself.
+/// directions. No vertex of another face is on one of its triangles (triangulate()) but their corners. Merges
+/// neither `frozen` faces nor those at vertices with several fans. `front`: of the mesh itself.
 MergedFaces merge_coplanar(const Mesh& mesh, const FrontMesh& front, const std::vector<bool>& frozen,
                            std::uint32_t most);
 

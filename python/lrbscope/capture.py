@@ -34,7 +34,7 @@ EVENT = np.dtype([("kind", "u1"), ("a", "<u4"), ("b", "<u4"), ("met", "u1"), ("a
 
 _Path = Union[str, PathLike[str]]
 _MAGIC = b"LRBCAP\r\n\x01\0\0\0\x04\x03\x02\x01"
-_SIZE = "(0,6,4,12,10,2*n_directions)[volume]"
+_SIZE = "(0,6,4,12,10,2*n_directions)[volume%6]"
 FIELDS = {
     "HEAD": "name:text",
     "SYNC": "wall_ns:u8",
@@ -53,6 +53,8 @@ FIELDS = {
 
 
 def _layout(letters: str) -> list[list[str]]:
+    if letters not in FIELDS:
+        raise ValueError(f"{letters}: expected a chunk of {', '.join(FIELDS)}")
     return [(field + "::").split(":")[:3] for field in FIELDS[letters].split()]
 
 
@@ -88,18 +90,20 @@ def chunk(letters: str, /, **given: Any) -> Chunk:
     given = {name: value.encode() if isinstance(value, str) else value for name, value in given.items()}
     if letters == "TREE":
         given.setdefault("options", ("ids" in given) + 2 * ("float_volumes" in given))
-        given.setdefault("nodes", len(given["first_child"]) - 1)
-    content, known = b"", set()
+        given.setdefault("nodes", len(given.get("first_child", (0,))) - 1)
+    content, known = b"", []
     for name, type_, shape in _layout(letters):
-        known.add(name)
+        known.append(name)
         default: Any = b"" if type_ == "text" else np.eye(3, 4) if shape == "3,4" else () if shape else 0
         value = given.get(name, len(given.get(name[2:], ())) if name[:2] == "n_" else default)
         if type_ == "event":
             value = _encoded(value)
         content += value if isinstance(value, bytes) else np.asarray(value, "<" + type_).tobytes()
-    if unknown := set(given) - known:
+    if unknown := set(given) - set(known):
         raise ValueError(f"{letters}: expected {', '.join(known)}, got {unknown.pop()}")
-    return Chunk(letters, time.perf_counter_ns(), content)
+    made = Chunk(letters, time.perf_counter_ns(), content)
+    made.fields()  # raises ValueError if shapes do not fit
+    return made
 
 
 def _decoded(content: bytes, at: int, count: int) -> tuple[Any, int]:
@@ -174,20 +178,24 @@ def write(path: _Path, chunks: Iterable[Chunk]) -> None:
 
 
 def queries(chunks: Iterable[Chunk]) -> Iterator[SimpleNamespace]:
-    """Yield each query as it ends: the fields of QRYB, QRYE and VALU, and the events of all its threads, one after the other."""
-    begun: dict[int, Any] = {}
+    """Yield the queries in the order of their ends: the fields of QRYB, QRYE and VALU, and the events of all threads, one after the other.
+    """
+    found: dict[int, Any] = {}
+    ended = []
     for c in chunks:
         if c.letters in ("QRYB", "EVTS", "VALU", "QRYE"):
             fields = c.fields()
-            query = begun.setdefault(fields.query, SimpleNamespace(events=[]))
+            query = found.setdefault(fields.query, SimpleNamespace(events=[]))
             if c.letters == "EVTS":
-                query.events.append((fields.thread, fields.before, fields.events))
+                query.events.append((fields.thread, fields.events))
             else:
                 vars(query).update(vars(fields))
             if c.letters == "QRYE":
-                order = sorted((thread, before, i) for i, (thread, before, _) in enumerate(query.events))
-                query.events = np.concatenate([np.empty(0, EVENT), *(query.events[i][2] for *_, i in order)])
-                yield begun.pop(fields.query)
+                ended.append(query)
+    for query in ended:
+        parts = sorted(query.events, key=lambda part: part[0])  # each thread's in the order of the file
+        query.events = np.concatenate([np.empty(0, EVENT), *(events for _, events in parts)])
+        yield query
 
 
 def check(path: _Path, *options: str, program: str = "lrbscope") -> list[dict[str, Any]]:

@@ -104,7 +104,7 @@ class DistanceData(_OfPair):
         return self._points[name]
 
 
-@functools.lru_cache(maxsize=64)
+@functools.lru_cache(maxsize=16)
 def _body_of_bytes(*arrays: tuple[str, tuple[int, ...], bytes]) -> Body:
     vertices, faces = (np.frombuffer(data, kind).reshape(shape) for kind, shape, data in arrays)
     return _core.Body(vertices, faces, regions=False, name="mesh")
@@ -171,7 +171,7 @@ class Objects:
 
     def _without(self, *names: Hashable) -> Any:
         """Return a manager of all objects but those of these names."""
-        others = type(self)()
+        others = CollisionManager()
         for key, name in self._names.items():
             if name not in names:
                 others._add(name, *self._placed(key))
@@ -179,8 +179,8 @@ class Objects:
 
     def _manager(self, other: Any) -> Any:
         """Return another manager; of this one a copy, as each object intersects itself."""
-        if not isinstance(other, type(self)):
-            raise TypeError(f"other_manager: expected a {type(self).__name__}, got {type(other).__name__}")
+        if not isinstance(other, CollisionManager):
+            raise TypeError(f"other_manager: expected a CollisionManager, got {type(other).__name__}")
         return self._without() if other is self else other
 
     def _selected(self, other: _Other, outside: Any = "__external") -> tuple[tuple[Any, ...], _Side, _Side]:

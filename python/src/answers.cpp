@@ -178,7 +178,7 @@ void bind_region(py::module_& m) {
   property(
       c, "half_edges",
       "list of (s, 5) uint32: from each point of a curve to the next, the index into Result.pairs, and where "
-      "it starts on A's and B's triangle: on a corner, an edge or inside (0, 1, 2), and on which.",
+      "it starts on A's and B's triangle: the dimension of the corner, edge or inside, and its number.",
       &half_edges_of);
   property(c, "length", "float: of all curves.", &ContactRegion::length);
   property(c, "area", "float: of the coplanar contact or the area spanned by closed curves; unit squared.",

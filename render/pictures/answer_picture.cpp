@@ -125,11 +125,8 @@ struct AnswerPicture {
     return view_beside(across.norm() > 0 ? across : up.unitOrthogonal(), up);
   }
 
-  /// Opens the bodies towards the viewer, so that no face in front hides what is marked.
-  void open(const Look& look) {
-    std::erase_if(scene.key, [](const LegendItem& item) { return item.text.ends_with("hidden"); });
-    make_translucent(scene.list, 60, direction(look).from);
-  }
+  /// Opens the bodies towards the viewer: faces that look at the viewer hide nothing.
+  void open(const Look& look) { make_translucent(scene.list, 60, direction(look).from); }
 
   Image draw(const Look& look) {
     FitOptions fit;

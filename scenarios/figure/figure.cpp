@@ -222,11 +222,13 @@ class FigureJob {
       AlignedBox2d box;
       for (const Eigen::Vector3d& x : render::contact_points({&region, 1}))
         if (const auto at = projection.to_pixel(x)) box.extend(*at);
-      std::erase_if(out, [&](const AlignedBox2d& other) {
+      const auto joins = [&](const AlignedBox2d& other) {
         const bool joined = other.intersects(box);
         if (joined) box.extend(other);
         return joined;
-      });
+      };
+      while (std::erase_if(out, joins) > 0) {  // a larger box may overlap others
+      }
       if (!box.isEmpty()) out.push_back(box);
     }
     if (out.empty()) throw InputError(inset.option + ": expected a panel with a contact, found none in it");

@@ -36,7 +36,7 @@ template <class Counts>
 inline constexpr std::array<Column<Counts>, 0> kColumns = {};
 
 template <class Counts>
-Counts& operator+=(Counts& sum, const Counts& part) {
+requires(!kColumns<Counts>.empty()) Counts& operator+=(Counts& sum, const Counts& part) {
   for (const auto& c : kColumns<Counts>) sum.*c.count += part.*c.count;
   return sum;
 }

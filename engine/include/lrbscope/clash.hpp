@@ -86,8 +86,8 @@ struct ClashRequest {
   std::optional<Eigen::Vector3d> along;
   bool depth = true;   ///< compute ClashResult::depth and ClashResult::translation
   bool volume = true;  ///< compute ClashResult::volume
-  /// Stop narrowing depths after this number of queries and of points located in the bodies; 0: no limit. The
-  /// bounds are proven in any case. The volume has no such limit.
+  /// Stop narrowing depths soon after this number of queries and of points located in the bodies; 0: no
+  /// limit. The bounds are proven in any case. The volume has no such limit.
   std::uint64_t max_steps = 0;
 };
 

@@ -85,8 +85,8 @@ using PairContactRecord = exact::PairContact;
 /// the list of its loop, the half-edges after and before it are its neighbours on both surfaces.
 struct ContactHalfEdge {
   std::uint32_t pair = 0;  ///< index into CollideResult::pairs: its simplices, and so its faces
-  /// Where it starts on these simplices. On an edge: it comes from the simplex beyond, that of the half-edge
-  /// before.
+  /// Where it starts on these simplices: a corner, an edge or the inside. Where a curve crosses an edge, the
+  /// half-edge before is in the simplex beyond it.
   exact::Feature on_a, on_b;
 };
 
