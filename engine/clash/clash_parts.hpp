@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -65,9 +64,8 @@ class SurfaceDistance {
 
   /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius around it
   /// is proven to contain no point of the surface. It is less than the distance by kClearanceMargin and
-  /// rounding, independently of the triangulation of the surface. `most`: returned if the clearance is
-  /// larger.
-  double at(const Vector3d& x, double most = std::numeric_limits<double>::infinity()) const;
+  /// rounding, independently of the triangulation of the surface.
+  double at(const Vector3d& x) const;
 
  private:
   double bound(std::uint32_t triangle, const Vector3d& x) const;
@@ -133,8 +131,7 @@ class OverlapProof {
     Common near;  ///< of a nearby translation
   };
   void push(const Vector3d& centre, double half, const Common& near);
-  bool look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out,
-            const Common* beaten = nullptr);
+  bool look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
   bool is_in(Side side, const Vector3d& x, double radius, const Vector3d& known, double known_radius);
   std::vector<Common> seeds(const Cube& cube) const;
   bool find_room(const Cube& cube, double needed, const Common& seed, Common& best);

@@ -83,20 +83,15 @@ bool OverlapProof::is_in(Side side, const Vector3d& x, double radius, const Vect
 }
 
 /// Evaluates x for the translation v. Returns false unless x is in A and x - v in B. near: a nearby common
-/// point. beaten: null, or a point; may then return false for one without more room.
-bool OverlapProof::look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out,
-                        const Common* beaten) {
+/// point.
+bool OverlapProof::look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out) {
   ++points_;
   out.x = x;
   out.shift = v;
   // B is translated by v: it contains x if the original B contains x - v.
   out.of_b = x - v;
-  // A clearance grows at most by the distance of the points.
-  constexpr double kSlack = 8 * kClearanceMargin;
-  out.clear_a = a_.at(out.x, near.clear_a + (out.x - near.x).norm() + kSlack);
-  const double most_b = near.clear_b + (out.of_b - near.of_b).norm() + kSlack;
-  if (beaten != nullptr && out.clear_a + most_b <= beaten->room()) return false;
-  out.clear_b = b_.at(out.of_b, most_b);
+  out.clear_a = a_.at(out.x);
+  out.clear_b = b_.at(out.of_b);
   // Inside with certainty: by the balls of the nearby point, or by exact location.
   return is_in(Side::a, out.x, out.clear_a, near.x, near.clear_a) &&
          is_in(Side::b, out.of_b, out.clear_b, near.of_b, near.clear_b);
@@ -112,8 +107,7 @@ void OverlapProof::climb(double needed, bool thorough, Common& best) {
     for (int k = 0; k < 3; ++k)
       for (const double sign : {1.0, -1.0}) {
         Common next;
-        if (!look(best.x + sign * step * Vector3d::Unit(k), best.shift, best, next, &best) ||
-            !has_more(next, best))
+        if (!look(best.x + sign * step * Vector3d::Unit(k), best.shift, best, next) || !has_more(next, best))
           continue;
         // Take the first gain on an axis.
         best = next;

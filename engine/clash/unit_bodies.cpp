@@ -53,8 +53,8 @@ double SurfaceDistance::bound(std::uint32_t triangle, const Vector3d& x) const {
   return slab > kClearanceMargin ? slab - kClearanceMargin : 0;
 }
 
-double SurfaceDistance::at(const Vector3d& x, double most) const {
-  double least = most;
+double SurfaceDistance::at(const Vector3d& x) const {
+  double least = kInfinity;
   struct Waiting {
     std::uint32_t node;
     double distance;
