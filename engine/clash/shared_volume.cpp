@@ -1,6 +1,6 @@
 /// Volume of the intersection of two closed bodies as a sum over pairs of triangles.
 /// Steps:
-/// 1. Project all triangles along x, and find the pairs whose boxes overlap, by a grid across y and z.
+/// 1. Project all triangles along x, and find the pairs whose boxes overlap.
 /// 2. Clip one triangle of a pair by the other (Sutherland and Hodgman 1974).
 /// 3. Integrate the lower of both heights over the polygon, and add it with the sign of both orientations.
 /// 4. Sum up with compensation (Neumaier 1974) and a bound on all errors.
@@ -42,6 +42,8 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -172,8 +174,6 @@ class Sum {
 };
 
 void add_pair(const Seen& a, const Seen& b, Sum& sum) {
-  // Disjoint projections share no prism.
-  if (a.box.intersection(b.box).isEmpty()) return;
   // Clip the smaller triangle: the error is proportional to its diameter.
   const bool a_is_less = a.diameter <= b.diameter;
   const Seen &small = a_is_less ? a : b, &large = a_is_less ? b : a;
@@ -243,73 +243,16 @@ double volume_at_most(const UnitBody& body) {
   return (std::abs(sum) + rounding) / 6 * (1 + 0x1p-50) + rounding_of_corners(body, kRounding);
 }
 
-/// Finds the pairs of overlapping boxes in the cells of a grid across y and z.
-class Grid {
- public:
-  explicit Grid(const std::vector<Seen>& triangles) : triangles_(triangles) {
-    // About as many cells as triangles; fewer and wider columns if triangles cover many cells.
-    constexpr std::size_t kEntries = 8;  // of a triangle, on average
-    rows_ = columns_ = static_cast<std::size_t>(std::sqrt(static_cast<double>(triangles.size()))) + 1;
-    const auto entries = [&] {
-      std::size_t count = 0;
-      for (const Seen& t : triangles) count += covered(t.box, 0, rows_) * covered(t.box, 1, columns_);
-      return count;
-    };
-    while (columns_ > 1 && entries() > kEntries * triangles.size()) columns_ /= 2;
-    // Counts first; then each cell's triangles are in one array, in ascending order.
-    begin_.resize(rows_ * columns_ + 1);
-    for (const Seen& t : triangles) each_cell(t, [&](std::size_t cell) { ++begin_[cell + 1]; });
-    for (std::size_t cell = 0; cell + 1 < begin_.size(); ++cell) begin_[cell + 1] += begin_[cell];
-    in_.resize(begin_.back());
-    std::vector<std::size_t> end = begin_;
-    for (std::uint32_t i = 0; i < triangles.size(); ++i)
-      each_cell(triangles[i], [&](std::size_t cell) { in_[end[cell]++] = i; });
-  }
+/// Returns the number of a strip across y, of `count`. Clamped, so that rounding at the border is harmless.
+std::size_t strip_of(const Seen& t, std::size_t count) {
+  const double share = std::clamp(t.box.min().x() + 0.5, 0.0, 1.0) * static_cast<double>(count);
+  return std::min(static_cast<std::size_t>(share), count - 1);
+}
 
-  /// Calls use(s) for all triangles s near t: by the first row of cells that both share, then by number.
-  template <class Use>
-  void each_near(const Seen& t, const Use& use) {
-    std::size_t row = place(t.box.min().x(), rows_);
-    found_.clear();
-    const auto end_row = [&] {
-      std::sort(found_.begin(), found_.end());
-      for (const std::uint32_t i : found_) use(triangles_[i]);
-      found_.clear();
-    };
-    each_cell(t, [&](std::size_t cell) {
-      if (cell / columns_ != row) end_row();
-      row = cell / columns_;
-      for (std::size_t k = begin_[cell]; k < begin_[cell + 1]; ++k) {
-        // A pair is reported only in the first cell that both boxes share.
-        const Vector2d first = t.box.min().cwiseMax(triangles_[in_[k]].box.min());
-        if (cell == place(first.x(), rows_) * columns_ + place(first.y(), columns_)) found_.push_back(in_[k]);
-      }
-    });
-    end_row();
-  }
-
- private:
-  /// Returns the row or column of a coordinate, of `count`.
-  static std::size_t place(double x, std::size_t count) {
-    // Clamped, so that rounding at the border is harmless.
-    const double share = std::clamp(x + 0.5, 0.0, 1.0) * static_cast<double>(count);
-    return std::min(static_cast<std::size_t>(share), count - 1);
-  }
-  static std::size_t covered(const Eigen::AlignedBox2d& box, int axis, std::size_t count) {
-    return place(box.max()[axis], count) - place(box.min()[axis], count) + 1;
-  }
-  template <class Use>
-  void each_cell(const Seen& t, const Use& use) const {
-    const std::size_t first = place(t.box.min().y(), columns_), last = place(t.box.max().y(), columns_);
-    for (std::size_t k = place(t.box.min().x(), rows_); k <= place(t.box.max().x(), rows_); ++k)
-      for (std::size_t l = first; l <= last; ++l) use(k * columns_ + l);
-  }
-
-  const std::vector<Seen>& triangles_;
-  std::size_t rows_, columns_;
-  std::vector<std::size_t> begin_;  ///< by cell, its first place in in_
-  std::vector<std::uint32_t> in_, found_;
-};
+/// Returns a projected box as one of space, without extent along x.
+Box in_space(const Eigen::AlignedBox2d& box) {
+  return {Vector3d(0, box.min().x(), box.min().y()), Vector3d(0, box.max().x(), box.max().y())};
+}
 
 /// The intersection of the bodies' boxes, grown by `more`.
 Eigen::AlignedBox3d box_of_overlap(const UnitBodies& bodies, double more) {
@@ -362,9 +305,21 @@ UnitBody limited(const UnitBody& body, const Eigen::AlignedBox3d& box, int zoom)
 
 ProvedInterval volume_of(const UnitBodies& bodies, double error_of_corners) {
   const std::vector<Seen> a = seen_of(bodies.body[0]), b = seen_of(bodies.body[1]);
-  Grid grid(b);
+  std::vector<Box> boxes;
+  for (const Seen& t : b) boxes.push_back(in_space(t.box));
+  const BoxTree tree(boxes);
+  // A sum's last bits depend on the order of its terms: that of the first strip that both reach, then of b.
+  const auto strips = static_cast<std::size_t>(std::sqrt(static_cast<double>(b.size()))) + 1;
   Sum sum;
-  for (const Seen& t : a) grid.each_near(t, [&](const Seen& s) { add_pair(t, s, sum); });
+  std::vector<std::pair<std::size_t, std::uint32_t>> near;
+  for (const Seen& t : a) {
+    near.clear();
+    const std::size_t own = strip_of(t, strips);
+    tree.for_each_in(in_space(t.box),
+                     [&](std::uint32_t i) { near.emplace_back(std::max(own, strip_of(b[i], strips)), i); });
+    std::sort(near.begin(), near.end());
+    for (const auto& [strip, i] : near) add_pair(t, b[i], sum);
+  }
   // The error from the rounding of all corners is added once, at the end.
   return sum.interval(rounding_of_corners(bodies.body[0], error_of_corners) +
                       rounding_of_corners(bodies.body[1], error_of_corners));
