@@ -169,8 +169,9 @@ Command add_collide(App& root, const Globals& globals) {
   add_request_options(*app, meshes.request);
   app->add_flag("--distance", meshes.more.distance,
                 "Also compute the distance between the bodies at each step");
-  app->add_flag("--clash", meshes.more.clash,
-                "Also classify the contact and compute its penetration depth at each step");
+  app->add_flag_callback(
+      "--clash", [&meshes] { meshes.more.clash.emplace(); },
+      "Also classify the contact and compute its penetration depth at each step");
   app->add_option("--near", meshes.more.near, "D",
                   "Also list the pairs of triangles at most this far apart at each step, in mesh units");
   app->add_option("--manifold", meshes.more.manifold, "D",

@@ -118,11 +118,9 @@ class Player {
     if (more.distance)
       result.distance =
           trace::measured(distance(*q.a, q.pose_a, *q.b, q.pose_b, DistanceRequest{}, workspace).value(), {});
-    if (more.clash) {
-      ClashRequest request;
-      request.max_steps = more.clash_steps;
-      result.clash = trace::measured(clash(*q.a, q.pose_a, *q.b, q.pose_b, request, workspace).value(), {});
-    }
+    if (more.clash)
+      result.clash =
+          trace::measured(clash(*q.a, q.pose_a, *q.b, q.pose_b, *more.clash, workspace).value(), {});
     if (more.near) {
       NearPairsRequest request;
       request.within = *more.near;

@@ -227,9 +227,7 @@ class StepQueries {
     }
     if (s_.more.clash) {
       ClashHistory reported;
-      ClashRequest request;
-      request.max_steps = s_.more.clash_steps;
-      const ClashResult found = clash(a_, pose_a, b_, pose_b, request, reported);
+      const ClashResult found = clash(a_, pose_a, b_, pose_b, *s_.more.clash, reported);
       recorder.add(trace::measured(found, std::move(reported.of_depth)));
     }
     if (s_.more.near) {

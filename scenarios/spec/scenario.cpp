@@ -286,9 +286,10 @@ CollideRequest read_query(const io::JsonNode& node, StepQuestions* more) {
     read_flag("coherent", more->coherent);
     read_flag("distance", more->distance);
     if (const auto n = node.get("clash")) {  // a flag, or the limit of its steps
-      const bool is_limit = n->json().is_number();
-      more->clash = is_limit || n->boolean();
-      if (is_limit) more->clash_steps = n->integer(1, kAnySeed);
+      if (n->json().is_number())
+        more->clash.emplace().max_steps = n->integer(1, kAnySeed);
+      else if (n->boolean())
+        more->clash.emplace();
     }
     if (const auto n = node.get("near")) read_value(*n, more->near.emplace());
     if (const auto n = node.get("manifold")) read_value(*n, more->manifold.emplace());

@@ -15,6 +15,7 @@
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/spec/motion.hpp"
 #include <lrbscope/build.hpp>
+#include <lrbscope/clash.hpp>
 #include <lrbscope/collide.hpp>
 #include <lrbscope/enum_names.hpp>
 #include <lrbscope/pose.hpp>
@@ -51,12 +52,11 @@ using render::FrameSpec;
 
 /// Further queries at each step, and whether steps are coherent.
 struct StepQuestions {
-  bool coherent = false;           ///< each step continues from the previous one: engine/collide
-  bool distance = false;           ///< query the distance of the bodies
-  bool clash = false;              ///< query the kind and depth of their contact
-  std::uint64_t clash_steps = 0;   ///< as ClashRequest::max_steps
-  std::optional<double> near;      ///< list the pairs of faces at most this far apart
-  std::optional<double> manifold;  ///< find the contact manifolds, with this margin
+  bool coherent = false;              ///< each step continues from the previous one: engine/collide
+  bool distance = false;              ///< query the distance of the bodies
+  std::optional<ClashRequest> clash;  ///< query the kind and depth of their contact
+  std::optional<double> near;         ///< list the pairs of faces at most this far apart
+  std::optional<double> manifold;     ///< find the contact manifolds, with this margin
   std::string points;  ///< file of points that move with B, whose distances to A are computed; may be empty
 };
 

@@ -342,7 +342,7 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
   flat["query"] = {{"distance", true}, {"near", 0.2}};
   CHECK_NOTHROW(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, run::kSilent)));
   flat["query"] = {{"clash", 40}};
-  CHECK(crowd_of(flat).more.clash_steps == 40);
+  CHECK(crowd_of(flat).more.clash.value().max_steps == 40);
 }
 
 TEST_CASE("crowds that cannot be run are rejected; keys without effect are noted") {

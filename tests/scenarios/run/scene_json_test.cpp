@@ -27,7 +27,8 @@ run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised,
   s.events = level;
   s.request.wrapper = mode;
   if (mode == WrapperMode::unregularised) s.request.recursion = Recursion::paper;
-  s.more.distance = s.more.clash = measured;
+  s.more.distance = measured;
+  if (measured) s.more.clash.emplace();
   return run::record(s, run::kSilent);
 }
 
