@@ -1,8 +1,7 @@
 // Building of LRB-reps, and the builder for 3D bodies (progressive hulls); the one for 2D bodies is in
 // chain_builder.cpp.
 //
-// On request, faces in a common plane first become regions without volume, each hidden by a polygon
-// (planar_patches.hpp).
+// On request, faces in a common plane first become regions without volume (planar_patches.hpp).
 // The builder works on the current front, at first the mesh itself, and adds one level after the other:
 // 1. One queue of edge collapses simplifies the entire front outward. It is cut into components by a cap on
 //    the number of faces beneath each (front_simplifier.hpp).

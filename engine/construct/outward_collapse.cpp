@@ -19,20 +19,21 @@ bool OutwardCollapse::place(const Star& star, Vector3& w) {
   const double radius = std::sqrt(radius_sq);
   // The margin keeps the floating-point position strictly in front, so that the exact confirmation succeeds.
   const double margin = kPlacementMargin * radius;
-  half_spaces_.clear();
   const auto in_front_of = [&](const OpenFront::Face& f) {
-    half_spaces_.push_back({f.n, f.d - dot3(f.n, centre) + margin});
+    return HalfSpace{f.n, f.d - dot3(f.n, centre) + margin};
   };
-  for (const auto f : star.faces) {
+  half_spaces_.resize(star.faces.size());
+  std::transform(star.faces.begin(), star.faces.end(), half_spaces_.begin(), [&](auto f) {
     outward += open_[f].n * open_[f].area;
-    in_front_of(open_[f]);
-  }
+    return in_front_of(open_[f]);
+  });
   const double length = norm3(outward);
   if (!(length > 0)) return false;
   // In front of a neighbour at a reflex rim edge, where the fan could intersect it.
   for (const auto& r : star.rim) {
     const auto& own = open_[r.face];
-    if (dot3(own.n, open_.x(open_.corner_opposite(r.across, r.a, r.b))) > own.d) in_front_of(open_[r.across]);
+    if (dot3(own.n, open_.x(open_.corner_opposite(r.across, r.a, r.b))) > own.d)
+      half_spaces_.push_back(in_front_of(open_[r.across]));
   }
   const Vector3 target = outward * (-depth_ * radius / length);
   const auto solve = [&] {

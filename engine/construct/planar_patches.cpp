@@ -62,8 +62,8 @@ class CoplanarMerger {
     const auto fits = [&](Slot s) {
       const auto& v = front_[s].v;
       return turn(at(v[0]), at(v[1]), at(v[2])) > 0 && std::all_of(v.begin(), v.end(), [&](Corner c) {
-               const bool is_own =
-                   c == t[0] || c == t[1] || c == t[2];  // spares the slow case of the predicate
+               // A corner of the plane would be the slow case of the predicate.
+               const bool is_own = std::find(t.begin(), t.end(), c) != t.end();
                return !shared_[front_.point(c).id] && (is_own || plane.side(at(c)) == 0);
              });
     };
