@@ -129,7 +129,7 @@ void add_build_options(App& app, BuildOptions& options) {
                  "Maximum number of lids of a region; 12 for --recursion paper_boxes [any number]")
       ->in_range(1, 1000);
   app.add_flag("--merge-planes", options.merge_planes,
-               "First make faces in exactly the same plane regions without volume: wrappers of deviation 0");
+               "First make faces in exactly one plane regions without volume; not in 2D, nor with --lean");
   app.add_flag("--lean", options.lean,
                "Build fewer pseudo faces (about 1.4 faces in total per real face instead of 2); wrappers fit "
                "less tightly");

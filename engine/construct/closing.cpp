@@ -163,7 +163,11 @@ CapVerdict bridge_concavities(FrontMesh& front, ComplexBuilder& complex, const s
   // Step 4: relabel first, so that lids and retained triangles share a component.
   const std::uint32_t component = front[slots[0]].component;
   for (const Slot s : slots) front.set_component(s, component);
-  cover(front, complex, make_sheet(front, bridge.removed, bridge.added), layer, component, probe);
+  Sheet sheet;
+  sheet.removed = bridge.removed;
+  sheet.added = bridge.added;
+  work_out(front, sheet);
+  cover(front, complex, sheet, layer, component, probe);
   return verdict;
 }
 

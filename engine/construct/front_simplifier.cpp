@@ -36,6 +36,8 @@ constexpr std::uint32_t kMinFloor = 12;
 constexpr std::uint32_t kFloorPerLid = 3;
 /// A round that leaves more than this share of the committed front is the last at its deviation limit.
 constexpr double kGain = 0.9;
+/// A component with more than this share of the faces that it may have hardly grows.
+constexpr double kFull = 0.8;
 /// Number of vertices whose edges are worked off together.
 constexpr std::size_t kChunk = 1000;
 /// Price of a region's lid, as kFitBudget; lower, because nearly all components reach it.
@@ -89,7 +91,7 @@ FrontSimplifier::FrontSimplifier(FrontMesh& front, ComplexBuilder& complex, cons
       options_(options),
       passes_(passes),
       tree_(front),
-      open_(front, frozen),
+      open_(front, frozen, options.merge_planes),
       geometry_(open_, bounds, kDepth, kNeedleWeight),
       proof_(open_, front, component_boxes),
       real_faces_(frozen.size()),
@@ -153,7 +155,7 @@ void FrontSimplifier::collapse_all() {
   for (std::size_t i = 0; i < order.size();) {
     for (const std::size_t last = std::min(i + kChunk, order.size()); i < last; ++i)
       propose_around(order[(first + i) % order.size()]);
-    work_off();
+    while (!queue_.empty()) evaluate(queue_.pop());
   }
 }
 
@@ -315,7 +317,7 @@ void FrontSimplifier::unite(const Star& star, Union& united) const {
 
 /// Returns true if one more collapse may unite these.
 bool FrontSimplifier::may_unite(const Union& united) const {
-  if (united.excluded || united.floor > max_floor_) return false;
+  if (united.excluded || united.faces > max_floor_) return false;
   return options_.max_lids == 0 || united.floor <= options_.max_lids + 2 * (united.collapses + 1);
 }
 
@@ -385,10 +387,6 @@ void FrontSimplifier::refuse(CapVerdict verdict, float wake) {
   state.refused_at[star_.edge] = open_.now();
 }
 
-void FrontSimplifier::work_off() {
-  while (!queue_.empty()) evaluate(queue_.pop());
-}
-
 /// Makes a proposed collapse, or refuses it. A collapse that would cover excluded or too many faces is
 /// dropped without a verdict, here and in propose(), and so is an edge whose rim is too long.
 void FrontSimplifier::evaluate(const QueuedCollapse& c) {
@@ -448,28 +446,39 @@ void FrontSimplifier::commit(double worth) {
     const CapVerdict verdict = finish(lid, worth);
     if (options_.probe) notify(lid, verdict);
     if (verdict == CapVerdict::accepted) put_on(lid);
-    // A component that is not simple enough stays open. One that failed is undone.
+    // A component that is not simple enough stays open. One that failed is undone, and so is one that cannot
+    // grow any more, because the polygons that it covers in part cost too many faces.
+    else if (verdict == CapVerdict::too_many_faces && open_.floor_faces(lid.component) > kFull * max_floor_ &&
+             !open_.uncovered_parts(lid.component, true).empty())
+      open_.restore(lid, 0);
     else if (verdict != CapVerdict::too_many_faces && verdict != CapVerdict::splits_polygon)
       open_.restore(lid, open_.is_careful(lid.component) ? kExclude * limit_ : 0);
   }
 }
 
 CapVerdict FrontSimplifier::finish(OpenFront::Lid& lid, double worth) {
+  std::vector<Index> rest;  // of merged planes
   const auto is_worth_it = [&] {
-    return static_cast<double>(lid.faces.size()) <=
-           worth * static_cast<double>(open_.floor(lid.component).size());
+    rest = open_.uncovered_parts(lid.component, true);
+    return static_cast<double>(lid.faces.size() + rest.size()) <=
+           worth * static_cast<double>(options_.merge_planes ? open_.floor_faces(lid.component)
+                                                             : open_.floor(lid.component).size());
   };
   if (!is_worth_it()) return CapVerdict::too_many_faces;
   if (!cover_polygons(lid)) return CapVerdict::splits_polygon;
   if (!is_worth_it()) return CapVerdict::too_many_faces;
-  return proof_.judge(lid, tree_);
+  const CapVerdict verdict = proof_.judge(lid, tree_);
+  // The rest of a merged plane stays where it is, as triangles of the lid.
+  if (verdict == CapVerdict::accepted)
+    for (const Index f : rest) lid.faces.push_back(open_.keep(lid.component, f));
+  return verdict;
 }
 
 /// Extends the floor to whole polygons of the mesh: by flips that only move the lid outward, then by covering
 /// the remaining parts of a polygon with flat pyramids. Returns false if neither is possible somewhere.
 bool FrontSimplifier::cover_polygons(OpenFront::Lid& lid) {
   for (;;) {
-    const std::vector<Index> parts = open_.uncovered_parts(lid.component);
+    const std::vector<Index> parts = open_.uncovered_parts(lid.component, false);
     if (parts.empty()) return true;
     bool progress = false;
     for (const Index f : parts)

@@ -125,7 +125,6 @@ class FrontSimplifier {
   void unite(const Star& star, Union& united) const;
   bool may_unite(const Union& united) const;
   void refuse(CapVerdict verdict, float wake);
-  void work_off();
   void evaluate(const QueuedCollapse& c);
   // Commits.
   void commit(double worth);

@@ -1,4 +1,4 @@
-// Applies a cap to the front. make_sheet() computes the regions under the cap and the neighbours across each
+// Applies a cap to the front. work_out() computes the regions under the cap and the neighbours across each
 // of its edges, without changing anything; cover() then updates complex and front.
 
 #include "engine/construct/front_update.hpp"
@@ -67,15 +67,6 @@ void work_out(const FrontMesh& front, Sheet& sheet) {
       if (beyond.added == kNull) beyond.removed = old_edges.find(a, b);
     }
   }
-}
-
-Sheet make_sheet(const FrontMesh& front, std::span<const Slot> removed,
-                 std::span<const PointTriangle> added) {
-  Sheet sheet;
-  sheet.removed.assign(removed.begin(), removed.end());
-  sheet.added.assign(added.begin(), added.end());
-  work_out(front, sheet);
-  return sheet;
 }
 
 std::vector<Slot> cover(FrontMesh& front, ComplexBuilder& complex, const Sheet& sheet, std::uint16_t layer,

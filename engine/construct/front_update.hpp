@@ -72,12 +72,9 @@ struct Sheet {
   std::vector<std::array<Beyond, 3>> beyond;
 };
 
-/// Computes the regions of a sheet and the neighbours across its edges, from the triangles removed and added.
+/// Computes the regions of a sheet and the neighbours across its edges, from the triangles removed and added,
+/// which must have the same boundary.
 void work_out(const FrontMesh& front, Sheet& sheet);
-
-/// Returns the data of a cap `added` over the triangles `removed`, which must have the same boundary.
-Sheet make_sheet(const FrontMesh& front, std::span<const FrontMesh::Slot> removed,
-                 std::span<const PointTriangle> added);
 
 /// Replaces the removed triangles of the front by the added ones. These become pseudo faces of `component`,
 /// with regions of this layer behind them and, for now, the outside in front; the faces that they cover get

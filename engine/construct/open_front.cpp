@@ -16,7 +16,8 @@ using Index = OpenFront::Index;
 
 }  // namespace
 
-OpenFront::OpenFront(const FrontMesh& front, const std::vector<bool>& frozen) : front_(front) {
+OpenFront::OpenFront(const FrontMesh& front, const std::vector<bool>& frozen, bool merges_planes)
+    : front_(front), real_faces_(frozen.size()), merges_planes_(merges_planes) {
   const Slot count = front.slot_count();
   const FrontMesh::Corner corners = front.point_count();
   for (FrontMesh::Corner c = 0; c < corners; ++c) box_.extend(front.x(c));
@@ -172,18 +173,20 @@ void OpenFront::unite(Index f, float limit, Union& with) const {
           return;
         with.polygons.push_back(polygon.first);
         with.floor += polygon.last - polygon.first;
+        with.faces += merges_planes_ ? 1 : polygon.last - polygon.first;
         return;
       }
     }
   }
   if (c == kNull) {
-    ++with.floor;
+    ++with.floor, ++with.faces;
     return;
   }
   c = leader(c);
   if (std::find(with.components.begin(), with.components.end(), c) != with.components.end()) return;
   with.components.push_back(c);
   with.floor += components_[c].size;
+  with.faces += components_[c].faces;
   with.collapses += components_[c].collapses;
 }
 
@@ -208,6 +211,7 @@ Index OpenFront::merge(const Star& star, const Union& united) {
     }
   }
   components_[c].size = united.floor;
+  components_[c].faces = united.faces;
   components_[c].collapses = united.collapses + 1;
   for (const Slot s : united.polygons) polygon_component_[s] = c;
   if (was_restored_)
@@ -307,10 +311,11 @@ Index OpenFront::collapse(const Star& star, const Union& united, const Vector3& 
 
 // Polygons.
 
-std::vector<Index> OpenFront::uncovered_parts(Index component) const {
+std::vector<Index> OpenFront::uncovered_parts(Index component, bool merged) const {
   std::vector<Index> parts;
   if (!front_.has_polygons()) return parts;
   for (const Index f : components_[component].floor) {
+    if (is_merged(states_[f].slot) != merged) continue;
     const auto polygon = front_.unit(states_[f].slot);
     for (Slot s = polygon.first; s < polygon.last; ++s)
       if (states_[face_at_[s]].alive) parts.push_back(face_at_[s]);
@@ -386,6 +391,15 @@ std::array<Index, 3> OpenFront::raise(Index component, Index f, const Vector3& a
         states_[f].hint, states_[f].off);
     set_across(own.across[i], b, a, fresh[i]);
   }
+  return fresh;
+}
+
+Index OpenFront::keep(Index component, Index f) {
+  const Index fresh = new_face();
+  const Face own = faces_[f];
+  cover(f, component);
+  put(fresh, component, own.v, own.across, states_[f].hint, states_[f].off);
+  for (int i = 0; i < 3; ++i) set_across(own.across[i], own.v[(i + 1) % 3], own.v[i], fresh);
   return fresh;
 }
 

@@ -93,17 +93,18 @@ class OpenFront {
     std::vector<Index> components;
     std::vector<Slot> polygons;   ///< first slots of those that it is the first to touch
     std::uint32_t floor = 0;      ///< number of faces in the united floor
+    std::uint32_t faces = 0;      ///< the same or, if planes were merged, with each polygon as one
     std::uint32_t collapses = 0;  ///< those made in the components; each leaves two faces fewer
     bool excluded = false;        ///< a face must not be covered at this deviation limit
 
     void clear() {  // keeps the memory
       components.clear(), polygons.clear();
-      floor = collapses = 0, excluded = false;
+      floor = faces = collapses = 0, excluded = false;
     }
   };
 
-  /// `frozen` (real faces): those that are never covered.
-  OpenFront(const FrontMesh& front, const std::vector<bool>& frozen);
+  /// `frozen` (real faces): those that are never covered. `merges_planes`: see BuildOptions.
+  OpenFront(const FrontMesh& front, const std::vector<bool>& frozen, bool merges_planes = false);
 
   Index face_count() const { return static_cast<Index>(faces_.size()); }
   Index vertex_count() const { return static_cast<Index>(x_.size()); }
@@ -134,6 +135,7 @@ class OpenFront {
   /// Adds a face that a collapse would remove.
   void unite(Index f, float limit, Union& with) const;
   Index leader(Index component) const;
+  std::uint32_t floor_faces(Index component) const { return components_[component].faces; }
   const std::vector<Index>& floor(Index component) const { return components_[component].floor; }
   bool is_careful(Index component) const { return components_[component].careful; }
   Index component_count() const { return static_cast<Index>(components_.size()); }
@@ -150,8 +152,11 @@ class OpenFront {
   bool flip_outward(Index component, Index f, int i, Index* flipped);
   /// Covers such a face with the three triangles between its edges and a new vertex at `at`.
   std::array<Index, 3> raise(Index component, Index f, const Vector3& at);
-  /// Returns the triangles of the floor's polygons that are not in the floor.
-  std::vector<Index> uncovered_parts(Index component) const;
+  /// Puts a copy of such a face into the lid, and the face into the floor: no volume is between them.
+  Index keep(Index component, Index f);
+  /// Returns the triangles of the floor's polygons that are not in the floor: polygons of real faces, or of
+  /// `merged` ones.
+  std::vector<Index> uncovered_parts(Index component, bool merged) const;
 
   /// Lids by component: components in the order of their first faces.
   struct Lid {
@@ -176,12 +181,14 @@ class OpenFront {
  private:
   struct Component {
     std::vector<Index> floor;
-    std::uint32_t size = 0;  ///< faces of the floor, with all triangles of its polygons
-    std::uint32_t collapses = 0;
+    std::uint32_t size = 0;                  ///< faces of the floor, with all triangles of its polygons
+    std::uint32_t faces = 0, collapses = 0;  ///< see Union
     CapVerdict held_by = CapVerdict::too_many_faces;
     bool careful = false;
   };
 
+  /// Returns true for a part of a merged plane.
+  bool is_merged(Slot s) const { return front_[s].face >= real_faces_; }
   Index edge_face(Index u, Index v, int& edge) const;
   bool add_fan(Star& star, Index centre, Index first, Index last) const;
   void set_plane(Face& f) const;
@@ -194,6 +201,8 @@ class OpenFront {
            Slot hint, float off);
 
   const FrontMesh& front_;
+  const std::size_t real_faces_;
+  const bool merges_planes_;
   std::vector<Face> faces_;
   std::vector<State> states_;
   std::vector<Vector3> x_;

@@ -3,6 +3,8 @@
 //    remains of the edges inside is walked in both directions: it ends at vertices inside, or leads to holes.
 // 3. Shorten the outline by the ends that it walks to and fro at once. Only the ways to holes are left.
 // 4. Accept the polygon if its triangles are a part of the plane, and no corner of it is on another one.
+// A first round takes whole patches, and leaves the triangles of those that lose vertices. A second one makes
+// small polygons of all triangles.
 
 #include "engine/construct/planar_patches.hpp"
 
@@ -18,45 +20,60 @@ namespace {
 using Slot = FrontMesh::Slot;
 using Corner = FrontMesh::Corner;
 
+/// One round: `most` triangles become one polygon; 0: whole patches are triangulated again.
 class CoplanarMerger {
  public:
-  CoplanarMerger(const Mesh& mesh, const FrontMesh& front, const std::vector<bool>& frozen,
-                 std::uint32_t most)
-      : front_(front), frozen_(frozen), most_(most), patch_of_(front.slot_count(), kNull) {
-    out_.mesh.vertices = mesh.vertices;
+  CoplanarMerger(MergedFaces in, const std::vector<bool>& frozen, std::uint32_t most)
+      : front_(in.mesh),
+        in_(std::move(in)),
+        frozen_(frozen),
+        most_(most),
+        patch_of_(front_.slot_count(), kNull),
+        is_merged_(front_.slot_count()) {
+    out_.mesh.vertices = polygon_.vertices = in_.mesh.vertices;
+    out_.floors = in_.floors;
     // Copies of vertices follow those of the mesh. Another fan could touch a polygon in the middle there.
-    shared_.resize(mesh.vertices.size());
-    for (auto c = static_cast<Corner>(mesh.vertices.size()); c < front.point_count(); ++c)
-      shared_[front.point(c).id] = true;
-    for (Slot s = 0; s < front.slot_count(); ++s)
-      if (patch_of_[s] == kNull) add_patch(s, mesh);
+    shared_.resize(in_.mesh.vertices.size());
+    for (auto c = static_cast<Corner>(shared_.size()); c < front_.point_count(); ++c)
+      shared_[front_.point(c).id] = true;
+    for (Slot s = 0; s < front_.slot_count(); ++s)
+      if (patch_of_[s] == kNull) add_patch(s);
   }
   MergedFaces take() { return std::move(out_); }
 
  private:
   const double* at(Corner c) const { return front_.x(c).data(); }
-  const double* at(VertexId v) const { return out_.mesh.vertices[v].data(); }
+  const double* at(VertexId v) const { return polygon_.vertices[v].data(); }
 
-  void add_patch(Slot seed, const Mesh& mesh) {
+  void add_patch(Slot seed) {
     grow(seed);
     std::vector<FaceId> faces;
     for (const Slot s : slots_) faces.push_back(front_[s].face);
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    if (faces.size() > 1 && slots_.size() <= most_ && add_polygon(outline())) {
-      out_.beneath.push_back(std::move(faces));
+    const auto add = [&](std::span<const VertexId> corners, MergedFaces::Origin origin) {
+      out_.mesh.add_face(corners);
+      out_.origin.push_back(origin);
+    };
+    if (faces.size() == 1 || !cut(outline(), faces.size())) {
+      for (const FaceId f : faces) add(in_.mesh.face(f), in_.origin[f]);
       return;
     }
-    for (const FaceId f : faces) {
-      out_.mesh.add_face(mesh.face(f));
-      out_.beneath.push_back({f});
+    MergedFaces::Origin origin = in_.origin[faces[0]];
+    if (origin.region == kNull) {
+      origin.region = static_cast<std::uint32_t>(out_.floors.size());
+      out_.floors.emplace_back();
+      for (const FaceId f : faces) out_.floors.back().push_back(in_.origin[f].face);
     }
+    if (most_ > 0) return add(polygon_.face(0), origin);
+    for (const auto& t : triangles_) add(t, origin);
   }
 
   /// Step 1: finds the triangles of a patch.
   void grow(Slot seed) {
     slots_.clear();
     const auto& t = front_[seed].v;
+    const std::uint32_t region = in_.origin[front_[seed].face].region;
     axes_ = exact::axes_for(at(t[0]), at(t[1]), at(t[2]));
     const exact::PlaneSide plane(at(t[0]), at(t[1]), at(t[2]));
     const auto fits = [&](Slot s) {
@@ -69,7 +86,9 @@ class CoplanarMerger {
     };
     const auto add_face = [&](Slot of, bool is_seed) {
       const auto [first, last] = front_.unit(of);
-      bool good = axes_.turn != 0 && !frozen_[front_[of].face];
+      const MergedFaces::Origin& origin = in_.origin[front_[of].face];
+      bool good = axes_.turn != 0 && origin.region == region && (region != kNull || !frozen_[origin.face]) &&
+                  (most_ == 0 || slots_.size() + (last - first) <= most_);
       for (Slot s = first; good && s < last; ++s) good = fits(s);
       if (!good && !is_seed) return;
       for (Slot s = first; s < last; ++s) patch_of_[s] = seed, slots_.push_back(s);
@@ -96,7 +115,7 @@ class CoplanarMerger {
     const Slot seed = slots_[0];
     std::vector<Side> sides = {{seed, 0, 1}, {seed, 1, 2}, {seed, 2, 0}};
     std::vector<std::uint32_t> queue = {0, 1, 2};
-    std::vector<Slot> merged = {seed};
+    is_merged_[seed] = true;
     std::uint32_t start = 0;
     for (std::size_t i = 0; i < queue.size(); ++i) {
       const std::uint32_t k = queue[i];
@@ -105,8 +124,8 @@ class CoplanarMerger {
         start = k;  // of the patch's own boundary, so that no end is there
         continue;
       }
-      if (std::find(merged.begin(), merged.end(), s) != merged.end()) continue;
-      merged.push_back(s);
+      if (is_merged_[s]) continue;
+      is_merged_[s] = true;
       // The side becomes the triangle's two other edges.
       const int j = front_.index_of(s, front_[sides[k].slot].v[sides[k].edge]);
       const auto fresh = static_cast<std::uint32_t>(sides.size());
@@ -130,47 +149,58 @@ class CoplanarMerger {
     return corners;
   }
 
-  /// Step 4. The triangles depend on the first corner.
-  bool add_polygon(std::vector<VertexId> corners) {
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      out_.mesh.add_face(corners);
-      triangulate(out_.mesh, FaceId(out_.mesh.face_count() - 1), triangles_);
-      if (std::all_of(triangles_.begin(), triangles_.end(),
-                      [&](const auto& t) { return is_free(t, corners); }))
+  /// Step 4. The triangles depend on the first corner. Returns false if no polygon is accepted, or if it has
+  /// as many triangles as the patch has faces.
+  bool cut(std::vector<VertexId> corners, std::size_t faces) {
+    if (corners.size() > kMaxCorners || (most_ == 0 && corners.size() - 2 >= faces)) return false;
+    for (std::size_t i = 0; i < std::min(corners.size(), kMaxTries); ++i) {
+      polygon_.face_offsets.resize(1);
+      polygon_.face_vertices.clear();
+      polygon_.add_face(corners);
+      triangulate(polygon_, 0, triangles_);
+      if (std::all_of(triangles_.begin(), triangles_.end(), [&](const auto& t) { return is_free(t); }))
         return true;
-      out_.mesh.face_offsets.pop_back();
-      out_.mesh.face_vertices.resize(out_.mesh.face_offsets.back());
       std::rotate(corners.begin(), corners.begin() + 1, corners.end());
     }
     return false;
   }
 
   /// Returns true if a triangle has area and touches no corner of the outline but its own.
-  bool is_free(const std::array<VertexId, 3>& t, const std::vector<VertexId>& corners) const {
+  bool is_free(const std::array<VertexId, 3>& t) const {
     const double *a = at(t[0]), *b = at(t[1]), *c = at(t[2]);
+    const auto corners = polygon_.face(0);
     return turn(a, b, c) > 0 && std::none_of(corners.begin(), corners.end(), [&](VertexId v) {
              return v != t[0] && v != t[1] && v != t[2] && turn(a, b, at(v)) >= 0 && turn(b, c, at(v)) >= 0 &&
                     turn(c, a, at(v)) >= 0;
            });
   }
 
-  const FrontMesh& front_;
+  static constexpr std::size_t kMaxCorners = 4096, kMaxTries = 16;
+
+  const FrontMesh front_;
+  const MergedFaces in_;
   const std::vector<bool>& frozen_;
   const std::uint32_t most_;
-  std::vector<Slot> patch_of_;  ///< (slots) the seed of its patch
-  std::vector<bool> shared_;    ///< (vertices) several fans have it
+  std::vector<Slot> patch_of_;   ///< (slots) the seed of its patch
+  std::vector<bool> is_merged_;  ///< (slots)
+  std::vector<bool> shared_;     ///< (vertices) several fans have it
   MergedFaces out_;
   // The current patch.
   std::vector<Slot> slots_;
   exact::Axes axes_{};
+  Mesh polygon_;  ///< with all vertices
   std::vector<std::array<VertexId, 3>> triangles_;
 };
 
 }  // namespace
 
-MergedFaces merge_coplanar(const Mesh& mesh, const FrontMesh& front, const std::vector<bool>& frozen,
-                           std::uint32_t most) {
-  return CoplanarMerger(mesh, front, frozen, most).take();
+MergedFaces merge_coplanar(const Mesh& mesh, const std::vector<bool>& frozen, std::uint32_t most) {
+  MergedFaces merged;
+  merged.mesh = mesh;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) merged.origin.push_back({f});
+  for (const std::uint32_t triangles : {0u, most})
+    merged = CoplanarMerger(std::move(merged), frozen, triangles).take();
+  return merged;
 }
 
 }  // namespace lrb::construct

@@ -116,7 +116,9 @@ class WholeFronts {
 
   std::uint32_t outer_size() const {
     std::uint32_t count = 0;
-    for (Slot s = 0; s < front_.slot_count(); ++s) count += is_outer(s);
+    FaceId last = kNull;
+    for (Slot s = 0; s < front_.slot_count(); last = front_[s++].face)
+      count += is_outer(s) && (!options_.merge_planes || front_[s].face != last);
     return count;
   }
 

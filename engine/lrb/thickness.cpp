@@ -25,12 +25,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
+#include "engine/exact/plane_side.hpp"
 #include "engine/exact/predicates.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 #include <lrbscope/core/float_mode.hpp>
@@ -162,19 +164,36 @@ NearFace NearestFace::find(const Eigen::Vector3d& p, NearFace known) {
   return best;
 }
 
-bool is_on_body(const LrbRep& rep, RegionId r) {
-  if (rep.dim() == 2 || rep.lids(r).size() != 1) return false;
-  const FaceId lid = rep.lids(r)[0];
-  VertexId v[3];
-  rep.simplex(rep.first_simplex(lid), v);
-  const auto at = [&](VertexId i) { return rep.vertices()[i].data(); };
-  if (exact::collinear3d(at(v[0]), at(v[1]), at(v[2]))) return false;
-  return std::all_of(rep.collector(r).begin(), rep.collector(r).end(), [&](FaceId f) {
-    const auto face = rep.face(f);
-    return (rep.is_real(f) || f == lid) && std::all_of(face.begin(), face.end(), [&](VertexId i) {
-             return exact::orient3d(at(v[0]), at(v[1]), at(v[2]), at(i)) == 0;
-           });
-  });
+std::vector<bool> regions_on_body(const LrbRep& rep) {
+  const auto at = [&](VertexId v) { return rep.vertices()[v].data(); };
+  const auto is_flat = [&](RegionId r) {
+    VertexId p[3], v[3];
+    rep.simplex(rep.first_simplex(rep.lids(r)[0]), p);
+    const exact::Axes axes = exact::axes_for(at(p[0]), at(p[1]), at(p[2]));
+    if (axes.turn == 0) return false;
+    for (const FaceId f : rep.collector(r)) {
+      if (!rep.is_real(f) && rep.inner_cell(f) != r) return false;
+      for (std::size_t i = 0; i < Mesh::simplices_of(rep.face(f).size(), 3); ++i) {
+        rep.simplex(SimplexId(rep.first_simplex(f) + i), v);
+        for (const VertexId corner : v)
+          if (exact::orient3d(at(p[0]), at(p[1]), at(p[2]), at(corner)) != 0) return false;
+        if (axes.turn * exact::orient_axes(at(v[0]), at(v[1]), at(v[2]), axes.x, axes.y) < 0) return false;
+      }
+    }
+    return true;
+  };
+  std::vector<bool> on_body(rep.region_count(), false);
+  std::optional<BoundarySum> sum;
+  for (RegionId r = 0; rep.dim() == 3 && r < rep.region_count(); ++r) {
+    if (rep.lids(r).empty() || !is_flat(r)) continue;
+    // In a plane, only the empty surface is closed: the lids cover as much as the floor.
+    if (!sum) sum.emplace(rep);
+    for (const FaceId f : rep.lids(r)) sum->add(f);
+    for (const FaceId f : rep.floor(r)) sum->add_reversed(f);
+    VertexId open_at[2];
+    on_body[r] = sum->take_closed(open_at);
+  }
+  return on_body;
 }
 
 namespace {
@@ -276,7 +295,6 @@ class RegionMeter {
   /// Returns the region's thickness in units.
   double measure(RegionId r) {
     if (rep_.lids(r).empty()) return std::numeric_limits<double>::infinity();
-    if (is_on_body(rep_, r)) return 0;
     heap_.clear();
     pieces_.clear();
     most_ = found_ = 0;
@@ -457,8 +475,9 @@ std::vector<double> region_thickness(const LrbRep& rep, unsigned threads) {
   // Regions are independent. Each worker measures them with its own meter, whose state is reset per region.
   std::vector<RegionMeter> meters(workers.count(), RegionMeter(rep, x, simplices, near));
   std::vector<double> out(rep.region_count());
+  const std::vector<bool> on_body = regions_on_body(rep);
   workers.for_each(out.size(), [&](std::size_t r, unsigned worker) {
-    out[r] = meters[worker].measure(static_cast<RegionId>(r)) * rep.tree().unit();
+    if (!on_body[r]) out[r] = meters[worker].measure(static_cast<RegionId>(r)) * rep.tree().unit();
   });
   return out;
 }

@@ -57,8 +57,8 @@ class NearestFace {
   std::vector<Branch> stack_;
 };
 
-/// Returns true if the only lid of a region and its floor, which is real, are in exactly one plane. The
-/// boundary of a region is closed, so the lid then consists of the same points as the floor.
-bool is_on_body(const LrbRep& rep, RegionId r);
+/// (regions) Returns true for those whose lids consist of exactly the same points as their floors, which are
+/// real faces in one plane.
+std::vector<bool> regions_on_body(const LrbRep& rep);
 
 }  // namespace lrb

@@ -156,6 +156,7 @@ class Validator {
   }
 
   void check_embedding() {
+    on_body_ = regions_on_body(rep_);
     if (has_hubs()) return check_embedding_with_hubs();
     const LrbRep soup = LrbRep::without_regions(all_simplices(), false, false, workers_.count());
     std::vector<Pair> pairs;
@@ -266,11 +267,10 @@ class Validator {
     return true;
   }
 
-  /// Returns true if a real face is a part of the lid over it: other faces then meet it only where they meet
-  /// this lid, which is tested itself.
+  /// Returns true if a real face is a part of the lids over it: other faces then meet it only where they meet
+  /// these, which are tested themselves.
   bool is_behind_own(FaceId f) const {
-    return rep_.is_real(f) && is_region(rep_.outer_cell(f)) &&
-           is_on_body(rep_, rep_.outer_cell(f).as_region());
+    return rep_.is_real(f) && is_region(rep_.outer_cell(f)) && on_body_[rep_.outer_cell(f)];
   }
 
   bool hides(FaceId lid, FaceId face) const {
@@ -371,6 +371,7 @@ class Validator {
   BoundarySum sum_;
   ValidateReport report_;
   std::vector<double> volume_;
+  std::vector<bool> on_body_;
   VertexId unused_[2] = {};
 };
 

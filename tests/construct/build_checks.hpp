@@ -33,7 +33,8 @@ inline std::vector<bool> flat_regions(const LrbRep& rep) {
 }
 
 /// Pairs of simplices, at least one of them of a pseudo face, that meet in more than they share: all against
-/// all, but for floors of flat regions, which are parts of their lids.
+/// all, but for floors of flat regions, which are parts of their lids, and lids that are a part of a merged
+/// plane.
 inline std::uint64_t bad_pairs_by_brute_force(const LrbRep& rep) {
   std::uint64_t bad = 0;
   const std::vector<bool> flat = flat_regions(rep);
@@ -44,6 +45,10 @@ inline std::uint64_t bad_pairs_by_brute_force(const LrbRep& rep) {
       VertexId a[3], b[3];
       rep.simplex(s, a);
       rep.simplex(t, b);
+      const FaceId plane = rep.face_of_simplex(s), lid = rep.face_of_simplex(t);
+      if (rep.inner_cell(lid) == between && !rep.is_real(plane) && rep.face(plane).size() > 3 &&
+          std::is_permutation(a, a + 3, b))
+        continue;
       const double *pa[3], *pb[3];
       for (int i = 0; i < rep.simplex_size(); ++i) {
         pa[i] = rep.vertices()[a[i]].data();

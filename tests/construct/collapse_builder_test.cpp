@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
 
 #include <doctest/doctest.h>
 
@@ -79,13 +82,26 @@ TEST_CASE("faces in a common plane become regions without volume on request: wra
       CHECK((thickness[r] == 0) == flat[r]);
       if (!flat[r]) continue;
       CHECK(rep.layer(r) == 0);
-      CHECK(rep.lids(r).size() == 1);
-      faces -= rep.floor(r).size() - 1;
+      faces -= rep.floor(r).size() - rep.lids(r).size();
     }
     CHECK(faces < rep.real_face_count());
-    // 128 planes of two triangles; the two planes of 128 are too large for one polygon.
-    if (mesh.name == bodies[0].name) CHECK(faces == 384);
+    // 128 planes of two triangles, and two of 128.
+    if (mesh.name == bodies[0].name) CHECK(faces == 160);
+    // A looser wrapper has no more faces.
+    const auto needed = rep.levels().needed();
+    const auto need = [&](CellId cell) {
+      return is_region(cell) ? needed[cell] : cell == kSolid ? 0 : std::numeric_limits<double>::infinity();
+    };
+    std::map<double, std::int64_t> change;  // at each tolerance
+    for (FaceId f = 0; f < rep.face_count(); ++f)
+      ++change[need(rep.inner_cell(f))], --change[need(rep.outer_cell(f))];
+    CHECK(change.begin()->second == static_cast<std::int64_t>(faces));
+    for (auto next = std::next(change.begin()); next->first < 1e300; ++next) CHECK(next->second <= 0);
   }
+  // Vertices inside a plane go.
+  const LrbRep plate =
+      build_lrb(voxels(40, 30, 1, [](int x, int y, int) { return x != 9 || y != 9; }), options);
+  CHECK(plate.levels().all().back().face_count < 100);
   // Without such faces, nothing changes.
   CHECK(build_lrb(bumpy_sphere(3, 1, 0.4), options).hash() == build_lrb(bumpy_sphere(3, 1, 0.4)).hash());
 }

@@ -188,6 +188,19 @@ TEST_CASE("a flat lid over coplanar faces has thickness 0") {
   CHECK(3 * flat > proved.size());
 }
 
+TEST_CASE("a region on the body has thickness exactly 0, but not if its lid covers more than its floor") {
+  BuildOptions options;
+  options.merge_planes = true;
+  const LrbRep rep = build_lrb(shapes::box(), options);
+  CHECK(region_thickness(rep) == std::vector<double>(6, 0.0));
+  // In another program's file: the corner of a lid is moved in its plane, so that the region is open.
+  LrbData data = rep.data();
+  const auto corners = data.face(rep.lids(0)[0]);
+  data.vertices.emplace_back(2 * data.vertices[corners[0]] - data.vertices[corners[2]]);
+  data.face_vertices[data.face_offsets[rep.lids(0)[0]]] = VertexId(data.vertices.size() - 1);
+  CHECK(region_thickness(LrbRep(data))[0] > 1);
+}
+
 TEST_CASE("thickness does not depend on the number of threads") {
   const LrbRep rep = build_lrb(bumpy_sphere(4, 3));
   const std::vector<double> one = region_thickness(rep, 1);

@@ -302,9 +302,10 @@ class Questions {
   bool thorough_, simple_ = true, solid_ = true;
 };
 
-Body of_mesh(const Kind& kind, bool regions) {
+Body of_mesh(const Kind& kind, bool regions, bool merge_planes = false) {
   BodyOptions options;
   options.regions = regions;
+  options.build.merge_planes = merge_planes && kind.mesh.dim == 3;
   return Body::from(kind.mesh, options).value();
 }
 
@@ -321,8 +322,9 @@ Body of_file(const Kind& kind, const test::Folder& folder, const std::string& fo
   return Body::load(folder.write("body." + format, file_of(kind.mesh, format))).value();
 }
 
+/// With levels, and with faces in a plane merged.
 Body saved(const Kind& kind, const test::Folder& folder, bool levels) {
-  const Body body = of_mesh(kind, true);
+  const Body body = of_mesh(kind, true, levels);
   if (levels) body.rep().levels();
   save_lrb(body, folder / "body.lrb");
   return Body::load(folder / "body.lrb").value();
@@ -365,11 +367,13 @@ void check_build(Report& report, const Kind& kind) {
   if (mesh.report().when_turned().buildable() != kind.builds) report.wrong("buildable, or not");
   if (mesh.report().bounds_solid != kind.solid) report.wrong("a solid, or none");
   if (kind.simple && mesh.report()[MeshFault::self_intersection].count > 0) report.wrong("intersects itself");
-  report.doing("validate");
-  ValidateOptions options;
-  options.wrapper_states = 5;
-  const ValidateReport proof = validate(of_mesh(kind, true), options);
-  if (!proof.valid) report.wrong("invalid: " + proof.violations.at(0));
+  for (const bool merge_planes : {false, true}) {
+    report.doing(merge_planes ? "validate, with planes merged" : "validate");
+    ValidateOptions options;
+    options.wrapper_states = 5;
+    const ValidateReport proof = validate(of_mesh(kind, true, merge_planes), options);
+    if (!proof.valid) report.wrong("invalid: " + proof.violations.at(0));
+  }
   report.doing("build");
   try {
     mesh.turn_outward();

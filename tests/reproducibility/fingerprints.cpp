@@ -156,12 +156,18 @@ std::vector<cases::Body> generated_bodies() {
   const std::string file =
       (std::filesystem::temp_directory_path() / ("lrb-" + std::to_string(std::rand()))).string();
   std::vector<cases::Body> bodies;
-  for (const generators::Generator& g : generators::generators()) {
-    bodies.push_back(std::make_shared<const LrbRep>(build_lrb(generators::generate(g.name))));
-    print(std::string("body ") + g.name, bodies.back()->hash());
+  const auto add = [&](const std::string& name, const Mesh& mesh, const BuildOptions& options) {
+    bodies.push_back(std::make_shared<const LrbRep>(build_lrb(mesh, options)));
+    print("body " + name, bodies.back()->hash());
     save_lrb(*bodies.back(), file);
-    print(std::string(".lrb ") + g.name, hash_of_bytes(read_file(file)));
-  }
+    print(".lrb " + name, hash_of_bytes(read_file(file)));
+  };
+  for (const generators::Generator& g : generators::generators())
+    add(g.name, generators::generate(g.name), {});
+  BuildOptions merging;
+  merging.merge_planes = true;
+  add("stairs, planes merged",
+      shapes::voxels(6, 6, 5, [](int x, int y, int z) { return z <= x % 3 + y / 2; }), merging);
   std::filesystem::remove(file);
   return bodies;
 }

@@ -30,9 +30,9 @@ struct Built {
   Trace trace;
 };
 
-Built build(const Mesh& mesh, unsigned threads = 1, RecorderSettings settings = {}) {
+Built build(const Mesh& mesh, unsigned threads = 1, RecorderSettings settings = {},
+            BuildOptions options = {}) {
   ConstructRecorder recorder(settings);
-  BuildOptions options;
   options.threads = threads;
   options.probe = &recorder;
   LrbRep rep = build_lrb(mesh, options);
@@ -97,12 +97,17 @@ TEST_CASE(
     "threads; the body is the same without a probe") {
   std::array<std::uint32_t, kEnumNames<CapVerdict>.size()> caps{};
   std::uint32_t excluded = 0, merged = 0;
-  for (const Mesh& mesh : meshes()) {
+  std::vector<Mesh> bodies = meshes();
+  bodies.push_back(shapes::comb(12));
+  for (const Mesh& mesh : bodies) {
     CAPTURE(mesh.name);
-    const Built built = build(mesh);
+    BuildOptions options;
+    options.merge_planes = &mesh == &bodies.back();
+    const Built built = build(mesh, 1, {}, options);
     check_passes(built);
-    CHECK(built.rep.hash() == build_lrb(mesh).hash());
-    const Built on_threads = build(mesh, 4);
+    CHECK((passes_of(built.trace).front().stage == BuildStage::merge) == options.merge_planes);
+    CHECK(built.rep.hash() == build_lrb(mesh, options).hash());
+    const Built on_threads = build(mesh, 4, {}, options);
     CHECK(on_threads.rep.hash() == built.rep.hash());
     CHECK((on_threads.trace == built.trace));
     for (const PassSummary& p : passes_of(built.trace)) {

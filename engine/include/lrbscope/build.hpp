@@ -168,8 +168,8 @@ struct BuildOptions {
   /// and patch_interior has no effect. 12: fewest tests by recursions with boxes (Recursion::paper_boxes),
   /// 1.9 to 2.2 faces per real face. A few regions are larger: those that bridge, fill or close.
   std::uint32_t max_lids = 0;
-  /// In 3D, first makes faces in exactly the same plane regions without volume, each hidden by a polygon:
-  /// wrappers of deviation 0. Not with `lean`, nor for bodies of at most max_outer_faces triangles.
+  /// First makes faces in exactly the same plane regions without volume, hidden by few polygons: wrappers of
+  /// deviation 0. Regions of large planes exceed max_lids. InputError for 2D bodies, and with `lean`.
   bool merge_planes = false;
   std::uint64_t seed = 1;  ///< seed of the random choices of the builder
   unsigned threads = 1;    ///< 0: number of hardware threads. The result does not depend on it
