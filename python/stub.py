@@ -57,7 +57,7 @@ PARAMETERS = {  # the type: its parameters, some of one function only
     "_Indices": "pair",
     "int | _Indices": "Scene.move.key",
     "float": "tolerance relative_tolerance max_time within margin clearance zoom",
-    "bool": "regions lean contacts interiors_overlap separation always relation depth volume solids orthographic wrappers close_up"
+    "bool": "regions lean merge_planes contacts interiors_overlap separation always relation depth volume solids orthographic wrappers close_up"
     " transparent",
     "str": "name",
     "_Path": "path out path_or_name cache",

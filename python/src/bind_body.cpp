@@ -30,6 +30,7 @@ BuildOptions build_options(const Given& given, const Progress& progress) {
   BuildOptions options;
   if (const Argument cache = given["cache"]; !cache.is_none()) options.cache = path(cache);
   options.lean = flag(given["lean"]);
+  options.merge_planes = flag(given["merge_planes"]);
   const std::uint64_t lids = count(given["max_lids"]);
   if (lids > 1000) throw InputError("max_lids: expected at most 1000, got " + std::to_string(lids));
   options.max_lids = static_cast<std::uint32_t>(lids);
@@ -185,7 +186,7 @@ using BodyClass = py::class_<Body, BodyPtr>;
 void bind_making(BodyClass& c) {
   define_constructor(
       c,
-      R"(Body(vertices, faces, *, regions=True, lean=False, max_lids=0, seed=1, threads=0, name='body', progress=None, cache=None)
+      R"(Body(vertices, faces, *, regions=True, lean=False, max_lids=0, merge_planes=False, seed=1, threads=0, name='body', progress=None, cache=None)
 
 Makes a body from arrays.
 
@@ -195,6 +196,7 @@ faces: (m, 3) int, corners counter-clockwise seen from outside; (m, k) or a list
 regions: build an LRB-rep with wrappers. Without regions, answers are the same and the body is made faster.
 lean: build a smaller LRB-rep whose wrappers fit less tightly.
 max_lids: at most so many lids a region, 0: any number; 12 for queries with recursion='paper_boxes'.
+merge_planes: first make faces in exactly the same plane regions without volume, in 3D; not with lean.
 seed, threads: of the build. The result depends only on the seed. threads 0: all cores.
 progress: called with (what, done, total) after each pass of the build, total 0 for an unknown one; True: a
     bar, where tqdm is installed.
@@ -206,7 +208,7 @@ have regions (open, not manifold) gives a body without them.)",
       &body_of_arrays);
   define_static(
       c,
-      R"(load(path, *, regions=True, lean=False, max_lids=0, seed=1, threads=0, progress=None, cache=None)
+      R"(load(path, *, regions=True, lean=False, max_lids=0, merge_planes=False, seed=1, threads=0, progress=None, cache=None)
 
 Reads a body from a mesh (OBJ, STL, PLY, OFF) or an .lrb file. See Body for the options.)",
       &load);

@@ -144,7 +144,7 @@ FrameSpec read_frames(const io::JsonNode& node, const FrameSpec& fallback) {
 namespace {
 
 BuildOptions read_build(const io::JsonNode& node, std::uint64_t seed) {
-  node.object({"patch_interior", "max_outer_faces", "max_lids", "lean", "seed"});
+  node.object({"patch_interior", "max_outer_faces", "max_lids", "merge_planes", "lean", "seed"});
   BuildOptions o;
   o.seed = seed;
   if (const auto n = node.get("patch_interior"))
@@ -152,6 +152,7 @@ BuildOptions read_build(const io::JsonNode& node, std::uint64_t seed) {
   if (const auto n = node.get("max_outer_faces"))
     o.max_outer_faces = static_cast<std::uint32_t>(n->integer(4, 1000));
   if (const auto n = node.get("max_lids")) o.max_lids = static_cast<std::uint32_t>(n->integer(0, 1000));
+  if (const auto n = node.get("merge_planes")) o.merge_planes = n->boolean();
   if (const auto n = node.get("lean")) o.lean = n->boolean();
   if (const auto n = node.get("seed")) o.seed = n->integer(0, kAnySeed);
   return o;
@@ -195,7 +196,7 @@ BodySpec read_body(const io::JsonNode& node, const std::filesystem::path& folder
   if (const auto build = node.get("build")) {
     body.build = read_build(*build, seed);
     const generators::Generator* generator = generators::find_generator(body.generator);
-    for (const char* key : {"patch_interior", "max_outer_faces", "max_lids", "lean"})
+    for (const char* key : {"patch_interior", "max_outer_faces", "max_lids", "merge_planes", "lean"})
       if (generator != nullptr && generator->make_rep != nullptr && build->has(key))
         build->fail_key(key, "the regions of this body are known by construction; remove it");
   }

@@ -111,6 +111,7 @@ def test_options_of_the_build():
     assert Body(*arrays, threads=3).hash == plain.hash != Body(*arrays, seed=2).hash
     assert Body(*arrays, lean=True).face_count < plain.face_count
     assert Body(*arrays, max_lids=12).region_count > plain.region_count
+    assert Body(*cube_arrays(4), merge_planes=True).region_count == 6
 
 
 def test_box(cube, ball, rng):

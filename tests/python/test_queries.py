@@ -169,6 +169,7 @@ REFUSED = [
     ("Body(*cube_arrays(), threads=-1)", InputError, "threads: expected an integer of at least 0, got -1"),
     ("Body(*cube_arrays(), seed=0.5)", TypeError, "seed: expected an integer, got float"),
     ("Body(*cube_arrays(), max_lids=2000)", InputError, "max_lids: expected at most 1000, got 2000"),
+    ("Body(*cube_arrays(), lean=True, merge_planes=True)", InputError, "merge planes"),
     ("Body(*cube_arrays(), progress='yes')", TypeError, "progress: expected a callable, True or None"),
     ("Body(np.eye(3), [[0, 1]])", InputError, "faces: face 0 has 2 corners"),
     ("Body(np.eye(3), [[0, 1, 2], [0, 1, 2.5, 3]])", InputError, "faces: face 1: expected integers"),
