@@ -17,7 +17,7 @@ namespace lrb {
 
 /// Version of the builder. Raise it with every change that gives a mesh another LRB-rep
 /// (tests/construct/determinism_test.cpp fails then).
-inline constexpr unsigned kBuilderVersion = 2;
+inline constexpr unsigned kBuilderVersion = 3;
 
 /// Returns the file name of the entry for a mesh and these settings, without the folder.
 std::string cache_entry(const Mesh& mesh, const BuildOptions& options);
