@@ -83,6 +83,9 @@ TEST_CASE("refining and then coarsening is the identity") {
       for (const RegionId r : open) REQUIRE(w.coarsen(r));
       CHECK(w.boundary() == outermost);
       w.refine_all();
+      const std::vector<FaceId> real = w.boundary();
+      REQUIRE(real.size() == rep.real_face_count());
+      for (FaceId f = 0; f < real.size(); ++f) REQUIRE(real[f] == f);
       w.reset();
       CHECK(w.boundary() == outermost);
     }

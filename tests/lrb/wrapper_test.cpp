@@ -30,28 +30,6 @@ TEST_CASE("refining goes from the outermost wrapper to the real faces and back")
   CHECK(w.boundary() == outermost);
 }
 
-TEST_CASE("any set of regions is valid: a region may be refined before the one that hides it") {
-  const LrbRep rep = shapes::stairs_2d();
-  Wrapper w(rep);
-  w.refine(0);  // a bubble under region 1: its lid is there, seen from behind
-  CHECK(w.boundary() == faces({0, 1, 4, 5, 8, 9, 10, 11, 12}));
-}
-
-TEST_CASE("refine_all gives exactly the real faces; reset gives the outermost wrapper") {
-  for (const WrapperMode mode : {WrapperMode::regularised, WrapperMode::unregularised}) {
-    const LrbRep rep = shapes::dented_box();
-    Wrapper w(rep, mode);
-    const auto outermost = w.boundary();
-    w.refine_all();
-    std::vector<FaceId> real(rep.real_face_count());
-    for (FaceId f = 0; f < real.size(); ++f) real[f] = f;
-    CHECK(w.boundary() == real);
-    w.reset();
-    CHECK(w.boundary() == outermost);
-    CHECK(w.excluded_count() == 0);
-  }
-}
-
 TEST_CASE("the two modes differ in what happens to a region's other lids") {
   const LrbRep rep = shapes::dented_box();
   Wrapper regularised(rep), unregularised(rep, WrapperMode::unregularised);
