@@ -107,23 +107,3 @@ TEST_CASE("charts run over events and over steps") {
   for (const Chart& chart : {chart_over_events(one), chart_over_steps(one)})
     for (const Series& s : chart.series) CHECK(s.name.find('B') == std::string_view::npos);
 }
-
-TEST_CASE("a summary is JSON with the run's numbers, the same each time") {
-  const Trace t = runs::record(box(), box(), runs::kBoxPoses).trace;
-  const std::string text = summary_json(t);
-  CHECK(text == summary_json(runs::record(box(), box(), runs::kBoxPoses).trace));
-  const auto json = nlohmann::json::parse(text);
-  CHECK(json["scenario"]["name"] == t.header.scenario);
-  CHECK(json["bodies"].size() == 2);
-  REQUIRE(json["steps"].size() == 3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    CHECK(json["steps"][i]["pairs"] == t.steps[i].result.pair_count);
-    CHECK(json["steps"][i]["relation"] == name_of(t.steps[i].result.relation));
-    CHECK(json["steps"][i]["counters"]["face_tests"] == t.steps[i].result.counters.face_tests);
-    CHECK(json["steps"][i]["events"]["face_tests"] == t.steps[i].result.counters.face_tests);
-    CHECK(json["steps"][i]["events"]["contacts"] == t.steps[i].result.pair_count);
-  }
-  CHECK(json["totals"]["events"] == t.events.size());
-  for (const auto& s : json["statistics"]) CHECK_FALSE(s["description"].get<std::string>().empty());
-  CHECK(json["histograms"].size() == 3);
-}

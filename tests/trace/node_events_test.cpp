@@ -10,6 +10,7 @@
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/answer_content.hpp"
 #include "tests/support/trace_schema.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/coherent.hpp>
@@ -90,16 +91,8 @@ TEST_CASE("a query does the same work at every event detail") {
       const WatchedRun faces = record(bodies, request, EventLevel::faces);
       for (const EventLevel level : {EventLevel::nodes, EventLevel::all}) {
         const WatchedRun more = record(bodies, request, level);
-        for (std::size_t i = 0; i < faces.results.size(); ++i) {
-          CHECK(more.results[i].counters == faces.results[i].counters);
-          CHECK((more.results[i].pairs == faces.results[i].pairs));
-          CHECK(more.results[i].relation == faces.results[i].relation);
-          CHECK(more.results[i].error_bound == faces.results[i].error_bound);
-          CHECK(more.results[i].finished == faces.results[i].finished);
-          CHECK((more.results[i].separation == faces.results[i].separation));
-          CHECK((more.results[i].opened == faces.results[i].opened));
-          CHECK(more.results[i].regions.size() == faces.results[i].regions.size());
-        }
+        for (std::size_t i = 0; i < faces.results.size(); ++i)
+          CHECK((test::content(more.results[i]) == test::content(faces.results[i])));
         std::vector<Event> same = more.trace.events;
         std::erase_if(same, is_more);
         REQUIRE(same.size() == faces.trace.events.size());
@@ -136,13 +129,7 @@ TEST_CASE("observed coherent queries have the same answers and counters, and the
         recorder.begin_step(i, {}, pose);
         results.push_back(watched.collide({}, pose, recorder));
         recorder.end_step(results.back());
-        const CollideResult& expected = alone.collide({}, pose);
-        CHECK(results.back().counters == expected.counters);
-        CHECK((results.back().pairs == expected.pairs));
-        CHECK((results.back().meets == expected.meets));
-        CHECK(results.back().relation == expected.relation);
-        CHECK((results.back().opened == expected.opened));
-        CHECK(results.back().regions.size() == expected.regions.size());
+        CHECK((test::content(results.back()) == test::content(alone.collide({}, pose))));
       }
       CHECK(watched.statistics().from_cache == alone.statistics().from_cache);
       const Trace t = recorder.take();

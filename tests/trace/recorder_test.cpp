@@ -11,41 +11,6 @@ using namespace lrb::trace;
 using exact::Meet;
 using runs::plate;
 
-namespace {
-
-RecorderSettings paper() {
-  RecorderSettings settings;
-  settings.request.recursion = Recursion::paper;
-  return settings;
-}
-
-}  // namespace
-
-TEST_CASE("a face test is caused by the refinement that added the later of its faces") {
-  Recorder recorder(plate(), plate(), paper());
-  recorder.begin_step(0, {}, {});
-  recorder.face_test(11, 0, Meet::cross, 0, 0);  // 1: lid of region 2, seen from outside
-  recorder.refine(Side::a, 2, 3);                // 2: brings in faces 2, 7, 10
-  recorder.face_test(10, 0, Meet::cross, 1, 0);  // 3: lid of region 1
-  recorder.refine(Side::a, 1, 3);                // 4
-  recorder.refine(Side::b, 2, 3);                // 5
-  recorder.face_test(3, 0, Meet::touch, 2, 0);   // 6: A's face came with 4, B's was there
-  recorder.face_test(2, 2, Meet::touch, 1, 1);   // 7: 2 and 5
-  recorder.face_test(0, 7, Meet::touch, 0, 1);   // 8: only B's
-  recorder.refine(Side::b, 2, 0);                // 9: another lid of it, no new faces
-  recorder.face_test(0, 7, Meet::touch, 0, 1);   // 10
-  recorder.begin_step(1, {}, {});                // 11
-  recorder.face_test(3, 7, Meet::touch, 2, 1);   // 12: nothing was refined in this step
-  const Trace t = recorder.take();
-  CHECK(t.events[1].cause == kNull);
-  CHECK(t.events[3].cause == 2);
-  CHECK(t.events[6].cause == 4);
-  CHECK(t.events[7].cause == 5);
-  CHECK(t.events[8].cause == 5);
-  CHECK(t.events[10].cause == 5);
-  CHECK(t.events[12].cause == kNull);
-}
-
 TEST_CASE("beyond the cap, events are counted and not stored") {
   const LrbRep box(toy::dented_box());
   const runs::Run whole = runs::record(box, box, runs::kBoxPoses);
