@@ -156,38 +156,3 @@ TEST_CASE("pixels of a canvas: sizes, colours, transparency") {
   CHECK(image.at(80, 20) == render::Rgba{0, 0, 255, 255});
   CHECK(image.at(80, 80).a == 0);
 }
-
-TEST_CASE("texts of an SVG may be outlines, which need no font; its size may be in mm" *
-          doctest::test_suite("font")) {
-  test::need_font();
-  render::SvgCanvas canvas(render::SvgCanvas::Texts::outlines);
-  canvas.text({{50, 20}, "<l>", 10, false, render::kBlack, render::Align::centre, render::kWhite});
-  const std::string svg = render::svg_file(canvas, {72 / 25.4 * 85, 40, 0.75, {}, render::kWhite, true});
-  CHECK(count(svg, "width=\"85mm\"") == 1);
-  CHECK(count(svg, "<text") == 0);
-  CHECK(count(svg, "aria-label=\"&lt;l&gt;\"") == 1);
-  CHECK(count(svg, "<path") == 2);  // the halo below the text
-  // An l is a rectangle between the other two glyphs, around the middle of the line.
-  const std::string l =
-      render::text_outlines({{50, 20}, "l", 10, false, render::kBlack, render::Align::centre});
-  CHECK(count(l, "L") >= 3);
-  CHECK(count(l, "Z") == 1);
-  const double x = std::stod(l.substr(1));
-  CHECK(std::abs(x - 50) < 1);
-}
-
-TEST_CASE("an SVG canvas holds pictures and clips") {
-  render::SvgCanvas canvas;
-  canvas.begin_clip({Vector2d(1, 2), Vector2d(4, 6)});
-  canvas.picture(render::Image(2, 2), {Vector2d(0, 0), Vector2d(8, 4)});
-  canvas.end_clip();
-  const std::string svg = render::svg_file(canvas, {80, 40, 0.75, "<", render::kWhite});
-  CHECK(count(svg, "<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\"/></clipPath>") == 1);
-  CHECK(count(svg, "clip-path=\"url(#clip1)\"") == 1);
-  CHECK(count(svg, "<image x=\"0\" y=\"0\" width=\"8\" height=\"4\"") == 1);
-  CHECK(
-      count(svg,
-            " xmlns:xlink=\"http://www.w3.org/1999/xlink\" xlink:href=\"data:image/png;base64,iVBORw0KGgo") ==
-      1);
-  CHECK(count(svg, "<title>&lt;</title>") == 1);
-}

