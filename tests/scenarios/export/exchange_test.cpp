@@ -224,16 +224,6 @@ TEST_CASE("GLB: a node per part, triangles of all fans, positions around a centr
   CHECK(json["buffers"][0]["byteLength"] == bin.size());
 }
 
-TEST_CASE("the page on formats has the names of all columns") {
-  const std::string page = test::slurp(LRB_SOURCE_DIR "/docs/formats.md");
-  const ShippedRun run("collision", {true, true, true, {true, true}});
-  CHECK(run.model.columns.size() > 14);
-  for (const Column& c : run.model.columns) {
-    CAPTURE(c.name);
-    CHECK(page.find("`" + std::string(c.name) + "`") != std::string::npos);
-  }
-}
-
 TEST_CASE("2D bodies are exported as lines") {
   const ShippedRun r("figure1", {false, true, false, {true, true}});
   REQUIRE(!r.model.parts.empty());

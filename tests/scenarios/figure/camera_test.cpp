@@ -15,29 +15,6 @@
 using namespace lrb;
 using Eigen::Vector3d;
 
-TEST_CASE("picture settings in a trace are read back unchanged") {
-  render::FrameSpec frames;
-  frames.width = 300, frames.height = 200, frames.dpi = 150;
-  frames.montage = 6, frames.montage_columns = 3;
-  render::FrameSpec::View view;
-  view.camera = render::FrameSpec::Camera::fixed;
-  view.eye = {1, 2, 3}, view.target = {0.1, 0.2, 1.0 / 3};
-  view.orthographic = true, view.zoom = 1.5, view.wrapper = false;
-  view.title = "a \"title\"";
-  view.look_at = Vector3d(0, 0.5, 0);
-  frames.views = {view, {}};
-  const render::FrameSpec read = spec::read_pictures(spec::pictures_text(frames), "x");
-  CHECK(spec::pictures_text(read) == spec::pictures_text(frames));
-  REQUIRE(read.views.size() == 2);
-  CHECK(read.views[0].target == view.target);
-  CHECK(read.views[0].look_at == view.look_at);
-  CHECK(read.views[0].orthographic);
-  CHECK(read.montage_columns == 3);
-  CHECK(spec::read_pictures("", "x", frames).width == 300);
-  CHECK_THROWS_AS(spec::read_pictures(R"({"size":[1,2]})", "x"), InputError);
-  CHECK_THROWS_AS(spec::read_pictures(R"({"view":[]})", "x"), InputError);
-}
-
 TEST_CASE("a long body is viewed from its long side, whatever the up direction") {
   const Eigen::AlignedBox3d along_x(Vector3d(0, 0, 0), Vector3d(4, 1, 1));
   const Vector3d z_up = run::broadside(along_x, {0, 0, 1});

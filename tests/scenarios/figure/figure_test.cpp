@@ -107,25 +107,6 @@ TEST_CASE("panels of two bodies: time steps, including the first contact") {
   CHECK_THROWS_AS(choose(s.run, {Choice::By::layers, {}}), InputError);
 }
 
-TEST_CASE("the default series omits states that look like the one before, and reports it") {
-  const Shipped s("figure2");
-  FigureSpec spec;
-  spec.format = FigureSpec::Format::svg;
-  CHECK(draw_figure(s.run, {}, spec, run::kSilent).notes.empty());
-  spec.choice.panels = 26;
-  spec.width = 60 * kPointsPerMm;
-  const Figure many = draw_figure(s.run, {}, spec, run::kSilent);
-  CHECK(many.panels < 26);
-  CHECK(many.panels > 5);
-  CHECK(many.caption.find("outermost wrapper, 8 faces") != std::string::npos);
-  CHECK(many.caption.find("the body, 144 faces") != std::string::npos);
-  REQUIRE(many.notes.size() == 1);
-  CHECK(many.notes[0].find("omitted: in grey and at this width") != std::string::npos);
-  // Requested states are shown.
-  spec.choice = {Choice::By::events, {1, 2}};
-  CHECK(draw_figure(s.run, {}, spec, run::kSilent).panels == 2);
-}
-
 TEST_CASE("a figure of a 2D body consists of lines and text, without pixels") {
   const Shipped s("figure2");
   FigureSpec spec;

@@ -57,22 +57,6 @@ TEST_CASE("text cannot become markup or end the data") {
   CHECK(count(html, "<script") == count(html, "</script>"));
 }
 
-TEST_CASE("a page has each module of its view once, after those that it imports") {
-  const std::string html = report::Document("t").scene("{}").html();
-  for (const io::EmbeddedFile& file : io::embedded_files()) {
-    const std::string name(file.name.substr(0, file.name.find('.')));
-    if (!name.starts_with("scene") || !file.name.ends_with(".js")) continue;
-    const std::size_t begin = html.find("const " + name + "_js = (() => {\n");
-    REQUIRE_MESSAGE(begin != std::string::npos, name);
-    CHECK_MESSAGE(count(html, "const " + name + "_js = ") == 1, name);
-    for (std::size_t use = html.find("} = " + name + "_js;"); use != std::string::npos;
-         use = html.find("} = " + name + "_js;", use + 1))
-      CHECK_MESSAGE(begin < use, name);
-  }
-  CHECK(count(html, "\nimport ") == 0);
-  CHECK(count(html, "\nexport ") == 0);
-}
-
 TEST_CASE("modules import what others export") {
   const std::regex import("import \\{ (.*) \\} from \"\\./(.*)\";"), name("\\w+");
   int imports = 0;
@@ -104,20 +88,6 @@ TEST_CASE("a document writes its page and the files that it names, and locks its
   const report::Folder locked(out);
   CHECK_THROWS_AS(doc.write(out), EnvironmentError);
   doc.write(locked);
-}
-
-TEST_CASE("charts for print: each panel has its series, and one legend has each label once") {
-  report::Chart chart{
-      "left", {"x", true, 1, 100, {{1, "0"}, {10, "10 %"}}}, {"y"}, {{"it's", {1, 2}, {3, 4}}}};
-  chart.series.push_back({"bars", {1, 2}, {3, 4}, {report::Line::none, "#123456", "rect"}, {2, 3}, {4, 5}});
-  const report::Chart panels[] = {chart, chart};
-  const std::string script = report::gnuplot(panels, {2, 40, 40, 8, ""}).script;
-  for (const char* part :
-       {"$p0s0 << ", "$p1s1 << ", "set title 'left'", "set logscale x", "('0' 1, '10 %%' 10)"})
-    CHECK_MESSAGE(script.find(part) != std::string::npos, std::string(part));
-  CHECK(count(script, "with yerrorbars lc rgb '#123456' pt 5") == 2);
-  CHECK(count(script, "\"it's\"") == 1);
-  CHECK(count(report::gnuplot(panels).script, " title 'it''s'") == 2);
 }
 
 TEST_CASE("pictures stay PNGs if they fit, and are reduced otherwise") {

@@ -148,6 +148,7 @@ TEST_CASE("page data of a run names omissions and where to find them") {
   run::SceneLimits limits;
   limits.events = 100;
   limits.faces = 10;
+  limits.explained = {.pairs = 5, .steps = 1};
   const json scene = json::parse(run::scene_json(run_of(r), {"trace.json.gz", ""}, limits));
   CHECK(scene["events"]["count"] <= 100);
   CHECK(scene["events"]["id"] != "");
@@ -155,6 +156,9 @@ TEST_CASE("page data of a run names omissions and where to find them") {
   CHECK(thinned.find("trace.json.gz contains all of them") != std::string::npos);
   CHECK(large.find("the limit for a page is 10") != std::string::npos);
   CHECK_FALSE(scene["bodies"][0].contains("geometry"));
+  CHECK(scene["why"]["pairs"]["count"] == 5);
+  CHECK(scene["why"]["steps"].size() == 1);
+  CHECK(scene["why"]["cut"].get<std::string>().starts_with("This page explains 5 of the "));
 }
 
 TEST_CASE("page data of large bodies lacks pseudo faces that no wrapper shows") {
@@ -214,18 +218,6 @@ TEST_CASE("page data of a run explains each pair of a step once, and each step w
     CHECK((step["roots"]["gap"] > 0 || !step["boxes"].is_null() || step["facePairs"] > 0));
     if (!step["plane"].is_null()) CHECK(step["plane"]["gap"] > 0);
   }
-}
-
-TEST_CASE("page data of a run has the number of explained pairs if some are omitted") {
-  const run::Recording r = rocks_that_meet();
-  run::SceneLimits limits;
-  limits.explained.pairs = 5;
-  limits.explained.steps = 1;
-  const json why = json::parse(run::scene_json(run_of(r), {"trace.json", ""}, limits))["why"];
-  CHECK(why["pairs"]["count"] == 5);
-  CHECK(why["steps"].size() == 1);
-  const std::string cut = why["cut"];
-  CHECK(cut.rfind("This page explains 5 of the ", 0) == 0);
 }
 
 TEST_CASE("page data of a run explains only answers of the complete query") {
