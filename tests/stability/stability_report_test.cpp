@@ -66,12 +66,6 @@ TEST_CASE("rejections are not failures, and the first failing difficulty is foun
   CHECK_FALSE(c.only_rejected());
 }
 
-TEST_CASE("an inconsistent grid is rejected") {
-  Grid grid = made_up_grid();
-  grid.cells.pop_back();
-  CHECK_THROWS_AS(stability_page(grid, ".", {}), InputError);
-}
-
 TEST_CASE("without gnuplot the page is written, with one line on the missing program") {
   const GnuplotIs none("lrbscope-has-no-such-program");
   const std::string folder = scratch_folder("no_gnuplot");
@@ -171,18 +165,4 @@ TEST_CASE("every family's cases can be drawn at the lowest and highest difficult
         } catch (const InputError&) {
         }
     }
-}
-
-TEST_CASE("a case is determined by seed, index and difficulty") {
-  const cases::Family& family = *cases::find_family("sliver");
-  const auto hash = [&](std::uint64_t seed, int difficulty, std::uint64_t index) {
-    const cases::Case c = cases::make_case(family, seed, difficulty, index);
-    return std::pair(c.a->hash() ^ c.b->hash(), c.pose_b.t.x());
-  };
-  CHECK(hash(1, 4, 7) == hash(1, 4, 7));
-  CHECK(hash(1, 4, 7) != hash(2, 4, 7));
-  CHECK(hash(1, 4, 7) != hash(1, 4, 8));
-  CHECK(hash(1, 4, 7) != hash(1, 5, 7));
-  CHECK_THROWS_AS(cases::make_case(family, 1, cases::kDifficulties, 0), InputError);
-  CHECK_THROWS_AS(cases::make_case(family, 1, -1, 0), InputError);
 }
