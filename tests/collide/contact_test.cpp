@@ -37,12 +37,9 @@ Mesh torn(const Mesh& mesh) {
   Mesh out;
   out.dim = mesh.dim;
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    std::vector<VertexId> corners;
-    for (const VertexId v : mesh.face(f)) {
-      corners.push_back(static_cast<VertexId>(out.vertices.size()));
-      out.vertices.push_back(mesh.vertices[v]);
-    }
-    out.add_face(corners);
+    std::vector<Eigen::Vector3d> corners;
+    for (const VertexId v : mesh.face(f)) corners.push_back(mesh.vertices[v]);
+    test::add_loose(out, corners);
   }
   return out;
 }
@@ -144,16 +141,6 @@ TEST_CASE("a corner on a face touches in a point; an edge on a face in a segment
   CHECK(contact(floor, closed(prism), tip).relation == Relation::crossing);
 }
 
-TEST_CASE("a stick through both walls of a bowl has four regions, each a closed loop") {
-  const LrbRep bowl = closed(shapes::bowl(24, 12, 0.2));
-  const LrbRep stick = closed(shapes::box({-3, -0.05, -0.45}, {3, 0.04, -0.36}));
-  const CollideResult r = contact(bowl, stick, Pose{});
-  CHECK(r.relation == Relation::crossing);
-  REQUIRE(r.regions.size() == 4);
-  for (const ContactRegion& region : r.regions)
-    for (const ContactLoop& loop : region.loops) CHECK(loop.closed);
-}
-
 /// Checks that each half-edge runs along its loop, in simplices that neighbour those of the one before.
 void check_half_edges(const LrbRep& a, const LrbRep& b, const CollideResult& r) {
   for (const ContactRegion& region : r.regions)
@@ -198,53 +185,6 @@ TEST_CASE("half-edges around contacts lead from simplex to neighbouring simplex 
   check_half_edges(box, box, contact(box, box, Pose::translation({0.5, 0.25, 0.125})));
 }
 
-TEST_CASE("two spheres meet in one circle") {
-  const LrbRep ball = closed(shapes::icosphere(4));
-  Pose p = Pose::rotation({1, 2, 3}, 0.3, {1.6, 0, 0});
-  const CollideResult r = contact(ball, ball, p);
-  REQUIRE(r.regions.size() == 1);
-  const ContactRegion& c = r.regions[0];
-  const double radius = 0.6;  // sqrt(1 - 0.8^2)
-  CHECK(c.length == doctest::Approx(2 * 3.14159265 * radius).epsilon(0.03));
-  CHECK(c.area == doctest::Approx(3.14159265 * radius * radius).epsilon(0.04));
-  CHECK(near(c.centroid, {0.8, 0, 0}, 0.01));
-  CHECK(near(c.normal, {1, 0, 0}, 0.01));
-  CHECK(c.depth_estimate == doctest::Approx(0.4).epsilon(0.05));
-}
-
-TEST_CASE("interiors: inscribed bodies overlap, kissing bodies do not, though no two faces cross") {
-  // A tetrahedron inscribed in a cube: all its corners and edges lie on the cube's surface.
-  Mesh inscribed;
-  inscribed.vertices = {{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}};
-  for (const auto& f : std::vector<std::array<VertexId, 3>>{{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}})
-    inscribed.add_face(f);
-  const CollideResult in = contact(closed(shapes::box()), closed(inscribed), Pose{});
-  CHECK(in.relation == Relation::touching);
-  CHECK(in.interiors_overlap == Answer::yes);
-
-  const CollideResult same = contact(closed(shapes::icosphere(1)), closed(shapes::icosphere(1)), Pose{});
-  CHECK(same.relation == Relation::touching);
-  CHECK(same.interiors_overlap == Answer::yes);
-
-  const CollideResult corner =
-      contact(closed(shapes::box()), closed(shapes::box()), Pose::translation({1, 1, 1}));
-  CHECK(corner.relation == Relation::touching);
-  CHECK(corner.interiors_overlap == Answer::no);
-  REQUIRE(corner.regions.size() == 1);
-  CHECK(near(corner.regions[0].centroid, {1, 1, 1}));
-
-  // A smaller box inside a larger one, resting on the inner side of its floor.
-  const CollideResult standing =
-      contact(closed(shapes::box({0, 0, 0}, {3, 3, 3})), closed(shapes::box()), Pose::translation({1, 1, 0}));
-  CHECK(standing.relation == Relation::touching);
-  CHECK(standing.interiors_overlap == Answer::yes);
-
-  const CollideResult in_void =
-      contact(closed(shapes::box_with_void()), closed(shapes::box()), Pose::translation({1, 1, 1}));
-  CHECK(in_void.relation == Relation::touching);  // fills the void exactly: every wall in contact
-  CHECK(in_void.interiors_overlap == Answer::no);
-}
-
 TEST_CASE("2D: segments cross in points and touch along lengths") {
   const LrbRep square = closed(shapes::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}));
   const CollideResult beside = contact(square, square, Pose::translation({1, 0.25, 0}));
@@ -287,20 +227,9 @@ std::set<VertexId> located_vertices(QueryContext& context, Side side, const std:
   return found;
 }
 
-}  // namespace
-
-namespace {
-
 void check_enclosed(int poses) {
-  Mesh two_boxes = shapes::box({-1, -1, -1}, {1, 1, 1});  // the surface intersects itself
-  const Mesh more = shapes::box({0, 0, 0}, {2, 2, 2});
-  const auto first = static_cast<std::uint32_t>(two_boxes.vertices.size());
-  two_boxes.vertices.insert(two_boxes.vertices.end(), more.vertices.begin(), more.vertices.end());
-  for (FaceId f = 0; f < more.face_count(); ++f) {
-    std::vector<VertexId> corners;
-    for (const VertexId v : more.face(f)) corners.push_back(VertexId(v.value() + first));
-    two_boxes.add_face(corners);
-  }
+  const Mesh two_boxes =  // the surface intersects itself
+      shapes::several({shapes::box({-1, -1, -1}, {1, 1, 1}), shapes::box({0, 0, 0}, {2, 2, 2})});
   const LrbRep bodies[] = {closed(shapes::icosphere(4)), closed(hard::tiles(6)), closed(hard::crown(20)),
                            closed(shapes::bowl(24, 12, 0.2)), closed(two_boxes)};
   std::mt19937 random(5);

@@ -177,14 +177,5 @@ TEST_CASE("wrong signs of plain doubles are reported next to the exact sign") {
   CHECK(wrong > 0);
 }
 
-TEST_CASE("an invalid simplex number is rejected with the number") {
-  const LrbRep body = build_lrb(icosphere(1));
-  const std::string count = std::to_string(body.real_simplex_count());
-  CHECK_THROWS_WITH_AS(explain_pair(body, {}, body, {}, {SimplexId(body.real_simplex_count()), 0}),
-                       ("simplex of A: expected a number below " + count + ", found " + count).c_str(),
-                       InputError);
-  CHECK_THROWS_AS(explain_pair(body, {}, body, {}, {0, SimplexId(99999)}), InputError);
-}
-
 }  // namespace
 }  // namespace lrb::test

@@ -174,32 +174,6 @@ TEST_CASE("manifold of a box on a plate: its four corners, at any gap and depth,
       }
 }
 
-TEST_CASE("manifold of a tilted box: its deepest corner or edge, with the normal of the plate") {
-  const LrbRep box = closed(kBox), plate = closed(fine_plate(40));
-  for (const double margin : {0.0, 0.01}) {
-    const Pose on_edge = Pose::rotation({1, 0, 0}, 0.5, {0.1, 0.2, 0.5 * std::sin(0.5) - 0.005});
-    const ManifoldResult edge = contact_manifolds(plate, {}, box, on_edge, with_margin(margin));
-    REQUIRE(edge.manifolds.size() == 1);
-    CHECK((edge.manifolds[0].normal - Vector3d(0, 0, 1)).norm() < 1e-15);
-    std::set<std::uint32_t> corners;
-    for (int i = 0; i < 2; ++i) {
-      const ManifoldPoint& p = edge.manifolds[0].points[static_cast<std::size_t>(i)];
-      CHECK(p.depth == doctest::Approx(0.005));
-      if (p.on[1].kind == FeatureKind::vertex) corners.insert(p.on[1].first);
-    }
-    CHECK(corners.size() == 2);
-    Pose on_corner = Pose::rotation({1, -0.7, 0.1}, 0.6, {0.1, 0.2, 0});
-    double lowest = 1;
-    for (const Vector3d& x : box.vertices()) lowest = std::min(lowest, on_corner.apply(x).z());
-    on_corner.t.z() = -0.005 - lowest;
-    const ManifoldResult corner = contact_manifolds(plate, {}, box, on_corner, with_margin(margin));
-    REQUIRE(corner.manifolds.size() == 1);
-    CHECK((corner.manifolds[0].normal - Vector3d(0, 0, 1)).norm() < 1e-15);
-    CHECK(corner.manifolds[0].points[0].depth == doctest::Approx(0.005));
-    CHECK(corner.manifolds[0].points[0].on[1].kind == FeatureKind::vertex);
-  }
-}
-
 TEST_CASE("manifold of two crossing edges: their normal, and one point on each") {
   const LrbRep cube = closed(shapes::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const Pose pose_a = Pose::rotation({1, 0, 0}, std::numbers::pi / 4);
