@@ -29,19 +29,19 @@ TEST_CASE(
     "on kept wrappers the paper's recursion gives the answers of queries from scratch for bodies of any size") {
   for (const double size : {1e-310, 1e-200, 1e-160, 1e-82, 1.0, 1e100, 1e150, 1e200, 1e300}) {
     CAPTURE(size);
-    const LrbRep a = build_lrb(shapes::scaled(shapes::icosphere(2), size)),
-                 b = build_lrb(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size));
+    const LrbRep a = build_lrb(shapes::scaled(shapes::icosphere(1), size)),
+                 b = build_lrb(shapes::scaled(shapes::bumpy_sphere(1, 6, 0.2), size));
     CollideRequest request;
     request.recursion = Recursion::paper;
     CoherentQuery query(a, b, request);
     std::size_t contacts = 0;
-    for (int step = 0; step < 40; ++step) {
-      const Pose p = Pose::translation({size * (2.3 - 0.02 * step), 0.1 * size, 0});
+    for (int step = 0; step < 20; ++step) {
+      const Pose p = Pose::translation({size * (2.3 - 0.04 * step), 0.1 * size, 0});
       const std::vector<SimplexPair> expected = collide(a, Pose{}, b, p, request).pairs;
       CHECK(query.collide(Pose{}, p).pairs == expected);
       contacts += !expected.empty();
     }
-    CHECK(contacts > 10);
+    CHECK(contacts > 5);
   }
 }
 
@@ -97,7 +97,7 @@ TEST_CASE(
     options.max_lids = 12;
     const LrbRep rep = check_mesh(mesh).buildable() ? build_lrb(mesh, options) : test::open_body(mesh);
     RandomEngine random(5);
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 10; ++i) {
       Pose p = random_pose(random, rep, rep, uniform(random, 0.3, 0.9));
       if (i % 5 == 4 && mesh.dim == 3) p.r *= Eigen::Vector3d(1, 0.5, -2).asDiagonal();  // not rigid
       const auto expected = brute_force(rep, Pose{}, rep, p).pairs;
@@ -127,7 +127,7 @@ TEST_CASE(
   using namespace shapes;
   const LrbRep reps[] = {*generators::generate_rep(
                              "fractal", {{"real_faces", 144}, {"total_faces", 168}, {"outer_faces", 6}}, 2),
-                         build_lrb(bumpy_sphere(3, 1, 0.4)), build_lrb(quad_torus(20, 10)),
+                         build_lrb(bumpy_sphere(2, 1, 0.4)), build_lrb(quad_torus(16, 8)),
                          build_lrb(comb_2d(5))};
   RandomEngine random(7);
   for (const LrbRep& rep : reps) {
