@@ -37,9 +37,9 @@ Rgba Context::built_colour(RegionId r) const {
 }
 
 std::vector<Eigen::Vector3d> Context::corners(FaceId f, const Eigen::Vector3d& moved) const {
-  std::vector<Eigen::Vector3d> x;
-  for (const VertexId v : body.rep->face(f)) x.push_back(body.pose.apply(body.rep->vertices()[v]) + moved);
-  return x;
+  std::vector<Eigen::Vector3d> at = corners_of(*body.rep, f, body.pose);
+  for (Eigen::Vector3d& x : at) x += moved;
+  return at;
 }
 
 std::vector<FaceId> Context::pseudo_in_contact() const {
@@ -289,6 +289,12 @@ Scene build_scene(std::span<const SceneBody> bodies, const SceneHighlight& highl
   return out;
 }
 
+std::vector<Eigen::Vector3d> corners_of(const LrbRep& rep, FaceId face, const Pose& pose) {
+  std::vector<Eigen::Vector3d> out;
+  for (const VertexId v : rep.face(face)) out.push_back(pose.apply(rep.vertices()[v]));
+  return out;
+}
+
 std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose) {
   std::vector<Eigen::Vector3d> out;
   for (const auto& x : rep.vertices()) out.push_back(pose.apply(x));
@@ -302,7 +308,7 @@ Eigen::Vector3d centroid(const LrbRep& rep, const Pose& pose, std::span<const Fa
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::size_t count = 0;
   for (const FaceId f : faces) {
-    for (const VertexId v : rep.face(f)) sum += pose.apply(rep.vertices()[v]);
+    for (const Eigen::Vector3d& x : render::corners_of(rep, f, pose)) sum += x;
     count += rep.face(f).size();
   }
   return count > 0 ? Eigen::Vector3d(sum / static_cast<double>(count)) : sum;
@@ -311,19 +317,23 @@ Eigen::Vector3d centroid(const LrbRep& rep, const Pose& pose, std::span<const Fa
 }  // namespace
 
 Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, double explode) {
-  constexpr double kLayerStep = 0.12;  // 3D: extra displacement per layer, as a share of the body's radius
-  // Regions move away from the centre of the outermost wrapper. Extra distance per layer separates nested
-  // regions.
+  constexpr double kSpread = 1.1;  // way of the outermost layer, as a share of the wrapper's radius
+  // The outermost layer rises first, and the others follow, one after the other.
+  const double layers = rep.layer_count(), rise = explode * layers - (layers - 1 - rep.layer(r));
+  if (!(rise > 0)) return Eigen::Vector3d::Zero();
+  // A region moves where its lids look.
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();
+  for (const FaceId f : rep.lids(r)) {
+    const std::vector<Eigen::Vector3d> x = corners_of(rep, f, pose);
+    if (rep.dim() == 2) out += (x[1] - x[0]).cross(Eigen::Vector3d::UnitZ());
+    for (std::size_t i = 1; i + 1 < x.size(); ++i) out += (x[i] - x[0]).cross(x[i + 1] - x[0]);
+  }
   const Eigen::Vector3d centre = centroid(rep, pose, rep.outermost_faces());
-  const Eigen::Vector3d out = centroid(rep, pose, rep.collector(r)) - centre;
-  if (rep.dim() == 2) return explode * out;
+  if (out.isZero(0)) out = centroid(rep, pose, rep.lids(r)) - centre;
   double radius = 0;
   for (const FaceId f : rep.outermost_faces())
-    for (const VertexId v : rep.face(f))
-      radius = std::max(radius, (pose.apply(rep.vertices()[v]) - centre).norm());
-  const double length = out.norm();
-  const double way = length + kLayerStep * radius * (1 + rep.layer(r));
-  return length > 0 ? Eigen::Vector3d(out * (explode * way / length)) : Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& x : corners_of(rep, f, pose)) radius = std::max(radius, (x - centre).norm());
+  return out.stableNormalized() * (kSpread * radius * rise / layers);
 }
 
 Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, FaceId f, double explode) {

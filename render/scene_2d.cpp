@@ -167,7 +167,7 @@ class Scene2dBuilder {
     for (FaceId f = 0; f < rep_.real_face_count(); ++f) add_segment(fill, f, Vector3d::Zero());
     c_.out.list.fills.push_back(std::move(fill));
     c_.add_key(Mark::solid, c_.out.list.fills.back().colour,
-               c_.name() + (ghost ? ", the rest" : ", the solid"));
+               c_.name() + (ghost ? ", the rest" : ", real faces"));
     std::vector<FaceId> real(rep_.real_face_count());
     for (FaceId f = 0; f < real.size(); ++f) real[f] = f;
     if (c_.options.colour_by == ColourBy::value && !c_.body.face_values.empty()) {
@@ -209,9 +209,26 @@ class Scene2dBuilder {
     }
     add_lines(inside, region_edge(), 1.1F, 0);
     // In a construction these regions do not exist yet.
-    if (!c_.building()) add_lines(gone, style_.pale(body_, 0.45), 1, 5);
-    if (!gone.empty() && !c_.building())
-      c_.add_key(Mark::dashed, style_.pale(body_, 0.45), c_.name() + ", refined");
+    if (c_.building() || gone.empty()) return;
+    add_lines(uncovered(gone), style_.pale(body_, 0.45), 1, 5);
+    c_.add_key(Mark::dashed, style_.pale(body_, 0.45), c_.name() + ", pseudo faces refined");
+  }
+
+  /// Leaves out faces that lie on another one: two dashed lines on each other would look solid.
+  std::vector<FaceId> uncovered(const std::vector<FaceId>& faces) const {
+    constexpr double kNear = 1e-3;  // of the length: less than a line's width
+    const auto is_on = [&](FaceId f, FaceId g) {
+      const std::vector<Vector3d> x = c_.corners(f, Vector3d::Zero()), y = c_.corners(g, Vector3d::Zero());
+      std::vector<Cover> covers;
+      add_cover({x[0], x[1]}, {y[0], y[1]}, kNear * (y[1] - y[0]).norm(), covers);
+      return !covers.empty() && covers[0].to - covers[0].from > 1 - kNear;
+    };
+    std::vector<FaceId> out;
+    for (const FaceId f : faces)
+      if (std::none_of(faces.begin(), faces.end(),
+                       [&](FaceId g) { return g != f && is_on(f, g) && (g < f || !is_on(g, f)); }))
+        out.push_back(f);
+    return out;
   }
 
   void wrapper_line() {
@@ -241,13 +258,7 @@ class Scene2dBuilder {
     for (const FaceId f : boundary)
       if (rep_.is_real(f)) real.push_back(f);
     add_lines(real, colour, width, 0);
-    for (const Segment2d& s : rest) {
-      DrawLine line;
-      line.points = {s[0], s[1]};
-      line.colour = colour;
-      line.width = width * scale_;
-      c_.out.list.lines.push_back(std::move(line));
-    }
+    for (const Segment2d& s : rest) add_line({s[0], s[1]}, false, colour, width, 0);
   }
 
   void add_segment(DrawFill& fill, FaceId f, const Vector3d& by) const {
@@ -261,15 +272,14 @@ class Scene2dBuilder {
     for (const FaceId f : faces) segments.push_back({rep_.face(f)[0], rep_.face(f)[1]});
     // Chains, so that dashes and joins run through vertices.
     for (const Chain& chain : chains(segments)) {
-      DrawLine line;
-      for (const VertexId v : chain.vertices)
-        line.points.push_back(c_.body.pose.apply(rep_.vertices()[v]) + by);
-      line.closed = chain.closed;
-      line.colour = colour;
-      line.width = width * scale_;
-      line.dash = dash * scale_;
-      c_.out.list.lines.push_back(std::move(line));
+      std::vector<Vector3d> points;
+      for (const VertexId v : chain.vertices) points.push_back(c_.body.pose.apply(rep_.vertices()[v]) + by);
+      add_line(std::move(points), chain.closed, colour, width, dash);
     }
+  }
+
+  void add_line(std::vector<Vector3d> points, bool closed, Rgba colour, float width, float dash) {
+    c_.out.list.lines.push_back({std::move(points), closed, colour, width * scale_, dash * scale_});
   }
 
   const Context& c_;

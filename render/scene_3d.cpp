@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "render/scene_parts.hpp"
@@ -76,7 +77,6 @@ class Scene3dBuilder {
           is_region(behind) && (c_.refining(behind.as_region()) || c_.built(behind.as_region()));
       if (!rep_.is_real(f) && !c_.in_contact(f) && !drawn_apart) lids.push_back(f);
     }
-    const bool telling = c_.options.colour_by != ColourBy::kind;
     if (c_.options.borders) mark_region_borders(lids);
     // Translucent, in the painting order that the rasterizer determines.
     for (const FaceId f : lids) {
@@ -89,12 +89,15 @@ class Scene3dBuilder {
     }
     if (c_.building()) return built_lids(!lids.empty());
     if (lids.empty()) return;
-    if (!telling)
+    add_lid_key(lids.front());
+  }
+
+  void add_lid_key(FaceId lid) {
+    if (c_.options.colour_by == ColourBy::kind)
       c_.add_key(Mark::translucent, c_.colour(), c_.name() + ", pseudo faces",
-                 LegendItem::Swatch{lid_colour(lids.front()), lid_edge_colour(), c_.colour()});
-    if (c_.options.colour_by == ColourBy::region) {
+                 LegendItem::Swatch{lid_colour(lid), lid_edge_colour(), c_.colour()});
+    if (c_.options.colour_by == ColourBy::region)
       c_.add_key(Mark::translucent, palette::category(0), "pseudo faces, one colour per region");
-    }
   }
 
   /// Draws the lids that a construction has just made, opaque like real faces. `others`: there are earlier
@@ -198,7 +201,7 @@ class Scene3dBuilder {
   // ---- single regions
 
   void isolate() {
-    for (const RegionId r : c_.isolated()) region(r, Vector3d::Zero(), true);
+    for (const RegionId r : c_.isolated()) region(r);
     if (!c_.isolated().empty()) {
       const Rgba colour = c_.region_colour(c_.isolated().front());
       c_.add_key(Mark::solid, colour,
@@ -214,43 +217,48 @@ class Scene3dBuilder {
     c_.add_key(Mark::translucent, c_.colour(), c_.name() + ", the rest");
   }
 
+  /// Draws the lids of the outer layers away from the body, and the outermost lids that stay.
   void explode() {
     real_faces();
-    bool any = false;
-    for (RegionId r = 0; r < rep_.region_count(); ++r) {
-      if (c_.body.wrapper != nullptr && !c_.included(r) && !c_.refining(r)) continue;
-      region(r, exploded_way(rep_, c_.body.pose, r, c_.options.explode), false);
-      any = true;
-    }
-    if (any) {
-      const bool each = c_.options.colour_by == ColourBy::region;
-      c_.add_key(Mark::solid, each ? palette::category(0) : style_.pale(c_.colour(), 0.5),
-                 each ? "regions, one colour each" : c_.name() + ", regions");
+    const auto is_shown = [&](CellId cell) {
+      return is_region(cell) &&
+             (c_.body.wrapper == nullptr || c_.included(cell) || c_.refining(cell.as_region()));
+    };
+    std::vector<Vector3d> ways;
+    for (RegionId r = 0; r < rep_.region_count(); ++r)
+      ways.push_back(exploded_way(rep_, c_.body.pose, r, c_.options.explode));
+    for (FaceId f(rep_.real_face_count()); f < rep_.face_count(); ++f) {
+      if (!is_shown(rep_.inner_cell(f))) continue;
+      const RegionId r = rep_.inner_cell(f).as_region();
+      const CellId before = rep_.outer_cell(f);
+      if (ways[r].isZero(0) && is_shown(before) && ways[before.as_region()].isZero(0)) continue;
+      DrawTriangle t =
+          translucent(c_.refining(r) ? with_alpha(style_.refining, kRefiningAlpha) : lid_colour(f));
+      t.edges = 7;
+      t.edge_style = c_.refining(r) ? refining_edges_ : lid_edges_;
+      add_face(f, t, ways[r]);
+      add_lid_key(f);
     }
   }
 
-  /// Draws a single region: its floor opaque, its lids opaque or translucent so that the floor is visible.
-  void region(RegionId r, const Vector3d& moved, bool open) {
+  /// Draws a single region: its floor opaque, its lids translucent so that the floor is visible.
+  void region(RegionId r) {
     Rgba colour = c_.region_colour(r);
     if (c_.options.colour_by == ColourBy::kind) colour = style_.pale(colour, 0.5);
-    if (exploded() && c_.refining(r)) colour = style_.refining;
     // A face of the collector is a lid if the region is on its inner side, else floor.
     for (const FaceId f : rep_.collector(r)) {
-      const bool lid = rep_.inner_cell(f) == r;
       DrawTriangle t;
       t.colour = c_.options.colour_by == ColourBy::value ? c_.colour_of(f, r) : colour;
-      if (open && lid) {
+      if (rep_.inner_cell(f) == r) {
         t = translucent(with_alpha(t.colour, kTellingAlpha));
       } else {
         t.edges = 7;
         t.edge_style = cell_edges_;
       }
-      add_face(f, t, moved);
+      add_face(f, t);
     }
-    if (open) {
-      const std::vector<FaceId> lids(rep_.lids(r).begin(), rep_.lids(r).end());
-      add_outlines(lids, {style_.edge_of(colour), 1.8F * c_.options.scale});
-    }
+    const std::vector<FaceId> lids(rep_.lids(r).begin(), rep_.lids(r).end());
+    add_outlines(lids, {style_.edge_of(colour), 1.8F * c_.options.scale});
   }
 
   // ---- helpers
@@ -287,21 +295,28 @@ class Scene3dBuilder {
     FaceId face;
   };
 
-  /// Sets borders_ to the edges of faces that have one side only, or for whose pair of faces `apart` holds.
-  template <class Apart>
-  void mark_borders(const std::vector<FaceId>& faces, const Apart& apart) {
+  /// Calls `action` with each edge of the faces, in order, and with those of the faces that have it.
+  template <class Action>
+  void for_each_edge(const std::vector<FaceId>& faces, const Action& action) const {
     std::vector<SharedEdge> edges;
     for (const FaceId f : faces)
       for (std::size_t i = 0; i < rep_.face(f).size(); ++i) edges.push_back({edge(f, i), f});
     std::sort(edges.begin(), edges.end(), [](const SharedEdge& x, const SharedEdge& y) {
       return x.edge != y.edge ? x.edge < y.edge : x.face < y.face;
     });
-    borders_.clear();
     for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
       for (end = first; end < edges.size() && edges[end].edge == edges[first].edge;) ++end;
-      if (end - first != 2 || apart(edges[first].face, edges[first + 1].face))
-        borders_.push_back(edges[first].edge);
+      action(edges[first].edge, std::span(edges).subspan(first, end - first));
     }
+  }
+
+  /// Sets borders_ to the edges of faces that have one side only, or for whose pair of faces `apart` holds.
+  template <class Apart>
+  void mark_borders(const std::vector<FaceId>& faces, const Apart& apart) {
+    borders_.clear();
+    for_each_edge(faces, [&](const Edge& at, std::span<const SharedEdge> sides) {
+      if (sides.size() != 2 || apart(sides[0].face, sides[1].face)) borders_.push_back(at);
+    });
   }
 
   void mark_region_borders(const std::vector<FaceId>& lids) {
@@ -353,30 +368,17 @@ class Scene3dBuilder {
   /// Draws edges of faces as lines, each once. Lines keep their full width at outlines, where face edges show
   /// half.
   void add_outlines(const std::vector<FaceId>& faces, const EdgeStyle& style, Edges which = Edges::all) {
-    // Undirected edges of all faces, sorted so that equal ones are neighbours.
-    std::vector<std::array<VertexId, 2>> edges;
-    for (const FaceId f : faces) {
-      const auto corners = rep_.face(f);
-      for (std::size_t i = 0; i < corners.size(); ++i) {
-        const VertexId a = corners[i], b = corners[(i + 1) % corners.size()];
-        edges.push_back({std::min(a, b), std::max(a, b)});
-      }
-    }
-    std::sort(edges.begin(), edges.end());
-    std::size_t end = 0;
-    for (std::size_t first = 0; first < edges.size(); first = end) {
-      const auto [a, b] = edges[first];
-      for (end = first; end < edges.size() && edges[end] == edges[first];) ++end;
+    for_each_edge(faces, [&](const Edge& at, std::span<const SharedEdge> sides) {
       // An edge of two faces is not on the boundary of the set.
-      if (which != Edges::all && end - first > 1) continue;
+      if (which != Edges::all && sides.size() > 1) return;
       DrawLine line;
-      line.points = {c_.body.pose.apply(rep_.vertices()[a]), c_.body.pose.apply(rep_.vertices()[b])};
+      for (const VertexId v : at) line.points.push_back(c_.body.pose.apply(rep_.vertices()[v]));
       line.colour = style.colour;
       line.width = style.width;
       line.layer = which == Edges::rim_on_top ? Layer::on_top : Layer::translucent;
       line.nudge = 2;
       c_.out.list.lines.push_back(std::move(line));
-    }
+    });
   }
 
   const Context& c_;

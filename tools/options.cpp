@@ -205,6 +205,11 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
   if (options.colour_per) spec.colour_per = *options.colour_per;
   if (options.node_boxes) spec.node_boxes = options.node_boxes;
   run::check_frame_size(spec);
+  if (options.view && *options.view > std::max<std::size_t>(1, spec.views.size()))
+    throw InputError("--view: expected at most " +
+                     std::to_string(std::max<std::size_t>(1, spec.views.size())) +
+                     ", the number of views, found " + std::to_string(*options.view));
+  if (options.view && !spec.views.empty()) spec.views = {spec.views[*options.view - 1]};
   apply(options.camera, spec.views);
 }
 
@@ -284,6 +289,8 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
 }
 
 void add_animation_option(App& app, PictureOptions& options) {
+  app.add_option("--view", options.view, "N", "Draw only this one of the run's views, from 1")
+      ->in_range(1, 6);
   app.add_option("--animate", options.animation, "OUT.png|mp4|gif|webp",
                  "Also write the frames as an animation; formats other than PNG need ffmpeg");
 }

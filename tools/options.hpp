@@ -98,7 +98,7 @@ struct PictureOptions {
   std::optional<render::StyleName> style;
   bool titles = true, legend = true;
   std::optional<render::FrameSpec::At> at;
-  std::optional<std::uint32_t> every, most;
+  std::optional<std::uint32_t> every, most, view;
   std::optional<render::FrameSpec::ColourBy> colour_by;
   std::optional<render::FrameSpec::ColourPer> colour_per;
   std::optional<std::uint32_t> node_boxes;
@@ -112,7 +112,7 @@ void add_style_option(App& app, PictureOptions& options, const std::string& usua
 void add_colour_options(App& app, PictureOptions& options);
 void apply(const PictureOptions& options, render::FrameSpec& spec);
 
-/// Adds --animate, for commands that call animate_frames().
+/// Adds --view and --animate, for commands that call animate_frames().
 void add_animation_option(App& app, PictureOptions& options);
 /// Encodes the frames in a folder as an animation, if one was requested.
 void animate_frames(const PictureOptions& options, const std::string& folder);

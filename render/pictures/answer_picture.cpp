@@ -33,7 +33,8 @@ Scene scene_of(const PosedBodies& bodies, std::span<const ContactRegion> contact
 /// then seen from inside, and show the shape.
 void make_translucent(DrawList& list, std::uint8_t alpha, const Vector3d& way = Vector3d::Zero()) {
   for (DrawTriangle& t : list.triangles) {
-    if (!way.isZero() && (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]).dot(way) <= 0) continue;
+    if (!way.isZero() && (t.layer != Layer::opaque || (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]).dot(way) <= 0))
+      continue;
     t.layer = Layer::translucent;
     t.colour.a = alpha;
     t.edges = 0;
@@ -125,9 +126,6 @@ struct AnswerPicture {
     return view_beside(across.norm() > 0 ? across : up.unitOrthogonal(), up);
   }
 
-  /// Opens the bodies towards the viewer: faces that look at the viewer hide nothing.
-  void open(const Look& look) { make_translucent(scene.list, 60, direction(look).from); }
-
   Image draw(const Look& look) {
     FitOptions fit;
     fit.view = direction(look);
@@ -142,12 +140,16 @@ struct AnswerPicture {
     }
     std::vector<Panel> panels = {{scene.list, camera, ""}};
     const double size = bounds(whole).diagonal().norm();
-    if (!detail.empty() && bounds(detail).diagonal().norm() < kSmallDetail * size)
+    if (!detail.empty() && bounds(detail).diagonal().norm() < kSmallDetail * size) {
       panels.push_back({scene.list, close_up(fit), "from nearby"});
+      panels[0].list.labels.clear();  // they are in the other
+      if (opens) make_translucent(panels[1].list, 60, fit.view.from);
+    }
     return draw_panels(panels, overlay, look);
   }
 
   PosedBodies bodies;
+  bool opens = false;  ///< from nearby, faces that look at the viewer hide nothing
   bool alone = false;  ///< one body: both are the same, which is seen from the look's view
   Scene scene;
   Overlay overlay;
@@ -262,9 +264,9 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
     Pose apart = bodies.pose_b;
     apart.t += result.translation;
     p.across = result.translation;
-    p.open(look);
+    p.opens = true;
     p.add_ghost(apart, 26);
-    add_separation_vector(p.scene, *vector, bodies.dim());
+    add_separation_vector(p.scene, *vector, bodies.dim(), style_of(look.style));
     p.show(*vector);
     p.overlay.event = "depth " + vector->text + ": the arrow separates B from A";
     p.scene.key.push_back({Mark::translucent, palette::body(Side::b), "B after separation"});
@@ -283,11 +285,11 @@ Image picture_of(const ClashResult& result, const PosedBodies& bodies, const Loo
 Image picture_of(const ManifoldResult& result, double margin, const PosedBodies& bodies, const Look& look) {
   AnswerPicture p(bodies);
   if (!result.manifolds.empty()) p.across = result.manifolds[0].normal;
-  p.open(look);
+  p.opens = true;
   std::vector<ContactMark> marks;
   for (const ContactManifold& manifold : result.manifolds)
     for (const ManifoldPoint& point : manifold.points) {
-      marks.push_back({point.point[1], manifold.normal, point.depth < 0});
+      marks.push_back({point.point[1], manifold.normal, point.depth});
       p.detail.push_back(point.point[1]);
     }
   const std::size_t count = marks.size();

@@ -90,7 +90,7 @@ struct FrameSpec : Look {
   bool ghost_rest = true;  ///< draws the rest as a ghost if some regions are isolated; else leaves it out
   bool svg = false;        ///< writes each view of a frame as SVG as well (2D)
   std::optional<std::uint32_t> node_boxes;  ///< draws the boxes of visited tree nodes of this depth
-  double explode = 0;                       ///< regions are moved outward by this share of their distance
+  double explode = 0;                       ///< share of the layers whose lids are moved outward
   std::uint32_t montage = 0;                ///< number of evenly chosen panels in the montage; 0: no montage
   std::uint32_t montage_columns = 0;        ///< 0: nearly square
 };

@@ -89,17 +89,12 @@ void add_wrong_pairs(render::DrawList& list, std::span<const WrongPair> pairs, c
 
 namespace {
 
-constexpr float kSegmentWidth = 4, kTextOff = 20, kTextHeight = 19;
+constexpr float kSegmentWidth = 4, kThin = 0.8F, kTextHeight = 19;
 
-void write_beside(render::DrawList& list, const Vector3d& x, float below, const std::string& text,
-                  render::Rgba colour) {
-  render::DrawLabel label;
-  label.x = x;
-  label.text = text;
-  label.colour = colour;
-  label.height = kTextHeight;
-  label.dy = below;
-  list.labels.push_back(label);
+/// Writes a text beside the bodies: see with_leaders().
+void write_at(render::DrawList& list, const Vector3d& x, const std::string& text,
+              const render::Style& style) {
+  list.labels.push_back({x, text, style.ink, kTextHeight, 0, 0, style.paper});
 }
 
 /// Draws the barbs of an arrowhead in the plane of the arrow and `across`.
@@ -113,6 +108,62 @@ void add_barbs(render::DrawList& list, const MarkedSegment& way, const Vector3d&
 }
 
 }  // namespace
+
+render::DrawList with_leaders(render::DrawList list, const render::Projection& projection,
+                              const Eigen::AlignedBox2d& frame) {
+  using Eigen::Vector2d;
+  constexpr float kMaxShare = 0.05F,
+                  kLeastHeight = 7;  // of labels, relative to the picture's height; pixels
+  constexpr double kOff = 6, kBeside = 14, kOutside = 3, kOfLine = 10;
+  constexpr int kSamples = 64;
+  if (list.labels.empty()) return list;
+  // Step 1: the points that a label should not cover: corners, and then points along lines.
+  std::vector<Vector2d> taken;
+  const auto take = [&](const Vector3d& x) {
+    if (const auto at = projection.to_pixel(x)) taken.push_back(*at);
+  };
+  for (const Vector3d& x : render::extent_points(list)) take(x);
+  const std::size_t corners = taken.size();
+  for (const render::DrawLine& l : list.lines)
+    for (std::size_t i = 0; i + 1 < l.points.size(); ++i)
+      for (int k = 1; k < kSamples; ++k) take(l.points[i] + (l.points[i + 1] - l.points[i]) * k / kSamples);
+  Eigen::AlignedBox2d all;
+  for (const Vector2d& p : taken) all.extend(p);
+  for (render::DrawLabel& label : list.labels) {
+    const auto at = projection.to_pixel(label.x);
+    if (label.dx != 0 || label.dy != 0 || !at) continue;
+    render::TextStyle style;
+    style.height = label.height =
+        std::min(label.height, std::max(kLeastHeight, kMaxShare * static_cast<float>(frame.sizes().y())));
+    const render::TextSize size = render::default_font().measure(label.text, style);
+    const Vector2d half(size.width / 2.0 + kOff, size.height / 2.0 + kOff);
+    // Step 2: the nearest place beside the point, or beside everything. One that has to be moved into the
+    // picture, or that covers points, counts as farther away.
+    Vector2d way = Vector2d::Zero();
+    double least = INFINITY;
+    for (const int axis : {1, 0})
+      for (const double end :
+           {all.min()[axis], (*at)[axis] - kBeside, (*at)[axis] + kBeside, all.max()[axis]}) {
+        Vector2d place = *at;
+        place[axis] = end + (end < (*at)[axis] ? -1 : 1) * half[axis];
+        const Vector2d inside = place.cwiseMin(frame.max() - half).cwiseMax(frame.min() + half);
+        const Eigen::AlignedBox2d box(inside - half, inside + half);
+        double far = (inside - *at).norm() + kOutside * (inside - place).norm();
+        for (std::size_t i = 0; i < taken.size(); ++i)
+          if (box.contains(taken[i])) far += i < corners ? 1 : kOfLine;
+        if (far < least) least = far, way = inside - *at;
+      }
+    label.dx = static_cast<float>(way.x());
+    label.dy = static_cast<float>(way.y());
+    // Step 3: a line to the border of the text, unless it is beside the point.
+    const double end = 1 - (half.array() / way.array().abs().max(1e-9)).minCoeff();
+    const Vector3d shift = projection.axes().transpose() * Vector3d(way.x(), -way.y(), 0);
+    if (end * way.norm() > kBeside + kOff)
+      outline(list, {label.x, label.x + end * projection.unit_per_pixel(label.x) * shift}, label.colour, 1,
+              label.halo);
+  }
+  return list;
+}
 
 void add_arrow(render::DrawList& list, const Vector3d& from, const Vector3d& to, render::Rgba colour) {
   const Vector3d along = to - from;
@@ -179,24 +230,9 @@ void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style
   const render::Rgba colour = style.of(kGapColour);
   outline(scene.list, {gap.from, gap.to}, colour, kSegmentWidth);
   for (const Vector3d& x : {gap.from, gap.to}) add_mark(scene.list, x, colour, 4, style.paper);
-  write_beside(scene.list, (gap.from + gap.to) / 2, -kTextOff, gap.text, colour);
+  write_at(scene.list, (gap.from + gap.to) / 2, gap.text, style);
   scene.key.push_back({render::LegendItem::Mark::ends, colour, "nearest points"});
 }
-
-namespace {
-
-/// Adds a segment, by default a thin one, that is visible through all faces.
-void add_line(render::DrawList& list, const Vector3d& from, const Vector3d& to, render::Rgba colour,
-              float width = 0.8F) {
-  render::DrawLine segment;
-  segment.points = {from, to};
-  segment.colour = colour;
-  segment.width = width;
-  segment.layer = render::Layer::on_top;
-  list.lines.push_back(segment);
-}
-
-}  // namespace
 
 void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, const render::Style& style) {
   const render::Rgba colour = style.of(kGapColour);
@@ -207,7 +243,7 @@ void add_near_pairs(render::Scene& scene, std::span<const NearMark> pairs, const
       continue;
     }
     has_segments = true;
-    add_line(scene.list, pair.points[0], pair.points[1], colour);
+    outline(scene.list, {pair.points[0], pair.points[1]}, colour, kThin, render::kTransparent);
   }
   if (has_segments)
     scene.key.push_back({render::LegendItem::Mark::thin, colour, "closest points of near pairs"});
@@ -259,7 +295,8 @@ void add_point_distances(render::Scene& scene, std::span<const PointMark> points
       if (p.side != side) continue;
       any = true;
       has_segments |= side != Where::on_surface;
-      if (side != Where::on_surface) add_line(scene.list, p.point, p.closest, key.colour);
+      if (side != Where::on_surface)
+        outline(scene.list, {p.point, p.closest}, key.colour, kThin, render::kTransparent);
       add_mark(scene.list, p.point, key.colour, radius, style.paper);
     }
     if (any) scene.key.push_back(key);
@@ -290,7 +327,7 @@ void add_self_intersections(render::Scene& scene, const SelfIntersections& found
       if (from == to)
         add_mark(scene.list, from, colour, width, style.paper);
       else
-        add_line(scene.list, from, to, colour, width);
+        outline(scene.list, {from, to}, colour, width, render::kTransparent);
     }
   };
   // The ground of all segments comes first: halos of single ones would interrupt the curve.
@@ -309,21 +346,33 @@ void add_self_intersections(render::Scene& scene, const SelfIntersections& found
   }
 }
 
-double normal_length(std::span<const ContactMark> contacts, double size) {
+std::vector<double> normal_lengths(std::span<const ContactMark> contacts, double size) {
+  constexpr double kLeast = 0.4;  // at gaps, relative to the longest
   Eigen::AlignedBox3d box;
-  for (const ContactMark& c : contacts) box.extend(c.point);
-  return std::clamp(contacts.empty() ? 0 : 0.35 * box.diagonal().norm(), 0.03 * size, 0.1 * size);
+  double deepest = 0;
+  for (const ContactMark& c : contacts) {
+    box.extend(c.point);
+    deepest = std::max(deepest, c.depth);
+  }
+  const double longest =
+      std::clamp(contacts.empty() ? 0 : 0.35 * box.diagonal().norm(), 0.03 * size, 0.1 * size);
+  std::vector<double> out;
+  for (const ContactMark& c : contacts)
+    out.push_back(longest * std::max(kLeast, deepest > 0 ? c.depth / deepest : 1));
+  return out;
 }
 
 void add_contact_points(render::Scene& scene, std::span<const ContactMark> contacts, double margin,
                         double size, const render::Style& style) {
-  const double length = normal_length(contacts, size);
+  const std::vector<double> lengths = normal_lengths(contacts, size);
   const render::Rgba of_gap = style.of(kGapColour);
   bool has_gaps = false, has_contacts = false;
-  for (const ContactMark& c : contacts) {
-    (c.is_gap ? has_gaps : has_contacts) = true;
-    add_arrow(scene.list, c.point, c.point + length * c.normal, kSeparationColour);
-    add_mark(scene.list, c.point, c.is_gap ? of_gap : render::palette::kContact, 4, style.paper);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactMark& c = contacts[i];
+    const bool is_gap = c.depth < 0;
+    (is_gap ? has_gaps : has_contacts) = true;
+    add_arrow(scene.list, c.point, c.point + lengths[i] * c.normal, kSeparationColour);
+    add_mark(scene.list, c.point, is_gap ? of_gap : render::palette::kContact, 4, style.paper);
   }
   if (has_contacts)
     scene.key.push_back({render::LegendItem::Mark::point, render::palette::kContact, "contact points"});
@@ -331,16 +380,18 @@ void add_contact_points(render::Scene& scene, std::span<const ContactMark> conta
     scene.key.push_back({render::LegendItem::Mark::point, of_gap,
                          "speculative, at most " + render::short_number(margin) + " apart"});
   if (!contacts.empty())
-    scene.key.push_back({render::LegendItem::Mark::thin_arrow, kSeparationColour, "normals, from A to B"});
+    scene.key.push_back({render::LegendItem::Mark::thin_arrow, kSeparationColour,
+                         "normals, from A to B, longer where deeper"});
 }
 
-void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int dim) {
+void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int dim,
+                           const render::Style& style) {
   outline(scene.list, {way.from, way.to}, kSeparationColour, kSegmentWidth);
   const Vector3d along = (way.to - way.from).normalized();
   const Vector3d across = dim == 2 ? Vector3d::UnitZ().cross(along) : along.unitOrthogonal();
   add_barbs(scene.list, way, across, kSeparationColour);
   if (dim == 3) add_barbs(scene.list, way, along.cross(across), kSeparationColour);
-  write_beside(scene.list, way.from, kTextOff, way.text, render::palette::kInk);
+  write_at(scene.list, (way.from + way.to) / 2, way.text, style);
   scene.key.push_back({render::LegendItem::Mark::arrow, kSeparationColour, "B leaves A this way"});
 }
 

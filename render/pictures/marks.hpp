@@ -60,9 +60,15 @@ std::optional<MarkedSegment> separation_vector_of(const std::optional<ProvedInte
                                                   const PosedBodies& bodies,
                                                   std::span<const ContactRegion> contacts);
 
+/// Moves the labels that lie on their points out of the bodies, and draws lines from the points to them.
+/// `frame`: the part of the picture that is shown, in the projection's pixels.
+render::DrawList with_leaders(render::DrawList list, const render::Projection& projection,
+                              const Eigen::AlignedBox2d& frame);
+
 /// Add the mark to a scene, visible through all faces, and its line to the key.
 void add_gap(render::Scene& scene, const MarkedSegment& gap, const render::Style& style);
-void add_separation_vector(render::Scene& scene, const MarkedSegment& vector, int dim);
+void add_separation_vector(render::Scene& scene, const MarkedSegment& vector, int dim,
+                           const render::Style& style);
 
 /// A pair of faces that are near: their closest points, which are equal if the faces intersect.
 struct NearMark {
@@ -125,11 +131,11 @@ render::LegendItem key_of(SelfContact kind);
 /// A point of a contact manifold, on B's surface.
 struct ContactMark {
   Eigen::Vector3d point, normal;
-  bool is_gap = false;
+  double depth = 0;  ///< negative: a gap
 };
-/// Returns the length of the arrows for normals: that of the contact, within limits set by the size of the
-/// bodies.
-double normal_length(std::span<const ContactMark> contacts, double size);
+/// Returns the lengths of the arrows for normals. The longest, at the deepest point, is as long as the
+/// contact, within limits set by the size of the bodies.
+std::vector<double> normal_lengths(std::span<const ContactMark> contacts, double size);
 /// Adds the points with their normals as arrows. `margin`: of speculative contacts. `size`: of the bodies.
 void add_contact_points(render::Scene& scene, std::span<const ContactMark> contacts, double margin,
                         double size, const render::Style& style);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "render/pictures/marks.hpp"
 #include <lrbscope/core/file.hpp>
 
 namespace lrb::run {
@@ -20,7 +21,11 @@ Image draw_panel(Rasterizer& rasterizer, const Panel& panel, const Look& look, i
   options.background = look.paper();
   options.even_edges = panel.even_edges;
   options.lighting = panel.lighting;
-  return rasterizer.draw(panel.list, panel.camera(width, height), options);
+  const Camera camera = panel.camera(width, height);
+  if (panel.list.labels.empty()) return rasterizer.draw(panel.list, camera, options);
+  const Projection projection(camera, width, height, bounds(panel.list));
+  const Eigen::AlignedBox2d frame(Eigen::Vector2d(0, 0), Eigen::Vector2d(width, height));
+  return rasterizer.draw(with_leaders(panel.list, projection, frame), camera, options);
 }
 
 std::vector<PixelRect> panel_places(const PixelRect& picture, std::size_t panels, double scale) {
@@ -179,12 +184,6 @@ std::vector<SceneBody> PosedBodies::in_scene() const {
 std::vector<Vector3d> PosedBodies::points() const {
   std::vector<Vector3d> out = body_points(a, pose_a);
   for (const Vector3d& x : body_points(b, pose_b)) out.push_back(x);
-  return out;
-}
-
-std::vector<Vector3d> corners_of(const LrbRep& rep, FaceId face, const Pose& pose) {
-  std::vector<Vector3d> out;
-  for (const VertexId v : rep.face(face)) out.push_back(pose.apply(rep.vertices()[v]));
   return out;
 }
 

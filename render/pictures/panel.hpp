@@ -111,8 +111,7 @@ struct PosedBodies {
   std::string title() const { return a.name() + "  ·  " + b.name(); }
 };
 
-/// Returns the corners of a face.
-std::vector<Eigen::Vector3d> corners_of(const LrbRep& rep, FaceId face, const Pose& pose = {});
+using render::corners_of;  // of a face
 /// Returns the corners of all real faces, once for each face.
 std::vector<Eigen::Vector3d> real_corners(const LrbRep& rep, const Pose& pose = {});
 /// Returns the corners of a region's faces, once for each face.

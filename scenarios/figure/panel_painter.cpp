@@ -1,6 +1,7 @@
 #include "scenarios/figure/panel_painter.hpp"
 
 #include "render/paint_list.hpp"
+#include "render/pictures/marks.hpp"
 #include "scenarios/figure/figure_panels.hpp"
 
 namespace lrb::figure {
@@ -30,8 +31,9 @@ void PanelPainter::paint_flat(render::Canvas& canvas, const render::DrawList& li
   const double side = kViewSide * scale;
   const render::Projection projection(camera, side, side, render::bounds(list));
   canvas.begin_clip(place.box);
-  render::paint_flat(canvas, list, projection,
-                     place.box.min() + Vector2d(margin_, margin_) - place.seen_from * scale);
+  const Vector2d low = place.seen_from * scale - Vector2d(margin_, margin_);
+  render::paint_flat(canvas, run::with_leaders(list, projection, {low, low + place.box.sizes()}), projection,
+                     place.box.min() - low);
   canvas.end_clip();
 }
 
@@ -49,7 +51,8 @@ void PanelPainter::paint(render::Canvas& canvas, const render::DrawList& list, c
     render::paint_faces(canvas, list, *faces, looks(list, on_paper), origin);
     render::paint_visible_lines(canvas, list, on_paper, depths, origin);
   }
-  render::paint_over(canvas, list, on_paper, depths, origin);
+  const AlignedBox2d frame(Vector2d(0, 0), deep.paper);
+  render::paint_over(canvas, run::with_leaders(list, on_paper, frame), on_paper, depths, origin);
   canvas.end_clip();
 }
 

@@ -202,7 +202,8 @@ void FrameState::add_marks(render::Scene& scene, bool plain) const {
                        size_of(bodies()), style);
   if (now_.answer != nullptr && now_.answer->points)
     add_point_distances(scene, point_marks(*now_.answer->points), style);
-  if (now_.separation_vector) add_separation_vector(scene, *now_.separation_vector, run_.reps[0]->dim());
+  if (now_.separation_vector)
+    add_separation_vector(scene, *now_.separation_vector, run_.reps[0]->dim(), style);
   if (!plain && !now_.wrong.empty()) {
     add_wrong_pairs(scene.list, now_.wrong, bodies(), style.paper);
     scene.key.push_back({render::LegendItem::Mark::line, render::palette::kWrong, "wrong pair"});

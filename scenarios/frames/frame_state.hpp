@@ -177,7 +177,7 @@ inline std::vector<NearMark> near_marks(const trace::MeasuredNearPairs& near) {
 inline std::vector<ContactMark> contact_marks(const trace::MeasuredManifolds& manifolds) {
   std::vector<ContactMark> out;
   for (const trace::MeasuredManifolds::Point& p : manifolds.contacts)
-    out.push_back({vector_of(p.points[1]), vector_of(p.normal), p.depth < 0});
+    out.push_back({vector_of(p.points[1]), vector_of(p.normal), p.depth});
   return out;
 }
 

@@ -35,8 +35,13 @@ std::string cell_html(const std::string& cell, bool numeric) {
   return fill("<td{!}>{}</td>", {kind, cell});
 }
 
+/// `commands` are between backticks.
 std::string text_html(const Text& text) {
-  return fill("<div><h2>{}</h2><p>{}</p></div>\n", {text.title, text.text});
+  std::string html = render::escape_markup(text.text);
+  bool is_open = false;
+  for (std::size_t at = html.find('`'); at != std::string::npos; at = html.find('`', at), is_open = !is_open)
+    html.replace(at, 1, is_open ? "</code>" : "<code>");
+  return fill("<div><h2>{}</h2><p>{!}</p></div>\n", {text.title, html});
 }
 
 std::string tab_html(const std::string& name, const std::string& html) {
@@ -296,6 +301,10 @@ Document& Document::number(const Number& number) {
 }
 
 Document& Document::chart(const Chart& chart) {
+  // A single point is a number, which a table has, not a chart.
+  if (std::all_of(chart.series.begin(), chart.series.end(),
+                  [](const Series& s) { return s.style.line != Line::none && s.x.size() < 2; }))
+    return *this;
   if (chart_count_ == 0) libraries_ = embedded("chart.min.js") + libraries_;
   charts_ += (chart_count_ == 0 ? "" : ",") + chart_json(chart);
   return add(

@@ -51,9 +51,10 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
     }
     if (s.result.manifold) {
       const std::vector<ContactMark> marks = contact_marks(*s.result.manifold);
-      const double length = normal_length(marks, size_of({*p.reps[0], s.pose_a, *p.reps[1], s.pose_b}));
+      const std::vector<double> lengths =
+          normal_lengths(marks, size_of({*p.reps[0], s.pose_a, *p.reps[1], s.pose_b}));
       for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
-        add(s, contact, marks[k].point, marks[k].point + length * marks[k].normal,
+        add(s, contact, marks[k].point, marks[k].point + lengths[k] * marks[k].normal,
             k == 0 ? text_of(*s.result.manifold) : "");
     }
     if (s.result.points) {

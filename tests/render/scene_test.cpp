@@ -135,25 +135,30 @@ TEST_CASE("layers, regions and values give faces their colours and the frame its
   CHECK(render::build_scene(body, {}, options).scale->high == 20);
 }
 
-TEST_CASE("exploded regions keep their shape and move outward") {
+TEST_CASE("exploded lids keep their shape and move outward, layer by layer") {
   const LrbRep rep = build_lrb(shapes::bumpy_sphere(2, 7, 0.3));
   const Wrapper wrapper(rep);
+  const std::uint32_t outermost = rep.layer_count() - 1;
   render::SceneOptions options;
-  options.explode = 1;
-  const render::Scene scene =
-      render::build_scene(std::vector<render::SceneBody>{{&rep, &wrapper, {}, {}, ""}}, {}, options);
-  std::size_t in_regions = 0;
-  for (RegionId r = 0; r < rep.region_count(); ++r) in_regions += rep.collector(r).size();
-  CHECK(count(scene.list).opaque == rep.real_face_count() + in_regions);
   double outward = 0;
-  for (const render::DrawTriangle& t : scene.list.triangles) {
-    const auto corners = rep.face(FaceId(t.id));
-    const Vector3d before = rep.vertices()[corners[0]], moved = t.x[0] - before;
-    CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
-    outward += moved.dot(before);
+  for (const double explode : {0.9 / rep.layer_count(), 1.0}) {
+    options.explode = explode;
+    const render::Scene scene =
+        render::build_scene(std::vector<render::SceneBody>{{&rep, &wrapper, {}, {}, ""}}, {}, options);
+    CHECK(count(scene.list).opaque == rep.real_face_count());
+    if (explode == 1) CHECK(count(scene.list).translucent == rep.face_count() - rep.real_face_count());
+    for (const render::DrawTriangle& t : scene.list.triangles) {
+      const auto corners = rep.face(FaceId(t.id));
+      const Vector3d before = rep.vertices()[corners[0]], moved = t.x[0] - before;
+      CHECK((t.x[1] - rep.vertices()[corners[1]] - moved).norm() < 1e-12);
+      const CellId behind = rep.inner_cell(FaceId(t.id));
+      const bool rises = is_region(behind) && (explode == 1 || rep.layer(behind.as_region()) == outermost);
+      CHECK(rises == (moved.norm() > 0));
+      outward += moved.dot(before);
+    }
   }
   CHECK(outward > 0);
-  // A region that was just refined has moved as well, in its colour; no outline stays at its place.
+  // The lids of a region that was just refined have moved as well, in its colour; no outline stays.
   Wrapper refined(rep);
   refined.refine(3);
   render::SceneHighlight highlight;
@@ -162,9 +167,10 @@ TEST_CASE("exploded regions keep their shape and move outward") {
       render::build_scene(std::vector<render::SceneBody>{{&rep, &refined, {}, {}, ""}}, highlight, options);
   CHECK(later.list.lines.empty());
   const auto green =
-      std::count_if(later.list.triangles.begin(), later.list.triangles.end(),
-                    [&](const auto& t) { return t.colour == render::style_of(options.style).refining; });
-  CHECK(static_cast<std::size_t>(green) == rep.collector(3).size());
+      std::count_if(later.list.triangles.begin(), later.list.triangles.end(), [&](const auto& t) {
+        return render::with_alpha(t.colour, 255) == render::style_of(options.style).refining;
+      });
+  CHECK(static_cast<std::size_t>(green) == rep.lids(3).size());
 }
 
 TEST_CASE("many bodies: each in its colour, faces in contact in the contact colour") {

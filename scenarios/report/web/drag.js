@@ -1,6 +1,6 @@
-import { byId, digits, element, oncePerFrame, plural } from "./dom.js";
+import { byId, copyText, digits, element, listenToKeys, oncePerFrame, plural } from "./dom.js";
 import { FIELD } from "./scene_camera.js";
-import { Body, NONE, SIDES } from "./scene_run.js";
+import { Body, NONE, poseInPage, SIDES } from "./scene_run.js";
 import { BodiesCanvas, webglWorks } from "./scene_view.js";
 
 // ---- the live page of a run: B is dragged, and the engine in this page (wasm/engine.cpp) answers every pose
@@ -119,21 +119,9 @@ class DragView extends BodiesCanvas {
     this.start();
   }
 
-  draw() {
-    this.render();
-  }
-
   /** Places a body at a pose of the world; its vertices are relative to its centre. */
   place(side, rows) {
-    const { origin, unit, bodies } = this.json,
-      c = bodies[side].centre;
-    this.views[side].setPose(
-      rows.map((x, i) => {
-        if (i % 4 !== 3) return x;
-        const r = rows.slice(i - 3, i);
-        return (r[0] * c[0] + r[1] * c[1] + r[2] * c[2] + x - origin[(i - 3) / 4]) / unit;
-      }),
-    );
+    this.views[side].setPose(poseInPage(rows, side, this.json));
     this.views[side].group.updateMatrixWorld(true);
   }
 
@@ -384,10 +372,8 @@ class LivePage {
 
   connect() {
     const { steps } = this.json;
-    byId("copy").onclick = () => {
-      byId("pose").select();
-      document.execCommand("copy"); // also works in pages from disk
-      byId("pose-state").textContent = "copied";
+    byId("copy").onclick = async () => {
+      if (await copyText(byId("pose").value, byId("pose"))) byId("pose-state").textContent = "copied";
     };
     byId("apply").onclick = () => this.apply(byId("pose").value);
     byId("reset").onclick = () => this.reset();
@@ -413,7 +399,7 @@ class LivePage {
         this.draw();
       };
     this.listenToMouse();
-    document.addEventListener("keydown", (e) => this.press(e));
+    listenToKeys(this.keys());
   }
 
   listenToMouse() {
@@ -458,16 +444,16 @@ class LivePage {
     canvas.addEventListener("contextmenu", (e) => e.preventDefault());
   }
 
-  press(e) {
-    if (e.ctrlKey || e.metaKey || e.altKey || e.target.matches("textarea, select, input")) return;
-    const step = Number(byId("step").value),
-      way = step * this.radius;
-    const toggle = (id) => byId(id).click();
-    const arrows = {
-      ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0],
-      PageUp: [0, 0, -1], PageDown: [0, 0, 1],
-    };
-    const keys = {
+  keys() {
+    const toggle = (id) => byId(id).click(),
+      arrow = (...axis) => (turns) => {
+        const step = Number(byId("step").value);
+        if (turns) this.turn(step * axis[0], -step * axis[1], step * axis[2]);
+        else this.move(...axis.map((x) => x * step * this.radius));
+      };
+    return {
+      ArrowLeft: arrow(-1, 0, 0), ArrowRight: arrow(1, 0, 0), ArrowUp: arrow(0, 1, 0),
+      ArrowDown: arrow(0, -1, 0), PageUp: arrow(0, 0, -1), PageDown: arrow(0, 0, 1),
       r: () => this.reset(),
       m: () => this.setMode(!this.turning),
       f: () => this.view.frameAll(),
@@ -480,13 +466,6 @@ class LivePage {
       ",": () => this.changeStep(1),
       ".": () => this.changeStep(-1),
     };
-    const arrow = arrows[e.key];
-    if (arrow) {
-      if (e.shiftKey) this.turn(step * arrow[0], -step * arrow[1], step * arrow[2]);
-      else this.move(...arrow.map((x) => x * way));
-    } else if (keys[e.key.toLowerCase()]) keys[e.key.toLowerCase()]();
-    else return;
-    e.preventDefault();
   }
 
   changeStep(by) {

@@ -1,3 +1,5 @@
+import { copyText, textButton } from "./dom.js";
+
 // Sheets of the grid: opened by the address, so that they can be linked to; the arrow keys step through them.
 const sheets = [...document.querySelectorAll("dialog.detail")];
 const opened = () => sheets.find((s) => s.open);
@@ -22,18 +24,11 @@ addEventListener("popstate", follow);
 follow();
 
 for (const block of document.querySelectorAll("pre.command")) {
-  const button = document.createElement("button"), text = block.textContent;
-  button.className = "copy";
-  button.textContent = "Copy";
-  button.onclick = async () => {
-    try {
-      await navigator.clipboard.writeText(text);
-    } catch { // the clipboard may be unavailable to pages from disk: select the text instead
-      getSelection().selectAllChildren(block.querySelector("code"));
-      if (!document.execCommand("copy")) return;
-    }
+  const code = block.querySelector("code"), button = textButton("Copy", async () => {
+    if (!(await copyText(code.textContent, code))) return;
     button.textContent = "Copied";
     setTimeout(() => { button.textContent = "Copy"; }, 1500);
-  };
+  });
+  button.classList.add("copy");
   block.prepend(button);
 }

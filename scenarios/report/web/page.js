@@ -1,4 +1,4 @@
-import { byId, style } from "./dom.js";
+import { byId, listenToKeys, Playback, style } from "./dom.js";
 
 export const data = JSON.parse(document.getElementById("data").textContent);
 
@@ -19,26 +19,24 @@ export function show(index) {
 export function showEvent(event, step) {
   moment.event = event;
   moment.step = step;
-  current = Math.max(0, frameOf(event, step));
+  // preferably one of the time step
+  current = nearestFrame((f) => (f.step === step ? 0 : 1e12) + Math.abs(f.event - event));
   tell();
 }
-/** Returns the frame nearest to an event, preferably one of its time step. Returns -1 if there are no
-    frames. */
-function frameOf(event, step) {
-  const far = (f) => (f.step === step ? 0 : 1e12) + Math.abs(f.event - event);
-  return data.frames.reduce((best, f, i) => (best < 0 || far(f) < far(data.frames[best]) ? i : best), -1);
-}
+/** Returns the frame with the least distance; the first one if all are infinitely far. */
+const nearestFrame = (far) =>
+  data.frames.reduce((best, f, i) => (far(f) < far(data.frames[best]) ? i : best), 0);
 /** Moves to a value on a chart's x axis. */
 export const seek = (key, value) => go(key, value);
 let go = (key, value) => {
-  const frame = nearestFrame(key, value);
-  if (frame >= 0) show(frame);
+  const frame = nearestFrame((f) => (f[key] >= 0 ? Math.abs(f[key] - value) : Infinity));
+  if (data.frames[frame]?.[key] >= 0) show(frame);
 };
 /** Replaces what seek() does: on pages of runs it selects an event or a step. */
 export function seekBy(action) { go = action; }
 
 function startPlayer() {
-  const image = byId("frame"), link = byId("frame-link"), scrub = byId("scrub"), play = byId("play");
+  const image = byId("frame"), link = byId("frame-link"), scrub = byId("scrub");
   const images = data.frames.map(({ src }) => Object.assign(new Image(), { src })); // decoded ahead of use
   scrub.max = data.frames.length - 1;
   listeners.push((frame, index) => {
@@ -51,39 +49,18 @@ function startPlayer() {
     if (!byId("scene")) history.replaceState(null, "", `#${index + 1}`);
   });
 
-  let timer = null;
-  const pause = () => {
-    clearInterval(timer);
-    timer = null;
-    play.classList.remove("playing");
-    play.setAttribute("aria-label", "Play");
-  };
-  const start = () => {
-    if (current === data.frames.length - 1) show(0);
-    clearInterval(timer);
-    timer = setInterval(() => { show(current + 1); if (current === data.frames.length - 1) pause(); },
-        1000 / byId("speed").value);
-    play.classList.add("playing"); play.setAttribute("aria-label", "Pause");
-  };
-  const toggle = () => (timer ? pause() : start());
-  const go = (index) => { pause(); show(index); };
-  play.onclick = toggle;
+  const playback = new Playback(byId("play"), byId("speed"),
+      () => (current + 1 < data.frames.length ? () => show(current + 1) : null), () => show(0)),
+    go = (index) => { playback.pause(); show(index); };
   byId("first").onclick = () => go(0);
   byId("back").onclick = () => go(current - 1);
   byId("next").onclick = () => go(current + 1);
   byId("last").onclick = () => go(data.frames.length - 1);
-  byId("speed").onchange = () => { if (timer) start(); };
   scrub.oninput = () => go(Number(scrub.value));
-  const keys = {
-    ArrowLeft: (e) => go(current - (e.shiftKey ? 10 : 1)),
-    ArrowRight: (e) => go(current + (e.shiftKey ? 10 : 1)),
-    Home: () => go(0), End: () => go(data.frames.length - 1), " ": toggle,
-  };
-  if (!byId("scene")) document.addEventListener("keydown", (e) => { // there, keys move between events
-    if (!keys[e.key] || e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT") return;
-    if (e.key === " " && e.target.tagName === "BUTTON") return; // space presses the button that has the focus
-    e.preventDefault();
-    keys[e.key](e);
+  if (!byId("scene")) listenToKeys({ // there, keys move between events
+    ArrowLeft: (shift) => go(current - (shift ? 10 : 1)),
+    ArrowRight: (shift) => go(current + (shift ? 10 : 1)),
+    Home: () => go(0), End: () => go(data.frames.length - 1), " ": () => playback.toggle(),
   });
   const requested = parseInt(location.hash.slice(1), 10);
   show(requested > 0 ? requested - 1 : 0);
@@ -153,15 +130,6 @@ function axis({ label, log, min, max, ticks }, isWhole = true) {
         ? { callback(value) { return logLabel(value, this); } } : {}),
     },
   };
-}
-
-function nearestFrame(key, value) {
-  let best = -1;
-  data.frames.forEach((f, i) => {
-    const far = (frame) => Math.abs(frame[key] - value);
-    if (f[key] >= 0 && (best < 0 || far(f) < far(data.frames[best]))) best = i;
-  });
-  return best;
 }
 
 /** Returns a colour, #rrggbb, moved towards that of text until its contrast on a card is three to one. */

@@ -1,13 +1,13 @@
-import { byId, digits } from "./dom.js";
+import { byId, digits, listenToKeys } from "./dom.js";
 import { data, listeners, moment, seek, seekBy, tell } from "./page.js";
 import { ProofMap } from "./proof_map.js";
 import { AttemptPanel, Attempts } from "./scene_attempts.js";
-import { listenToKeys, Timeline, toggleHelp, ViewControls } from "./scene_controls.js";
+import { Timeline, toggleHelp, ViewControls } from "./scene_controls.js";
 import { concernsPicked, EventFilter, EventTable, FilterForm } from "./scene_events.js";
 import { explainCells, PageAddress, printView, showMore, stripOfRun, Tabs } from "./scene_page.js";
 import { AnswerLine, Panel, RowLinks, Selection } from "./scene_panels.js";
 import { Body, Events, eventSentence, Explanations, lastAtMost, NONE, SIDES } from "./scene_run.js";
-import { tellingEvent, Wrappers } from "./scene_run.js";
+import { poseInPage, tellingEvent, Wrappers } from "./scene_run.js";
 import { SceneView, webglWorks } from "./scene_view.js";
 import { WhyPanel } from "./scene_why.js";
 import { WorkIcicle } from "./scene_work.js";
@@ -176,18 +176,9 @@ class TraceReader {
 
   /** Returns the poses of each body at all steps in the page's frame, as scene_json.cpp does. */
   poses() {
-    const { origin, unit, bodies } = this.scene;
-    return bodies.map(({ centre }, side) =>
-      Float32Array.from(
-        this.metadata.steps.flatMap((step) => {
-          const p = side === 0 ? step.pose_a : step.pose_b;
-          return p.map((x, i) => {
-            if (i % 4 !== 3) return x;
-            const row = p.slice(i - 3, i);
-            return (row.reduce((sum, r, k) => sum + r * centre[k], x) - origin[(i - 3) / 4]) / unit;
-          });
-        }),
-      ),
+    return this.scene.bodies.map((_, side) =>
+      Float32Array.from(this.metadata.steps.flatMap((step) =>
+          poseInPage(side === 0 ? step.pose_a : step.pose_b, side, this.scene))),
     );
   }
 }
@@ -402,7 +393,7 @@ function keysOf(timeline, table, selection, controls) {
     End: () => timeline.go(() => selection.goTo(timeline.lastHere)),
     "[": () => timeline.go(() => timeline.byStep(-1)),
     "]": () => timeline.go(() => timeline.byStep(1)),
-    " ": () => timeline.toggle(),
+    " ": () => timeline.playback.toggle(),
     r: (shift) => timeline.go(() => timeline.toChange(shift ? -1 : 1)),
     c: (shift) => timeline.go(() => timeline.toContact(shift ? -1 : 1)),
     "?": toggleHelp,

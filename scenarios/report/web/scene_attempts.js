@@ -128,10 +128,7 @@ export class Attempts {
     return [...faces].filter((f) => wrappers.onBoundary(0, f)).map((face) => ({ side: 0, face }));
   }
 
-  /** Returns the event that shows an attempt before, or after: the patch on the front, or what covers it. */
-  before(attempt) {
-    return attempt.cap;
-  }
+  /** Returns the event that shows what covers an attempt's patch; before, `cap` shows the patch. */
   after({ cap, regions }) {
     return regions.length ? regions[regions.length - 1].event : cap;
   }
@@ -173,7 +170,7 @@ export class AttemptPanel {
   }
 
   show(attempt, after = true) {
-    if (attempt) this.selection.goTo(after ? this.attempts.after(attempt) : this.attempts.before(attempt));
+    if (attempt) this.selection.goTo(after ? this.attempts.after(attempt) : attempt.cap);
   }
   /** Changes between the front before the current attempt and after it. */
   flip() {

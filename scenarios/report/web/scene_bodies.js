@@ -182,6 +182,22 @@ export class FaceMesh {
       if (passes(this.faceOf[t])) for (let c = 0; c < 3; c++) geometry.index.array[n++] = 3 * t + c;
     geometry.index.needsUpdate = true;
     geometry.setDrawRange(0, n);
+    this.sortedAlong = "";
+  }
+
+  /** Orders the shown faces from back to front along a direction, as glass is to be drawn. */
+  sort(ahead) {
+    const { index, drawRange, attributes } = this.mesh.geometry, { array } = attributes.position,
+      key = ahead.map((x) => x.toFixed(2)).join();
+    if (!index || key === this.sortedAlong) return;
+    this.sortedAlong = key;
+    const depths = new Float32Array(this.triangles), corners = index.array.subarray(0, drawRange.count),
+      firsts = corners.filter((_, i) => i % 3 === 0);
+    for (const first of firsts)
+      for (let c = 0; c < 9; c++) depths[first / 3] += array[3 * first + c] * ahead[c % 3];
+    firsts.sort((p, q) => depths[q / 3] - depths[p / 3]);
+    for (let i = 0; i < corners.length; i++) corners[i] = firsts[(i / 3) | 0] + (i % 3);
+    index.needsUpdate = true;
   }
 
   /** Returns the face and the simplex that a ray hits. */
@@ -256,24 +272,14 @@ export class FlatFill {
 
   /** Fills the area that these faces bound, provided that they form closed loops. */
   show(faces) {
-    const { vertices } = this.body, closed = this.areLoops(faces),
-      segments = closed ? faces.map((f) => this.body.face(f)) : [],
-      ends = segments.flatMap(([p, q]) => [p, q]),
-      xs = ends.map((v) => vertices[3 * v]),
-      ys = ends.map((v) => vertices[3 * v + 1]);
-    const least = (all) => all.reduce((m, x) => Math.min(m, x), Infinity),
-      most = (all) => all.reduce((m, x) => Math.max(m, x), -Infinity),
-      [left, right, low, high] = [least(xs), most(xs), least(ys), most(ys)];
-    const fan = segments.flatMap((_, k) => [
-      left,
-      low,
-      0,
-      ...[2 * k, 2 * k + 1].flatMap((end) => [xs[end], ys[end], 0]),
-    ]);
-    const sheet = segments.length
-      ? [left, low, 0, right, low, 0, right, high, 0, left, low, 0, right, high, 0, left, high, 0] : [];
-    this.fan.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(fan), 3));
-    this.sheet.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(sheet), 3));
+    const { vertices } = this.body, closed = this.areLoops(faces) ? faces : [],
+      segments = closed.map((f) => this.body.face(f)),
+      point = (v) => new THREE.Vector3(vertices[3 * v], vertices[3 * v + 1], 0),
+      fan = segments.map(([p, q]) => [point(p), point(q)]),
+      { min, max } = new THREE.Box3().setFromPoints(fan.flat()),
+      [right, left] = [new THREE.Vector3(max.x, min.y, 0), new THREE.Vector3(min.x, max.y, 0)];
+    this.fan.geometry.setFromPoints(fan.flatMap(([p, q]) => [min, p, q]));
+    this.sheet.geometry.setFromPoints(segments.length ? [min, right, max, min, max, left] : []);
     this.filled = segments.length > 0;
     this.look(this.visible);
   }
@@ -568,16 +574,29 @@ export class BodyView {
 
   /** Returns the way of a region: where its lids look. */
   explodeShift(region, share) {
-    const { body } = this, out = new THREE.Vector3(), lids = body.lids(region);
-    for (const f of lids) {
-      const [o, ...rest] = [...body.face(f)].map((v) => new THREE.Vector3(...this.point(v))),
-        ways = rest.map((p) => p.sub(o));
-      if (body.dim === 2) ways.push(new THREE.Vector3(0, 0, 1));
-      ways.slice(1).forEach((way, k) => out.add(ways[k].clone().cross(way)));
-    }
+    const lids = this.body.lids(region), out = this.outward(lids);
     if (out.length() === 0)
       out.set(...this.centroidOf(lids)).sub(new THREE.Vector3(...this.centroid));
     return out.setLength((SPREAD * this.radius * this.rise(region, share)) / this.layers).toArray();
+  }
+
+  /** Returns the sum of twice the area vectors of faces. */
+  outward(faces) {
+    const out = new THREE.Vector3();
+    for (const f of faces) {
+      const [o, ...rest] = [...this.body.face(f)].map((v) => new THREE.Vector3(...this.point(v))),
+        ways = rest.map((p) => p.sub(o));
+      if (this.body.dim === 2) ways.push(new THREE.Vector3(0, 0, 1));
+      ways.slice(1).forEach((way, k) => out.add(ways[k].clone().cross(way)));
+    }
+    return out;
+  }
+
+  /** Orders the lids from back to front. `ahead`: the direction of the view in the world. */
+  sortLids(ahead) {
+    if (this.lids.mesh.visible && this.body.dim === 3)
+      this.lids.sort(
+          ahead.clone().transformDirection(new THREE.Matrix4().getInverse(this.group.matrix)).toArray());
   }
 
   /** Shows faces that have a counter in the exact colour of the scale, without lighting; on a ghost, these

@@ -1,6 +1,5 @@
-import { byId, digits } from "./dom.js";
+import { byId, copyText, digits, Playback } from "./dom.js";
 import { COUNTERS } from "./scene_bodies.js";
-import { copyText } from "./scene_panels.js";
 import { NONE } from "./scene_run.js";
 
 // ---- the time line: sliders over steps and over the events of a step, buttons, and playback
@@ -9,13 +8,12 @@ export class Timeline {
     Object.assign(this, { events, selection });
     this.stepSlider = byId("step");
     this.eventSlider = byId("event");
-    this.button = byId("play-events");
-    this.playing = 0; // handle of the next tick
+    this.playback = new Playback(byId("play-events"), byId("play-speed"), () => this.next(),
+        () => (byId("play-what").value === "step" ? this.toStep(0) : selection.goTo(this.firstHere)));
     this.measure();
     this.stepSlider.oninput = () => this.go(() => this.toStep(Number(this.stepSlider.value)));
     this.eventSlider.oninput = () =>
       this.go(() => selection.goTo(this.firstHere + Number(this.eventSlider.value)));
-    this.button.onclick = () => this.toggle();
     const buttons = {
       "step-back": () => this.byStep(-1),
       "step-next": () => this.byStep(1),
@@ -46,7 +44,7 @@ export class Timeline {
 
   /** Runs an action of the user: playback stops. */
   go(action) {
-    this.pause();
+    this.playback.pause();
     action();
   }
   by(n) {
@@ -87,37 +85,6 @@ export class Timeline {
 
   // -- playback: the wrappers of this step are refined, one region after the other; or all events; or the
   // steps
-  toggle() {
-    if (this.playing) this.pause();
-    else this.play();
-  }
-  pause() {
-    clearTimeout(this.playing);
-    this.playing = 0;
-    this.button.classList.remove("playing");
-    this.button.setAttribute("aria-label", "Play");
-  }
-  play() {
-    if (!this.next()) {
-      // at the end: restart
-      if (byId("play-what").value === "step") this.toStep(0);
-      else this.selection.goTo(this.firstHere);
-    }
-    this.button.classList.add("playing");
-    this.button.setAttribute("aria-label", "Pause");
-    this.tick();
-  }
-  tick() {
-    this.playing = setTimeout(
-      () => {
-        const next = this.next();
-        if (!next) return this.pause();
-        next();
-        this.tick();
-      },
-      1000 / byId("play-speed").value,
-    );
-  }
   /** Returns the function that moves on by one; null at the end. */
   next() {
     const what = byId("play-what").value, end = this.lastHere;
@@ -136,29 +103,6 @@ export function toggleHelp() {
   if (help.open) return help.close();
   help.showModal();
   help.scrollTop = 0;
-}
-
-// ---- keys. They work anywhere on the page except in text fields.
-/** `actions`: by KeyboardEvent.key; letters are in lower case, shift is passed on. */
-export function listenToKeys(actions) {
-  document.addEventListener("keydown", (e) => {
-    const key = e.key.length === 1 ? e.key.toLowerCase() : e.key, target = e.target;
-    if (!actions[key] || e.ctrlKey || e.metaKey || e.altKey) return;
-    if (target.tagName === "SELECT" || target.tagName === "TEXTAREA" || target.isContentEditable) return;
-    if (
-      target.tagName === "INPUT" &&
-      (target.type !== "range" || key.startsWith("Arrow") || key === "Home" || key === "End")
-    )
-      return;
-    if (target.closest && target.closest("dialog[open]") && key !== "?") return;
-    if (
-      (key === " " || key === "Enter") &&
-      (target.tagName === "BUTTON" || target.tagName === "SUMMARY" || target.tagName === "A")
-    )
-      return; // presses the focused element
-    e.preventDefault();
-    actions[key](e.shiftKey, target);
-  });
 }
 
 // ---- buttons and keys of the 3D view

@@ -50,7 +50,7 @@ export class EventFilter {
     if (this.work) out.push((i) => this.work.parts.has(events.work[i]));
     if (this.place) out.push((i) => this.place.events.has(i));
     if (side >= 0) out.push((i) => events.concerns(i, side));
-    if (region !== NONE) out.push((i) => this.concernsRegion(events, i));
+    if (region !== NONE) out.push((i) => concernsRegion(events, i, side, region));
     if (leastLevel > 0 || mostLevel < Infinity)
       out.push((i) => {
         const level = events.level(i);
@@ -62,11 +62,6 @@ export class EventFilter {
         return faces.length > 0 && faces.every((f) => pair[f.side] === NONE || pair[f.side] === f.face);
       });
     return out;
-  }
-
-  /** Returns true if an event changes the region, or compares one of its faces. */
-  concernsRegion(events, i) {
-    return concernsRegion(events, i, this.side, this.region);
   }
 }
 

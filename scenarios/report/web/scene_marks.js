@@ -12,16 +12,23 @@ export class Marks {
     this.shown = new Map(); // by name: {key, parts: [{group, object}]}
   }
 
-  /** Shows faces in a colour. Nothing is rebuilt while `key` stays the same. `through`: outlines are
-      visible through everything. */
-  set(name, key, faces, { colour, opacity = 1, width = 1.5, over = false, through = true }) {
-    const before = this.shown.get(name);
-    if (before && before.key === key) return;
+  /** Shows the objects that `make` returns for a body, {view, own: its elements}. Nothing is rebuilt while
+      `key` stays the same. */
+  show(name, key, elements, make) {
+    if (this.shown.get(name)?.key === key) return;
     this.clear(name);
-    const parts = [], facesOf = new Map();
-    for (const { side, face } of faces) facesOf.set(side, [...(facesOf.get(side) || []), face]);
-    facesOf.forEach((own, side) => {
-      const view = this.views[side];
+    const parts = this.views.flatMap((view, side) => {
+      const own = elements.filter((e) => e.side === side), objects = own.length ? make(view, own) : [];
+      for (const object of objects) view.group.add(object);
+      return objects.map((object) => ({ group: view.group, object }));
+    });
+    this.shown.set(name, { key, parts });
+  }
+
+  /** Shows faces in a colour. `through`: outlines are visible through everything. */
+  set(name, key, faces, { colour, opacity = 1, width = 1.5, over = false, through = true }) {
+    this.show(name, key, faces, (view, shown) => {
+      const own = shown.map((f) => f.face);
       const material = new THREE.MeshLambertMaterial({
         color: new THREE.Color(...colour), side: THREE.DoubleSide, transparent: opacity < 1 || over, opacity,
         depthWrite: opacity === 1 && !over, depthTest: !over, polygonOffset: true, polygonOffsetFactor: 0,
@@ -37,23 +44,17 @@ export class Marks {
       if (!through)
         Object.assign(rim.material,
             { depthTest: true, polygonOffset: true, polygonOffsetFactor: 0, polygonOffsetUnits: -40 });
-      view.group.add(mesh, rim);
-      parts.push({ group: view.group, object: mesh }, { group: view.group, object: rim });
+      return [mesh, rim];
     });
-    this.shown.set(name, { key, parts });
   }
 
   /** Shows a vertex, {side, vertex}, as a disc of a colour; null: none. */
   setPoint(name, at, colour) {
-    const key = at ? `${at.side} ${at.vertex}` : "", before = this.shown.get(name);
-    if (before ? before.key === key : !key) return;
-    this.clear(name);
-    if (!at) return;
-    const view = this.views[at.side],
-      disc = roundPoints(view.point(at.vertex), colour, 14, mixed(colour, this.colours.ink, 0.75));
-    disc.renderOrder = 8;
-    view.group.add(disc);
-    this.shown.set(name, { key, parts: [{ group: view.group, object: disc }] });
+    this.show(name, at ? `${at.side} ${at.vertex}` : "", at ? [at] : [], (view) => {
+      const disc = roundPoints(view.point(at.vertex), colour, 14, mixed(colour, this.colours.ink, 0.75));
+      disc.renderOrder = 8;
+      return [disc];
+    });
   }
 
   /** As in BodyView, a little wider. */
@@ -64,25 +65,16 @@ export class Marks {
 
   /** Shows boxes of tree nodes. */
   setBoxes(name, key, nodes, colour) {
-    const before = this.shown.get(name);
-    if (before && before.key === key) return;
-    this.clear(name);
-    const parts = [];
-    this.views.forEach((view, side) => {
+    this.show(name, key, nodes, (view, shown) => {
       const { node, places } = view.body.boxes,
-        own = nodes
-          .filter((n) => n.side === side)
-          .map((n) => node.indexOf(n.number))
-          .filter((i) => i >= 0);
-      if (!own.length) return;
+        own = shown.map((n) => node.indexOf(n.number)).filter((i) => i >= 0);
+      if (!own.length) return [];
       const lines = thickLines(
         boxEdges(places, own), thickMaterial(mixed(colour, this.colours.ink, 0.35), 1.5, this.lens),
       );
       lines.renderOrder = 6;
-      view.group.add(lines);
-      parts.push({ group: view.group, object: lines });
+      return [lines];
     });
-    this.shown.set(name, { key, parts });
   }
 
   clear(name) {
@@ -91,13 +83,33 @@ export class Marks {
   }
 }
 
+/** Lines in the world that a view shows with the bodies. */
+class WorldLines {
+  constructor(view) {
+    Object.assign(this, { view, group: new THREE.Group() });
+    view.stage.add(this.group);
+  }
+
+  /** `ends`: six numbers for each line; `look`: see thickMaterial(). */
+  addLines(ends, colour, width, order, look) {
+    this.add(thickLines(ends, thickMaterial(colour, width, this.view.lens, look)), order);
+  }
+  add(object, order) {
+    object.renderOrder = order;
+    this.group.add(object);
+  }
+  clear() {
+    for (const object of this.group.children.slice()) discard(this.group, object);
+  }
+}
+
 // ---- in the view: where two faces intersect, or what separates them; and what separates the bodies
 export const PLANE = [0.5, 0.53, 0.57]; // seen on light and dark pages; no face has it
-export class WhyMarks {
+export class WhyMarks extends WorldLines {
   /** `why`: the panel with the same explanation in words. */
   constructor(view, why) {
-    Object.assign(this, { view, why, group: new THREE.Group(), key: null });
-    view.stage.add(this.group);
+    super(view);
+    Object.assign(this, { why, key: null });
     why.listeners.push(() => view.redraw());
   }
 
@@ -108,6 +120,7 @@ export class WhyMarks {
     if (key === this.key) return;
     this.key = key;
     this.clear();
+    view.legend.also([], "why");
     if (!key) return;
     if (why.now.kind === "pair") this.addPair(why.now.found);
     else this.addSeparation(why.now.found);
@@ -135,7 +148,7 @@ export class WhyMarks {
     if (boxes) {
       const places = unpack(boxes.places);
       this.view.bodies.forEach((_, side) =>
-        this.addLines(boxEdges(places, [side]), mixed(colours.bodies[side], colours.ink, 0.3), 1.8),
+        this.addLines(boxEdges(places, [side]), mixed(colours.bodies[side], colours.ink, 0.3), 1.8, 7),
       );
     }
     const square = unpack((plane || boxes || { square: "f4:" }).square);
@@ -154,13 +167,7 @@ export class WhyMarks {
     const ends = [];
     for (let i = 0; i + 1 < points.length + (closed ? 1 : 0); i++)
       ends.push(...points[i], ...points[(i + 1) % points.length]);
-    if (ends.length) this.addLines(ends, colour, width);
-  }
-
-  addLines(ends, colour, width) {
-    const lines = thickLines(ends, thickMaterial(colour, width, this.view.lens));
-    lines.renderOrder = 7;
-    this.group.add(lines);
+    if (ends.length) this.addLines(ends, colour, width, 7);
   }
 
   addSquare(corners) {
@@ -174,15 +181,9 @@ export class WhyMarks {
         side: THREE.DoubleSide,
       }),
     );
-    square.renderOrder = 4;
     square.frustumCulled = false;
-    this.group.add(square);
+    this.add(square, 4);
     this.addPath(corners, true, colour, 1.2);
-  }
-
-  clear() {
-    this.view.legend.also([], "why");
-    for (const object of this.group.children.slice()) discard(this.group, object);
   }
 }
 
@@ -212,10 +213,11 @@ const MEASURED = [
   { colour: "contact", key: "the same, of points inside A", width: 1.5, isArrow: false },
 ];
 
-export class MeasuredMarks {
+export class MeasuredMarks extends WorldLines {
   /** `measured`: as the page has it; null: not requested. */
   constructor(view, measured) {
-    Object.assign(this, { view, group: new THREE.Group(), shown: null });
+    super(view);
+    this.shown = null;
     this.ofStep = new Map(); // by number: a list of {kind, from, to, words}, the first of which has the text
     if (measured) {
       const ends = unpack(measured.ends), kinds = unpack(measured.kind),
@@ -226,7 +228,6 @@ export class MeasuredMarks {
             { kind: kinds[i], from: at(6 * i), to: at(6 * i + 3), words: measured.words[i] });
       });
     }
-    view.stage.add(this.group);
   }
 
   /** Rebuilds the lines if the step has changed. */
@@ -235,26 +236,18 @@ export class MeasuredMarks {
       now = this.ofStep.get(events.stepNumber(selection.event)) || [];
     if ((now[0] || null) === this.shown) return;
     this.shown = now[0] || null;
-    for (const object of this.group.children.slice()) discard(this.group, object);
+    this.clear();
     const key = [];
     MEASURED.forEach(({ colour, key: text, width, isArrow }, kind) => {
       const marks = now.filter((mark) => mark.kind === kind);
       if (marks.length === 0) return;
-      const lines = marks.flatMap(({ from, to }) => (isArrow ? arrowOf(from, to, events.dim) : [from, to]));
-      this.addLines(lines, colours[colour], width);
+      const ends = marks.flatMap(({ from, to }) => (isArrow ? arrowOf(from, to, events.dim) : [from, to]))
+          .flatMap((p) => p.toArray());
+      this.addLines(ends, WHITE, 2 * width, 8); // so that they are visible on bodies of any colour
+      this.addLines(ends, colours[colour], width, 9);
       key.push([colours[colour], text, WHITE]);
     });
     legend.also(key, "measured");
-  }
-
-  /** A pale line under each, so that they are visible on bodies of any colour. */
-  addLines(points, colour, lineWidth) {
-    const ends = points.flatMap((p) => p.toArray());
-    for (const [c, width, order] of [[WHITE, 2 * lineWidth, 8], [colour, lineWidth, 9]]) {
-      const lines = thickLines(ends, thickMaterial(c, width, this.view.lens));
-      lines.renderOrder = order;
-      this.group.add(lines);
-    }
   }
 
   /** Writes the length beside the bodies, with a line that leads to the midpoint of the segment. */
@@ -299,11 +292,11 @@ function arrowOf(from, to, dim) {
 
 // ---- the curves along which the surfaces meet in the current step, over the wrappers: solid where they are
 // seen, dashed where a body hides them, as in frames
-export class ContactCurves {
+export class ContactCurves extends WorldLines {
   /** `curves`: as the page has them; null: not known. */
   constructor(view, curves) {
-    Object.assign(this, { view, group: new THREE.Group(), shown: -1, now: [], ofStep: new Map() });
-    view.stage.add(this.group);
+    super(view);
+    Object.assign(this, { shown: -1, now: [], ofStep: new Map() });
     if (!curves) return;
     const [points, sizes, closed] = ["points", "size", "closed"].map((name) => unpack(curves[name]));
     let at = 0;
@@ -320,27 +313,21 @@ export class ContactCurves {
     group.visible = !view.now.isolate && view.now.explode === 0;
     if (step === this.shown) return;
     this.shown = step;
-    for (const object of group.children.slice()) discard(group, object);
+    this.clear();
     const curves = this.ofStep.get(step) || [], { contact } = view.colours,
       ends = curves.flatMap((points) => points.slice(1).flatMap((p, i) => [...points[i], ...p])),
       hidden = view.events.dim === 3 ? [[WHITE, 5, 0.5, 0], [contact, 2.2, 0.85, 9]] : [];
     this.now = curves;
     this.dashed = hidden.length > 0 && ends.length > 0;
-    const add = (object) => {
-      object.renderOrder = 7 + group.children.length;
-      group.add(object);
-    };
-    if (ends.length) {
-      for (const [colour, width, opacity, dash] of hidden)
-        add(thickLines(ends, thickMaterial(colour, width, view.lens, { opacity, dash })));
-      for (const [colour, width] of [[WHITE, 6], [contact, 3]])
-        add(thickLines(ends, thickMaterial(colour, width, view.lens, { hides: view.events.dim === 3 })));
-    }
+    for (const [colour, width, opacity, dash] of ends.length ? hidden : [])
+      this.addLines(ends, colour, width, 7, { opacity, dash });
+    for (const [colour, width, order] of ends.length ? [[WHITE, 6, 8], [contact, 3, 9]] : [])
+      this.addLines(ends, colour, width, order, { hides: view.events.dim === 3 });
     // Curves too small to be noticed, and single points, have a dot.
     const least = 0.01 * view.reach().radius,
       small = curves
           .filter((points) => points.every((p) => Math.hypot(...p.map((x, i) => x - points[0][i])) < least));
-    if (small.length) add(roundPoints(small.flatMap((points) => points[0]), contact, 10));
+    if (small.length) this.add(roundPoints(small.flatMap((points) => points[0]), contact, 10), 10);
   }
 }
 

@@ -167,27 +167,25 @@ export class CostStrip {
       svg = svgElement("svg", { viewBox, preserveAspectRatio: "none", role: "img", "aria-label": label }),
       step = width / bars.length,
       contact = this.contactStep * step;
-    const make = (name, parent, attributes) => parent.appendChild(svgElement(name, attributes));
     bars.forEach((bar, i) => {
-      const group = make("g", svg, { class: "bar" });
-      make("title", group, {}).textContent = `${bar.words}: ` +
-        sorts
-          .map((s, k) => (bar.values[k] ? `${digits(bar.values[k])} ${s.name}` : ""))
-          .filter(Boolean)
-          .join(", ");
-      make("rect", group, { x: i * step, y: 0, width: step, height, class: "hit" });
       let top = height;
-      bar.values.forEach((value, k) => {
-        const h = (value / most) * 0.92 * height;
-        top -= h;
-        const box = { x: i * step, y: top, width: 0.88 * step, height: h };
-        if (h > 0) make("rect", group, box).style.fill = sorts[k].colour;
-      });
+      const shown = sorts.map((s, k) => ({ ...s, value: bar.values[k] })).filter(({ value }) => value > 0),
+        parts = shown.map(({ colour, value }) => {
+          const h = (value / most) * 0.92 * height;
+          top -= h;
+          const place = { x: i * step, y: top, width: 0.88 * step, height: h };
+          return svgElement("rect", { ...place, style: `fill: ${colour}` });
+        }),
+        words = `${bar.words}: ${shown.map((s) => `${digits(s.value)} ${s.name}`).join(", ")}`,
+        hit = svgElement("rect", { x: i * step, y: 0, width: step, height, class: "hit" });
+      const group = svgElement("g", { class: "bar" }, svgElement("title", {}, words), hit, ...parts);
       group.addEventListener("click", bar.go);
+      svg.append(group);
     });
     if (this.contactStep > 0)
-      make("line", svg, { x1: contact, x2: contact, y2: height, class: "contact" });
-    this.cursor = make("rect", svg, { y: 2, height: height - 4, width: Math.max(3, step), class: "cursor" });
+      svg.append(svgElement("line", { x1: contact, x2: contact, y2: height, class: "contact" }));
+    this.cursor = svgElement("rect", { y: 2, height: height - 4, width: Math.max(3, step), class: "cursor" });
+    svg.append(this.cursor);
     const words = element("p", { title: `${this.title}; a click on a bar selects it` },
         `up to ${digits(most)} ${this.unit}`);
     const addKey = (name) => {

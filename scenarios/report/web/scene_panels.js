@@ -37,18 +37,6 @@ export function fillList(list, rows) {
   );
 }
 
-/** Copies text; returns true on success. `element` contains the text, and is selected if there is no
-    clipboard, as on pages from disk. */
-export async function copyText(text, element) {
-  try {
-    await navigator.clipboard.writeText(text);
-    return true;
-  } catch {
-    getSelection().selectAllChildren(element);
-    return document.execCommand("copy");
-  }
-}
-
 // ---- the selection that all views show: one event, and possibly a face or a region. Views change it here
 // and their listeners are notified.
 export class Selection {
@@ -157,6 +145,10 @@ export class Panel {
     return this.bodies.length > 1 ? ` of ${SIDES[side]}` : "";
   }
 
+  regionButton(side, region, words = digits(region)) {
+    return textButton(words, () => this.selection.pickRegion(side, region));
+  }
+
   showEvent() {
     const i = this.selection.event, events = this.events, kind = events.kindOf(i), level = events.level(i),
       cause = events.find(events.cause[i]);
@@ -188,10 +180,7 @@ export class Panel {
       ...events
         .regions(i)
         .filter((r) => this.bodies[r.side].complete)
-        .map((r) => textButton(`region ${digits(r.region)}${this.name(r.side)}`, () =>
-            this.selection.pickRegion(r.side, r.region),
-          ),
-        ),
+        .map((r) => this.regionButton(r.side, r.region, `region ${digits(r.region)}${this.name(r.side)}`)),
     ];
     if (attempt && this.bodies[0].complete)
       parts.push(
@@ -248,7 +237,7 @@ export class Panel {
       [
         "covered by",
         region === NONE ? "no region: it is on the outermost wrapper"
-          : textButton(`region ${digits(region)}`, () => this.selection.pickRegion(body.side, region)),
+          : this.regionButton(body.side, region, `region ${digits(region)}`),
       ],
     ];
   }
@@ -258,14 +247,10 @@ export class Panel {
     if (region === NONE) return [["region", "none hides it"]];
     const parent = body.parent[region], side = body.side;
     return [
-      ["region", textButton(digits(region), () => this.selection.pickRegion(side, region))],
+      ["region", this.regionButton(side, region)],
       ["layer", body.layer[region], "pass of the builder that made the region; 0 lies on the solid"],
       ["depth", body.depth(region), "number of steps to the outside, along parents"],
-      [
-        "parent",
-        parent === NONE ? "the outside"
-          : textButton(digits(parent), () => this.selection.pickRegion(side, parent)),
-      ],
+      ["parent", parent === NONE ? "the outside" : this.regionButton(side, parent)],
       ["lids", body.lids(region).length, "faces that hide the region"],
       ["floor", body.floor(region).length, "faces that the region hides"],
     ];

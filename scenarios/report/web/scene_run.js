@@ -22,6 +22,13 @@ export function unpack(text) {
   return out;
 }
 
+/** Returns a body's pose in the page's frame, as scene_json.cpp does: vertices are relative to its centre. */
+export const poseInPage = (rows, side, { origin, unit, bodies }) => rows.map((x, i) => {
+  if (i % 4 !== 3) return x;
+  const turned = rows.slice(i - 3, i).reduce((sum, r, k) => sum + r * bodies[side].centre[k], x);
+  return (turned - origin[(i - 3) / 4]) / unit;
+});
+
 /** Returns the largest index whose value is at most `value`, in an ascending array; -1: none. */
 export function lastAtMost(ascending, value) {
   let low = 0, high = ascending.length;
@@ -159,18 +166,10 @@ export class Events {
     this.relations = json.relations;
     this.stepNumbers = unpack(json.steps.index);
     this.firstOfStep = unpack(json.steps.first).map((id) => this.from(id));
-    const kind = (name) => this.kinds.findIndex((k) => k.name === name);
-    this.STEP = kind("step");
-    this.FACE_TEST = kind("face test");
-    this.REFINE = kind("refine");
-    this.COARSEN = kind("coarsen");
-    this.CONTACT = kind("contact");
-    this.RESULT = kind("result");
-    this.PATCH = kind("patch");
-    this.CAP = kind("cap");
-    this.REGION = kind("region");
-    this.PASS = kind("pass");
-    this.PASS_END = kind("pass end");
+    // The numbers of kinds as STEP, FACE_TEST and so on.
+    const names = "step,face test,refine,coarsen,contact,result,patch,cap,region,pass,pass end";
+    for (const name of names.split(","))
+      this[name.toUpperCase().replace(" ", "_")] = this.kinds.findIndex((k) => k.name === name);
     /** Passes of a construction, which begins with the body itself: [{first, last, words}], ids of events;
         else null. */
     this.passes = json.passes;

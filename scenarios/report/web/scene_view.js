@@ -65,7 +65,7 @@ export function webglWorks() {
   return Boolean(canvas.getContext("webgl") || canvas.getContext("experimental-webgl"));
 }
 
-// ---- the bodies on a canvas that follows the size of its frame. Subclasses draw: draw() ends with render()
+// ---- the bodies on a canvas that follows the size of its frame. In subclasses, draw() ends with render()
 export class BodiesCanvas {
   constructor(scene, bodies) {
     Object.assign(this, { bodies, canvas: byId("view-canvas"), colours: new Colours(scene.colours) });
@@ -103,6 +103,9 @@ export class BodiesCanvas {
   }
 
   redraw = oncePerFrame(() => this.draw());
+  draw() {
+    this.render();
+  }
 
   render() {
     const { camera, lens } = this, ball = this.reach(), { radius } = ball;
@@ -110,6 +113,7 @@ export class BodiesCanvas {
     lens.depths.set(camera.distance - radius, 2 * radius);
     if (camera.plane) for (const part of [...this.views, this.marks]) part.widen(lens.pixel.value);
     camera.prepare(ball, this.now ? this.now.slice : 0);
+    for (const view of this.views) view.sortLids(camera.camera.getWorldDirection(new THREE.Vector3()));
     this.renderer.render(this.stage, camera.camera);
   }
 

@@ -1,5 +1,5 @@
-import { byId, digits, element, plural, short, textButton } from "./dom.js";
-import { copyText, fillList } from "./scene_panels.js";
+import { byId, copyText, digits, element, plural, short, textButton } from "./dom.js";
+import { fillList } from "./scene_panels.js";
 import { NONE, SIDES } from "./scene_run.js";
 
 // ---- beside the view: why the two faces of an event, or two that were clicked, intersect or not; and for a
@@ -81,7 +81,7 @@ export class WhyPanel {
       ? `${["The faces are disjoint", "The faces touch", "The faces cross"][e.meet]}. Decided by ${e.by}.`
       : "";
     this.showWay(e ? e.rows : []);
-    this.showFacts(e ? this.pairFacts(e) : []);
+    fillList(byId("why-facts"), e ? this.pairFacts(e) : []);
     this.showRegions(simplices);
   }
 
@@ -152,7 +152,7 @@ export class WhyPanel {
     byId("why-verdict").textContent = this.stepText(e);
     this.showWay([]);
     const pairs = e.depths.reduce((n, [all]) => n + all, 0);
-    this.showFacts([
+    fillList(byId("why-facts"), [
       ["bounding boxes", e.roots.gap > 0 ? `gap ${short(e.roots.gap)}` : `overlap by ${short(-e.roots.gap)}`],
       ["pairs of nodes", `${digits(pairs)}, to depth ${e.depths.length - 1}`],
       [
@@ -227,10 +227,6 @@ export class WhyPanel {
     // The nodes are lrbscope's; with another engine, the view has the boxes of that engine's trees.
     if (this.events.engine || this.row < 0 || !this.now || this.now.kind !== "pair") return [];
     return this.now.found.rows[this.row].nodes.map((number, side) => ({ side, number }));
-  }
-
-  showFacts(rows) {
-    fillList(byId("why-facts"), rows);
   }
 
   async copy() {

@@ -1,4 +1,4 @@
-import { byId, oncePerFrame, percent, plural, short, svgElement } from "./dom.js";
+import { asButton, byId, oncePerFrame, percent, plural, short, svgElement } from "./dom.js";
 import { unpack } from "./scene_run.js";
 
 // ---- the sorts of work, as the picture at the top and the icicle colour them
@@ -133,21 +133,14 @@ export class WorkIcicle {
     rect.style.fillOpacity = colour ? 0.5 : 0.25;
     const group = svgElement(
       "g",
-      { tabindex: 0, role: "button", "aria-label": title },
+      { role: "button", "aria-label": title },
       svgElement("title", {}, title),
       rect,
       svgElement("text", { x: x + 7, y: y + height / 2 }, words || ""),
     );
     group.dataset.parts = part.parts.join(" ");
     const phase = depth === 1 ? part.name : this.zoom;
-    const choose = () => this.choose(depth === 0 ? null : { ...part, phase });
-    group.addEventListener("click", choose);
-    group.addEventListener("keydown", (e) => {
-      if (e.key !== "Enter" && e.key !== " ") return;
-      e.preventDefault();
-      e.stopPropagation();
-      choose();
-    });
+    asButton(group, () => this.choose(depth === 0 ? null : { ...part, phase }));
     return group;
   }
 

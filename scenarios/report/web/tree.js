@@ -1,4 +1,4 @@
-import { byId, digits, linkRow, percent, plural, rounded, textButton } from "./dom.js";
+import { byId, digits, linkRow, listenToKeys, percent, plural, rounded, textButton } from "./dom.js";
 import { mixed } from "./scene_bodies.js";
 import { boxEdges, WHITE } from "./scene_lines.js";
 import { Body, grouped, NONE, unpack } from "./scene_run.js";
@@ -34,45 +34,23 @@ class TreeNodes {
   }
 }
 
-/** Returns the polygon within w.x <= offset (Sutherland and Hodgman 1974). */
-function clipped(polygon, w, offset) {
-  const out = [],
-    height = (p) => w[0] * p[0] + w[1] * p[1] + w[2] * p[2] - offset;
-  polygon.forEach((p, i) => {
-    const q = polygon[(i + 1) % polygon.length], [a, b] = [height(p), height(q)];
-    if (a <= 0) out.push(p);
-    if (a < 0 !== b < 0 && a !== b) out.push(mixed(p, q, a / (a - b)));
-  });
-  return out;
-}
-
-/** Returns the area of a planar polygon; of a segment, which has two corners, its length. */
-function areaOf(polygon) {
-  const sum = [0, 0, 0],
-    from = (p) => p.map((x, i) => x - polygon[0][i]);
-  if (polygon.length === 2) return Math.hypot(...from(polygon[1]));
-  for (let i = 1; i + 1 < polygon.length; i++) {
-    const [u, v] = [from(polygon[i]), from(polygon[i + 1])];
-    for (let k = 0; k < 3; k++)
-      sum[k] += (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]) / 2;
-  }
-  return Math.hypot(...sum);
-}
-
-/** Returns true if a part of a face lies in a box, `at`: its centre and three half axes. */
+/** Returns true if a part of a face lies in a box, `at`: its centre and three half axes: if no axis of their
+    faces and edges separates them. */
 function reachesInto(body, face, at) {
-  const least = 1e-5; // share of the face's area: positions are floats
-  let polygon = [...body.face(face)].map((v) => [...body.vertices.subarray(3 * v, 3 * v + 3)]);
-  const whole = areaOf(polygon);
-  for (let axis = 0; axis < 3; axis++) {
-    const w = [...at.subarray(3 + 3 * axis, 6 + 3 * axis)],
-      along = w.reduce((sum, x, i) => sum + x * at[i], 0),
-      reach = w.reduce((sum, x) => sum + x * x, 0);
-    polygon = clipped(polygon, w, along + reach);
-    polygon = clipped(polygon, w.map((x) => -x), reach - along);
-    if (polygon.length < 2) return false;
-  }
-  return areaOf(polygon) > least * whole;
+  const most = 1 - 1e-5, // of the box: faces that touch it do not count, and positions are floats
+    part = (array, first) => new THREE.Vector3(...array.subarray(first, first + 3)),
+    corners = [...body.face(face)].map((v) => part(body.vertices, 3 * v).sub(part(at, 0))),
+    half = [3, 6, 9].map((first) => part(at, first)),
+    isApart = (axis) => {
+      const reach = most * half.reduce((sum, h) => sum + Math.abs(h.dot(axis)), 0),
+        along = corners.map((p) => p.dot(axis));
+      return Math.min(...along) > reach || Math.max(...along) < -reach;
+    };
+  if (half.some(isApart)) return false;
+  const edges = corners.map((p, i) => corners[(i + 1) % corners.length].clone().sub(p)),
+    crosses = [edges[1], ...half, new THREE.Vector3(0, 0, 1)]; // the last: for segments
+  return !crosses.some((way, i) =>
+      (i ? edges : edges.slice(0, 1)).some((edge) => isApart(edge.clone().cross(way))));
 }
 
 class TreeView extends BodiesCanvas {
@@ -82,10 +60,6 @@ class TreeView extends BodiesCanvas {
     this.views[0].paint({ of: () => this.colours.bodies[0] }, 0);
     this.views[0].lookInside(true, false);
     this.start();
-  }
-
-  draw() {
-    this.render();
   }
 
   /** Shows a node. `kinds`: by face, 2 if it is below the node, 1 if it is another one in its volume, else 0.
@@ -137,7 +111,7 @@ class TreePage {
     this.connect();
     const requested = this.nodes.indexOf.get(location.hash.replace(/^#node=/, ""));
     this.select(requested === undefined ? this.first() : requested);
-    if (this.view) this.view.frameAll(this.view.camera.from);
+    if (this.view) this.view.frameAll(this.telling());
   }
 
   /** Returns the node that the page opens with: the first one of a table, or the root. */
@@ -145,6 +119,14 @@ class TreePage {
     const row = document.querySelector("tr[data-to^=node]"),
       node = row && this.nodes.indexOf.get(row.dataset.to.slice(5));
     return node === undefined || node === null ? 0 : node;
+  }
+
+  /** Returns a direction in which the triangles below the node are seen. */
+  telling() {
+    const { view, kinds } = this, [body] = view.views, own = body.realFaces.filter((f) => kinds[f] === 2),
+      out = body.outward(own).normalize();
+    return view.camera.plane ? view.camera.from
+        : out.multiplyScalar(2).add(new THREE.Vector3(...view.camera.from).normalize()).toArray();
   }
 
   select(node) {
@@ -222,14 +204,14 @@ class TreePage {
   }
 
   /** Goes to the parent, the first child, or a sibling. */
-  go(key) {
+  go(way) {
     const { nodes, node } = this, parent = nodes.parent[node],
       siblings = parent === NONE ? [node] : [...nodes.children(parent)],
       at = siblings.indexOf(node);
     const next = {
-      ArrowUp: parent === NONE ? undefined : parent, ArrowDown: nodes.children(node)[0],
-      ArrowLeft: siblings[at - 1], ArrowRight: siblings[at + 1],
-    }[key];
+      Up: parent === NONE ? undefined : parent, Down: nodes.children(node)[0],
+      Left: siblings[at - 1], Right: siblings[at + 1],
+    }[way];
     if (next !== undefined) this.select(next);
   }
 
@@ -259,22 +241,19 @@ class TreePage {
       this.view.camera.setOrthographic(!this.view.camera.orthographic);
       byId("orthographic").setAttribute("aria-pressed", String(this.view.camera.orthographic));
     };
-    document.addEventListener("keydown", (e) => this.press(e));
+    const press = (id) => () => byId(id).click();
+    listenToKeys({
+      ArrowUp: () => this.go("Up"), ArrowDown: () => this.go("Down"),
+      ArrowLeft: () => this.go("Left"), ArrowRight: () => this.go("Right"),
+      f: (shift) => press(shift ? "fit-body" : "fit-node")(),
+      i: press("alone"), c: press("children"), o: press("orthographic"),
+    });
     onClick(this.view.canvas, (e) => {
       const hit = this.view.nearest(e.clientX, e.clientY, [this.view.views[0].real]),
         leaf = hit ? this.nodes.leafOf(hit.face) : -1;
       if (leaf >= 0) this.select(leaf);
       else if (hit) byId("node-state").textContent = `triangle ${digits(this.faces[hit.face])} is in no leaf`;
     });
-  }
-
-  press(e) {
-    if (e.ctrlKey || e.metaKey || e.altKey || ["INPUT", "SELECT"].includes(e.target.tagName)) return;
-    const keys = { F: "fit-body", f: "fit-node", i: "alone", c: "children", o: "orthographic" };
-    if (e.key.startsWith("Arrow")) this.go(e.key);
-    else if (keys[e.key]) byId(keys[e.key]).click();
-    else return;
-    e.preventDefault();
   }
 }
 

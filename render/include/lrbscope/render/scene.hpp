@@ -122,8 +122,7 @@ struct SceneOptions {
   std::array<std::vector<RegionId>, 2>
       isolate;             ///< regions of A and B; if not empty, only these are shown, the rest as ghosts
   bool ghost_rest = true;  ///< false: the rest is omitted
-  double explode = 0;      ///< included regions move outward by this share of their distance from the body's
-                           ///< centre; 0: not moved
+  double explode = 0;      ///< the lids of this share of the layers move outward, the outermost farthest
   bool real_edges = true;
   /// 3D: faces in contact get a border that is visible through faces in front of it.
   bool contact_rims = false;
@@ -154,11 +153,13 @@ constexpr std::uint32_t region_id(Side side, RegionId r) {
   return (side == Side::b ? 1U << 31 : 0U) | 1U << 30 | r;
 }
 
+/// Returns the posed corners of a face.
+std::vector<Eigen::Vector3d> corners_of(const LrbRep& rep, FaceId face, const Pose& pose = {});
+
 /// Returns all points that a body can show in any wrapper state, posed. Fit the camera of a sequence to them.
 std::vector<Eigen::Vector3d> body_points(const LrbRep& rep, const Pose& pose);
 
-/// Returns the displacement of a region of a posed body by SceneOptions::explode, away from the body's
-/// centre.
+/// Returns the displacement of a region of a posed body by SceneOptions::explode: where its lids look.
 Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, double explode);
 /// Returns that of a face, which is moved with the region whose lid it is; zero for real faces.
 Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, FaceId f, double explode);
