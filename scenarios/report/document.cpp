@@ -337,7 +337,7 @@ Document& Document::table(const Table& t) {
   std::vector<std::size_t> numbers(t.columns.size());
   for (const std::vector<std::string>& row : t.rows)
     for (std::size_t c = 0; c < std::min(row.size(), numbers.size()); ++c)
-      numbers[c] += looks_numeric(row[c]) ? 1 : 0;
+      numbers[c] += looks_numeric(row[c]) || row[c] == "-" ? 1 : 0;
   const auto numeric = [&](std::size_t c) { return c < numbers.size() && 2 * numbers[c] > t.rows.size(); };
   std::string head, rows;
   for (std::size_t c = 0; c < t.columns.size(); ++c)

@@ -106,13 +106,13 @@ function ticksWithin(axis) {
       : [{ value: axis.min }, { value: axis.max }];
 }
 
+const tenTo = (n) => `10${String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)])}`;
 /** Returns the label of a logarithmic axis: 0.01, 100, 10⁵; on a long axis of powers of ten only */
 function logLabel(value, { min, max }) {
-  const power = Math.round(Math.log10(value)),
-    superscript = (n) => String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]);
+  const power = Math.round(Math.log10(value));
   if (Math.abs(Math.log10(value) - power) > 1e-6)
     return max < 30 * min ? String(Number(value.toPrecision(2))) : "";
-  return power >= -2 && power <= 3 ? String(Number(value.toPrecision(2))) : `10${superscript(power)}`;
+  return power >= -2 && power <= 3 ? String(Number(value.toPrecision(2))) : tenTo(power);
 }
 
 function axis({ label, log, min, max, ticks }, isWhole = true) {
@@ -126,7 +126,7 @@ function axis({ label, log, min, max, ticks }, isWhole = true) {
     grid: { color: style("--grid"), borderColor: style("--line") },
     ticks: {
       color: style("--soft"), maxRotation: 0, precision: log || !isWhole ? undefined : 0,
-      ...(given.size ? { callback: (value) => given.get(value) } : log
+      ...(given.size ? { callback: (value) => given.get(value)?.replace(/^1e(-?\d+)$/, (_, n) => tenTo(n)) } : log
         ? { callback(value) { return logLabel(value, this); } } : {}),
     },
   };
