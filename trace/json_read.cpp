@@ -14,84 +14,6 @@ namespace lrb::io {
 
 namespace {
 
-/// Scans a text known to be valid JSON and records where values begin.
-class Walker {
- public:
-  Walker(const std::string& text, std::unordered_map<std::string, std::size_t>& offsets,
-         std::string& duplicate)
-      : text_(text), offsets_(offsets), duplicate_(duplicate) {}
-
-  void document() {
-    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // skips a byte order mark, as the parser does
-    value("");
-  }
-
- private:
-  void value(const std::string& pointer) {
-    skip_space();
-    offsets_.emplace(pointer, at_);
-    if (text_[at_] == '{')
-      object(pointer);
-    else if (text_[at_] == '[')
-      array(pointer);
-    else if (text_[at_] == '"')
-      string();
-    else
-      while (at_ < text_.size() && std::string_view(",]} \t\r\n").find(text_[at_]) == std::string_view::npos)
-        ++at_;
-  }
-
-  void object(const std::string& pointer) {
-    std::set<std::string> keys;
-    ++at_;
-    for (skip_space(); text_[at_] != '}'; skip_space()) {
-      if (text_[at_] == ',') {
-        ++at_;
-        skip_space();
-      }
-      const std::size_t key_at = at_;
-      const std::string key = string();
-      const std::string child = pointer + "/" + pointer_part(key);
-      if (!keys.insert(key).second && duplicate_.empty()) {
-        duplicate_ = child;
-        offsets_[child + "#"] = key_at;
-      }
-      offsets_.emplace(child + "#", key_at);
-      skip_space();
-      ++at_;  // the colon
-      value(child);
-    }
-    ++at_;
-  }
-
-  void array(const std::string& pointer) {
-    std::size_t i = 0;
-    ++at_;
-    for (skip_space(); text_[at_] != ']'; skip_space()) {
-      if (text_[at_] == ',') ++at_;
-      value(pointer + "/" + std::to_string(i++));
-    }
-    ++at_;
-  }
-
-  std::string string() {
-    const std::size_t begin = at_++;
-    while (text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
-    ++at_;
-    return nlohmann::json::parse(text_.substr(begin, at_ - begin)).get<std::string>();
-  }
-
-  void skip_space() {
-    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
-      ++at_;
-  }
-
-  const std::string& text_;
-  std::unordered_map<std::string, std::size_t>& offsets_;
-  std::string& duplicate_;
-  std::size_t at_ = 0;
-};
-
 /// An iterator over a text. The parser reads through a copy of it; `seen` tracks the copy's position.
 class Reading {
  public:
@@ -119,24 +41,42 @@ std::string place(const std::string& text, const std::string& file, std::size_t 
   return file + ":" + std::to_string(p.line) + ":" + std::to_string(p.column) + ": ";
 }
 
-/// Checks a text before any value of it is stored, so that a rejected text costs no memory.
+/// Checks a text before any value of it is stored, so that a rejected text costs no memory; or finds the
+/// offsets of a text that was accepted.
 class Check final : public nlohmann::json_sax<nlohmann::json> {
  public:
-  Check(const std::string& text, const std::string& file) : text_(text), file_(file) {
+  /// `offsets`: null if only to check.
+  Check(const std::string& text, const std::string& file, JsonOffsets* offsets = nullptr)
+      : text_(text), file_(file), offsets_(offsets) {
+    if (text_.starts_with("\xef\xbb\xbf")) read_ = 3;  // a byte order mark, which the parser skips
     parse_with(text_, seen_, *this);
   }
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return enter(); }
-  bool key(string_t&) override { return true; }
+  /// Returns the pointer of the first duplicate key, or an empty string if all keys are unique.
+  const std::string& duplicate() const { return duplicate_; }
+
+  bool null() override { return value(); }
+  bool boolean(bool) override { return value(); }
+  bool number_integer(number_integer_t) override { return value(); }
+  bool number_unsigned(number_unsigned_t) override { return value(); }
+  bool number_float(number_float_t, const string_t&) override { return value(); }
+  bool string(string_t&) override { return value(); }
+  bool binary(binary_t&) override { return value(); }
+  bool start_object(std::size_t) override { return enter(false); }
+  bool key(string_t& key) override {
+    if (offsets_ == nullptr) return true;
+    const std::size_t begin = begin_of_token();
+    Level& object = levels_.back();
+    object.member = object.pointer + "/" + pointer_part(key);
+    offsets_->emplace(object.member + "#", begin);
+    if (!object.keys.insert(key).second && duplicate_.empty()) {
+      duplicate_ = object.member;
+      (*offsets_)[duplicate_ + "#"] = begin;
+    }
+    return true;
+  }
   bool end_object() override { return leave(); }
-  bool start_array(std::size_t) override { return enter(); }
+  bool start_array(std::size_t) override { return enter(true); }
   bool end_array() override { return leave(); }
   bool parse_error(std::size_t position, const std::string& token,
                    const nlohmann::json::exception& error) override {
@@ -144,21 +84,52 @@ class Check final : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  bool enter() {
-    constexpr int kDeepest = 64;  // levels: Walker is recursive, and lrbscope's files need fewer than ten
-    if (++depth_ > kDeepest)
+  /// An open container.
+  struct Level {
+    std::string pointer, member;  ///< member: of the current value
+    bool is_array = false;
+    std::size_t size = 0;
+    std::set<std::string> keys = {};
+  };
+
+  /// Returns where the token that was just read begins: behind space and punctuation after the one before.
+  /// The parser has read one character beyond a number.
+  std::size_t begin_of_token() {
+    const std::size_t begin = text_.find_first_not_of(" \t\r\n,:]}", read_);
+    read_ = static_cast<std::size_t>(seen_ - text_.data());
+    return begin;
+  }
+  bool value() {
+    if (offsets_ != nullptr) offsets_->emplace(pointer(), begin_of_token());
+    return true;
+  }
+  std::string pointer() {
+    if (levels_.empty()) return "";
+    Level& open = levels_.back();
+    return open.is_array ? open.pointer + "/" + std::to_string(open.size++) : open.member;
+  }
+  bool enter(bool is_array) {
+    constexpr std::size_t kDeepest = 64;  // levels: lrbscope's files need fewer than ten
+    if (levels_.size() == kDeepest)
       throw InputError(place(text_, file_, static_cast<std::size_t>(seen_ - text_.data()) - 1) +
                        "nested more than 64 levels deep");
+    Level level;
+    if (offsets_ != nullptr) offsets_->emplace(level.pointer = pointer(), begin_of_token());
+    level.is_array = is_array;
+    levels_.push_back(std::move(level));
     return true;
   }
   bool leave() {
-    --depth_;
+    levels_.pop_back();
     return true;
   }
 
   const std::string &text_, &file_;
+  JsonOffsets* offsets_;
   const char* seen_ = text_.data();
-  int depth_ = 0;
+  std::size_t read_ = 0;  ///< end of the last token
+  std::vector<Level> levels_;
+  std::string duplicate_;
 };
 
 }  // namespace
@@ -228,29 +199,19 @@ void fail_json(const std::string& text, const std::string& file, std::size_t pos
                    (syntax ? "not JSON: " : "not valid JSON: ") + plain_reason(error.what()));
 }
 
-JsonIndex::JsonIndex(const std::string& text) {
-  Walker(text, offsets_, duplicate_).document();
-}
-
-std::size_t JsonIndex::offset(const std::string& pointer) const {
-  const auto it = offsets_.find(pointer);
-  return it == offsets_.end() ? 0 : it->second;
-}
-
 JsonText::JsonText(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
   reject_nul(text_, file_);
-  const Check check(text_, file_);
+  static_cast<void>(Check(text_, file_));
   root_ = std::make_unique<nlohmann::json>(nlohmann::json::parse(text_));
-  index_ = std::make_unique<JsonIndex>(text_);
-  if (!index_->duplicate().empty())
-    throw InputError(where(index_->duplicate() + "#") + ": the key " + printable_name(index_->duplicate()) +
-                     " occurs twice; keep one");
+  if (const std::string twice = Check(text_, file_, &offsets_).duplicate(); !twice.empty())
+    throw InputError(where(twice + "#") + ": the key " + printable_name(twice) + " occurs twice; keep one");
 }
 
 JsonText::~JsonText() = default;
 
 std::string JsonText::where(const std::string& pointer) const {
-  const std::size_t offset = index_->offset(pointer);
+  const auto found = offsets_.find(pointer);
+  const std::size_t offset = found == offsets_.end() ? 0 : found->second;
   if (offset < last_offset_) {
     last_ = {};
     last_offset_ = 0;

@@ -27,20 +27,9 @@ TextPosition position_in(const std::string& text, std::size_t offset);
 /// Moves a position from one byte of a text to a later one.
 void advance(TextPosition& position, const std::string& text, std::size_t from, std::size_t to);
 
-/// Finds the offset of each value of a JSON text by its JSON pointer (RFC 6901), and of each member's key by
-/// the pointer followed by '#'. The text must have been accepted by a parser, and its nesting must be
-/// limited.
-class JsonIndex {
- public:
-  explicit JsonIndex(const std::string& text);
-  std::size_t offset(const std::string& pointer) const;
-  /// Returns the pointer of the first duplicate key, or an empty string if all keys are unique.
-  const std::string& duplicate() const { return duplicate_; }
-
- private:
-  std::unordered_map<std::string, std::size_t> offsets_;
-  std::string duplicate_;
-};
+/// The offset of each value of a JSON text by its JSON pointer (RFC 6901), and of each member's key by the
+/// pointer followed by '#'.
+using JsonOffsets = std::unordered_map<std::string, std::size_t>;
 
 class JsonText {
  public:
@@ -59,7 +48,7 @@ class JsonText {
   mutable TextPosition last_;  ///< last location computed: requests in order scan the text once
   mutable std::size_t last_offset_ = 0;
   std::unique_ptr<nlohmann::json> root_;
-  std::unique_ptr<JsonIndex> index_;
+  JsonOffsets offsets_;
 };
 
 /// Returns a message of nlohmann's without the exception's name, number and position.
