@@ -59,38 +59,6 @@ std::vector<Mesh> series_meshes(const PaperSeriesOptions& o, std::vector<std::st
   return o.meshes.empty() ? paper::own_series_bodies() : paper::read_series_bodies(o.meshes, notes);
 }
 
-/// Writes a shard's series, to be merged later: series.jsonl and series_times.jsonl.
-void write_series_shard(const std::vector<paper::ContactStep>& steps, const std::string& folder) {
-  io::write_text(folder + "/series.jsonl", paper::to_json_lines(steps));
-  io::write_text(folder + "/series_times.jsonl", paper::times_to_json_lines(steps));
-}
-
-std::vector<paper::ContactStep> read_shards(const std::vector<std::string>& files) {
-  std::vector<paper::ContactStep> steps;
-  for (const std::string& file : files)
-    for (paper::ContactStep& s : paper::read_json_lines(io::read_text(file), file))
-      steps.push_back(std::move(s));
-  return paper::merged(std::move(steps));
-}
-
-/// Reads the files of this name beside the shards' records.jsonl.
-std::vector<paper::ContactStep> read_beside(const std::vector<std::string>& records, const char* name) {
-  std::vector<std::string> files;
-  for (const std::string& file : records)
-    files.push_back((std::filesystem::path(file).parent_path() / name).string());
-  return read_shards(files);
-}
-
-/// Reads the series of the shards.
-std::vector<paper::ContactStep> read_series_shards(const std::vector<std::string>& records) {
-  std::vector<paper::ContactStep> steps = read_beside(records, "series.jsonl");
-  for (const std::string& file : records) {
-    const std::string path = (std::filesystem::path(file).parent_path() / "series_times.jsonl").string();
-    paper::read_times(io::read_text(path), path, steps);
-  }
-  return steps;
-}
-
 // The command.
 
 struct PaperOptions {
@@ -130,24 +98,25 @@ paper::Shard read_shard(const std::string& text) {
 /// how much of the whole is done. Work is measured in seconds on one core, as expected from measurements.
 class PaperWork {
  public:
-  /// An empty folder: nothing is kept.
-  PaperWork(const std::string& folder, const std::string& head, const Globals& globals)
-      : path_(folder.empty() ? "" : folder + "/unfinished.jsonl"),
+  /// Keeps collisions in a file, and takes those that it has. An empty path: none are kept.
+  PaperWork(std::string path, const std::string& head, const Globals& globals)
+      : path_(std::move(path)),
         file_(path_, head, io::UnfinishedFile::Other::refused),
         bar_("paper", 0, globals.quiet) {
-    for (const std::string& line : file_.lines()) {
-      const auto value = nlohmann::json::parse(line, nullptr, false);
-      if (!value.is_object()) continue;
-      std::vector<paper::ContactStep> steps = paper::read_json_lines(value.value("records", ""), path_);
-      paper::read_times(value.value("times", ""), path_, steps);
-      known_[value.value("collision", "")] = std::move(steps);
-    }
+    take(file_.lines());
     if (!known_.empty())
       note(globals, {"continues an interrupted run, of which " + std::to_string(known_.size()) +
                      " collisions are in " + path_});
     if (!path_.empty())
       say_when_interrupted("finished collisions are kept in " + path_ +
                            "; the same command goes on from there");
+  }
+
+  /// Takes the collisions of lines.
+  void take(const std::vector<std::string>& lines) {
+    for (const std::string& line : lines)
+      if (const auto value = nlohmann::json::parse(line, nullptr, false); value.is_object())
+        known_[value.value("collision", "")] = paper::read_json_lines(value.value("records", ""), path_);
   }
 
   /// `mesh_faces` 0: an object of the paper, instead of a mesh.
@@ -163,8 +132,10 @@ class PaperWork {
     bar_.set_share(done_ / total_, what);
   }
 
-  /// Runs a collision, or returns the steps that the earlier run had of it. Called from several threads.
-  std::vector<paper::ContactStep> collide(const paper::CollisionTask& task, Workspace& workspace) {
+  /// Runs a collision, or returns the steps of a known one. `merging`: all must be known. Called from several
+  /// threads.
+  std::vector<paper::ContactStep> collide(const paper::CollisionTask& task, bool merging,
+                                          Workspace& workspace) {
     const std::uint64_t a = task.a.rep.hash(), x = task.x.rep.hash();
     const std::string key = nlohmann::json(task.protocol.step).dump() + " " +
                             std::to_string(task.protocol.steps_after) + " " +
@@ -173,6 +144,10 @@ class PaperWork {
     const double seconds =
         expected_seconds(task.protocol, task.x.draws.empty() ? 0 : task.x.rep.real_face_count(), a == x);
     const auto known = known_.find(key);
+    if (merging && known == known_.end())
+      throw InputError("--merge: the shards do not have collision " + std::to_string(task.collision) +
+                       " with " + printable_name(task.x.name) +
+                       "; finish them, and give the same --experiment and --meshes");
     std::vector<paper::ContactStep> steps =
         known != known_.end() ? known->second : paper::run(task, workspace);
     const std::lock_guard lock(one_at_a_time_);
@@ -180,17 +155,15 @@ class PaperWork {
       total_ -= seconds;
       return steps;
     }
-    file_.add(nlohmann::ordered_json{{"collision", key},
-                                     {"records", paper::to_json_lines(steps)},
-                                     {"times", paper::times_to_json_lines(steps)}}
-                  .dump());
+    file_.add(
+        nlohmann::ordered_json{{"collision", key}, {"records", paper::to_json_lines(steps, true)}}.dump());
     advance(seconds, (task.a.name.empty() ? "" : task.a.name + " and ") + task.x.name);
     return steps;
   }
 
-  void finish() {
+  void finish(bool keep) {
     bar_.finish();
-    file_.remove();
+    if (!keep) file_.remove();
   }
 
  private:
@@ -202,33 +175,22 @@ class PaperWork {
   double done_ = 0, total_ = 0;
 };
 
-/// Describes the run whose collisions can be continued: the bodies and settings, except for the number of
-/// seeds and collisions, which may grow.
-std::string head_of(const paper::SweepOptions& sweep, std::span<const paper::PaperObject> objects) {
-  nlohmann::ordered_json head = {{"lrbscope", trace::lrbscope_version()},
-                                 {"steps_after", sweep.protocol.steps_after},
-                                 {"step", sweep.protocol.step},
-                                 {"seed", sweep.protocol.seed},
-                                 {"shard", {sweep.shard.index, sweep.shard.count}}};
-  for (const paper::PaperObject& o : objects)
-    head["objects"].push_back(o.name + " " + trace::to_hex(o.rep.hash()));
-  return head.dump();
-}
-
-/// Takes the protocol and the resolutions from the shards to be merged; drops the series if the experiment
-/// defines none. Throws InputError if there is nothing to divide into shards.
-void settle(PaperOptions& o, paper::PaperExperiment& experiment) {
+/// Takes the protocol and the resolutions from the shards to be merged, and returns their collisions; drops
+/// the series if the experiment defines none. Throws InputError if there is nothing to divide into shards.
+std::vector<std::string> settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
     throw InputError("experiment " + experiment.name +
                      ": has no collisions, so it does not take --shard or --merge");
   if (!o.merge.empty()) {
-    const paper::ShardFile whole = paper::read_shard_files(o.merge);
+    auto [whole, lines] = paper::read_shards(o.merge);
     experiment.protocol = whole.protocol;
     o.series.resolutions = whole.resolutions;
     o.series.lean = whole.lean;
-  } else if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty())) {
-    o.series.resolutions.most = 0;  // other experiments have a series only if meshes are given
+    return std::move(lines);
   }
+  if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty()))
+    o.series.resolutions.most = 0;  // other experiments have a series only if meshes are given
+  return {};
 }
 
 #ifdef LRB_BUILD_BENCH
@@ -328,11 +290,11 @@ int run_paper(PaperOptions o, const Globals& globals) {
     return kOk;
   }
   paper::PaperExperiment experiment = experiment_of(o);
-  settle(o, experiment);
+  const std::vector<std::string> merged = settle(o, experiment);
   const paper::PaperProtocol& protocol = experiment.protocol;
-  const bool merging = !o.merge.empty();
+  const bool merging = !o.merge.empty(), is_shard = !o.shard.empty();
   paper::SweepOptions sweep{protocol, {}, o.jobs > 0 ? o.jobs : all_cores()};
-  if (!o.shard.empty()) sweep.shard = read_shard(o.shard);
+  if (is_shard) sweep.shard = read_shard(o.shard);
   std::vector<std::string> notes;
   const std::vector<paper::PaperObject> objects = paper::make_objects(experiment, notes);
   const LrbRep& a = objects[0].rep;
@@ -342,16 +304,18 @@ int run_paper(PaperOptions o, const Globals& globals) {
   if (experiment.reports(paper::PaperPart::settings) && paper::as_published(objects))
     settings = paper::other_settings(protocol);
   PaperSteps steps;
-  if (merging) {
-    steps.objects = read_shards(o.merge);
-    if (!settings.empty()) steps.settings = read_beside(o.merge, "settings.jsonl");
-    if (!meshes.empty()) steps.series = read_series_shards(o.merge);
-    paper::check_records({objects, steps.objects, steps.settings, experiment, globals.command_line});
-  }
   const report::Folder folder(o.folder);
-  const bool computes = !merging && experiment.collides();
-  PaperWork work(computes ? o.folder : "", head_of(sweep, objects), globals);
-  sweep.runner = [&](const paper::CollisionTask& task, Workspace& w) { return work.collide(task, w); };
+  const bool computes = experiment.collides();
+  paper::KeptRun run{sweep.shard, protocol, o.series.resolutions, o.series.lean};
+  if (!is_shard)
+    run = {{}, {0, protocol.steps_after, protocol.step, protocol.seed, 0}, {0, 0}};  // the rest may grow
+  PaperWork work(
+      !computes || merging ? "" : o.folder + (is_shard ? "/collisions.jsonl" : "/unfinished.jsonl"),
+      paper::head_of(run, objects), globals);
+  work.take(merged);
+  sweep.runner = [&](const paper::CollisionTask& task, Workspace& w) {
+    return work.collide(task, merging, w);
+  };
 
   // Plan the whole, so that the time left is that of the whole.
   const auto plan = [&](const paper::PaperProtocol& p, double pairs, double mesh_faces = 0,
@@ -370,7 +334,6 @@ int run_paper(PaperOptions o, const Globals& globals) {
   for (const Mesh& mesh : meshes)
     for (const std::uint32_t faces : resolutions::resolution_sizes(mesh, o.series.resolutions)) {
       work.plan(building_seconds(faces));
-      if (merging) continue;
       plan(of_series, 1, faces);
       plan(of_series, 1, faces, true);
     }
@@ -382,14 +345,15 @@ int run_paper(PaperOptions o, const Globals& globals) {
         folder);
   };
   if (computes) {
-    steps.objects = paper::merged(paper::run_seeds(objects, sweep));
+    steps.objects = paper::sorted(paper::run_seeds(objects, sweep));
     for (const paper::PaperProtocol& p : settings) {
       paper::SweepOptions other = sweep;
       other.protocol = p;
       other.scalable_only = true;
       for (paper::ContactStep& s : paper::run_sweep(objects, other)) steps.settings.push_back(std::move(s));
     }
-    if (!meshes.empty() && o.shard.empty()) {  // so that an interruption of the rest leaves these results
+    if (!meshes.empty() && !is_shard &&
+        !merging) {  // so that an interruption of the rest leaves these results
       write(nullptr);
       note(globals, {"wrote " + o.folder +
                      "/index.html; bodies at several resolutions follow (--resolutions 0: none)"});
@@ -400,14 +364,10 @@ int run_paper(PaperOptions o, const Globals& globals) {
   const std::vector<paper::SeriesObject> series = paper::make_series(
       meshes, o.series.resolutions, building, paper::diagonal(a),
       [&](const LrbRep& rep) { work.advance(building_seconds(rep.real_face_count()), "resolutions"); });
-  if (!merging) steps.series = paper::run_series(a, series, sweep);
-  if (!o.shard.empty()) {
-    paper::write_shard_file({sweep.shard, protocol, o.series.resolutions, o.series.lean}, o.folder);
-    io::write_text(o.folder + "/records.jsonl", paper::to_json_lines(steps.objects));
-    if (!settings.empty()) io::write_text(o.folder + "/settings.jsonl", paper::to_json_lines(steps.settings));
-    if (!meshes.empty()) write_series_shard(steps.series, o.folder);
-    work.finish();
-    print(o.folder + "/records.jsonl\n");
+  steps.series = paper::run_series(a, series, sweep);
+  if (is_shard) {
+    work.finish(true);
+    print(o.folder + "/collisions.jsonl\n");
     return kOk;
   }
   if (experiment.reports(paper::PaperPart::incremental))
@@ -417,7 +377,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
 #endif
   const paper::SeriesReport series_report{a, series, steps.series, sweep.jobs};
   note(globals, write(meshes.empty() ? nullptr : &series_report));
-  work.finish();
+  work.finish(false);
   print(o.json ? io::read_text(o.folder + "/tables.json") : o.folder + "/index.html\n");
   return kOk;
 }
@@ -450,9 +410,9 @@ Command add_paper(App& root, const Globals& globals) {
       ->in_range(1u, 1024u);
   Option* shard =
       app->add_option("--shard", o->shard, "i/n",
-                      "Run only part i of n (from 0) of the collisions, and write only its records");
-  Option* merge = app->add_option("--merge", o->merge, "records.jsonl...",
-                                  "Report the records of all shards without computing any; repeat the "
+                      "Run only part i of n (from 0) of the collisions, and keep them in collisions.jsonl");
+  Option* merge = app->add_option("--merge", o->merge, "collisions.jsonl...",
+                                  "Report the collisions of all shards without computing any; repeat the "
                                   "shards' --meshes, if any")
                       ->excludes(shard);
   add_series_options(*app, o->series);

@@ -153,25 +153,10 @@ std::optional<CloseUps> close_ups_of(const PaperReport& r) {
   if (!r.experiment.reports(PaperPart::heat_maps) && !r.experiment.reports(PaperPart::refinement_tree))
     return std::nullopt;
   const PaperPair pair{r.objects.front(), object_called(r, r.experiment.close_up)};
-  const std::vector<ContactStep> steps = of_first_seed(r);
-  const auto [least, most] = easiest_and_hardest(steps, pair.x.name);
-  return CloseUps{pair, close_up(pair, least, r.experiment.protocol, steps),
-                  close_up(pair, most, r.experiment.protocol, steps)};
+  const auto [least, most] = easiest_and_hardest(of_first_seed(r), pair.x.name);
+  return CloseUps{pair, close_up(pair, least, r.experiment.protocol),
+                  close_up(pair, most, r.experiment.protocol)};
 }
-
-}  // namespace
-
-void check_records(const PaperReport& r) {
-  for (const ContactStep& s : r.steps)
-    if (s.collision >= r.experiment.protocol.collisions)
-      throw InputError("the records hold collision " + std::to_string(s.collision) + " with " + s.object +
-                       ", numbered from 0, but the experiment has " +
-                       std::to_string(r.experiment.protocol.collisions) +
-                       ": give the options that the records were made with, such as --collisions");
-  static_cast<void>(close_ups_of(r));
-}
-
-namespace {
 
 report::Table table1(const PaperReport& r) {
   report::Table t{

@@ -13,7 +13,7 @@ namespace lrb::paper {
 
 struct PaperReport {
   std::span<const PaperObject> objects;   ///< A first
-  std::span<const ContactStep> steps;     ///< of all seeds, sorted as merged() sorts them
+  std::span<const ContactStep> steps;     ///< of all seeds, in the order of sorted()
   std::span<const ContactStep> settings;  ///< of other_settings(); may be empty
   const PaperExperiment& experiment;
   std::string command;                   ///< the command that made it
@@ -31,9 +31,5 @@ std::vector<std::string> write_paper_report(const PaperReport& report, const rep
 /// Returns the work of the paper's recursion on kept wrappers and from scratch, in short steps after first
 /// contact.
 report::Table incremental_table(std::span<const PaperObject> objects, PaperProtocol protocol);
-
-/// Throws InputError if the numbers of collisions or the close-ups show that the steps are from another
-/// experiment.
-void check_records(const PaperReport& report);
 
 }  // namespace lrb::paper

@@ -75,10 +75,6 @@ std::string obstacle(const Mesh& mesh) {
   return report.buildable() ? "" : "an LRB-rep cannot be built (see `lrbscope inspect`)";
 }
 
-auto key(const ContactStep& s) {
-  return std::tie(s.object, s.collision, s.step);
-}
-
 }  // namespace
 
 std::string series_name(const SeriesObject& object, SeriesPartner partner) {
@@ -142,7 +138,7 @@ std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObjec
                                   {series_name(object, partner), object.rep, object.body}};
       for (ContactStep& s : run_sweep(pair, scalable)) steps.push_back(std::move(s));
     }
-  return merged(std::move(steps));
+  return sorted(std::move(steps));
 }
 
 std::string times_to_json_lines(std::span<const ContactStep> steps) {
@@ -153,31 +149,6 @@ std::string times_to_json_lines(std::span<const ContactStep> steps) {
     out += line.dump() + "\n";
   }
   return out;
-}
-
-void read_times(const std::string& text, const std::string& file, std::vector<ContactStep>& steps) {
-  const auto reject = [&](std::size_t line, const std::string& why) {
-    throw InputError(printable_name(file) + ":" + std::to_string(line) + ": " + why +
-                     "; give the output folders of the shards of one `lrbscope paper`");
-  };
-  std::map<std::tuple<std::string, std::uint32_t, std::uint32_t>, ContactStep*> by_key;
-  for (ContactStep& s : steps) by_key[key(s)] = &s;
-  std::size_t number = 1;
-  for (std::size_t begin = 0; begin < text.size(); ++number) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    try {
-      const auto j = nlohmann::json::parse(text.substr(begin, end - begin));
-      const auto found =
-          by_key.find({j.at("object").get<std::string>(), j.at("collision").get<std::uint32_t>(),
-                       j.at("step").get<std::uint32_t>()});
-      const auto ns = j.at("nanoseconds").get<PerRecursion<std::uint64_t>>();
-      if (found == by_key.end()) reject(number, "a time for a step without a record");
-      for (std::size_t i = 0; i < ns.size(); ++i) found->second->counts[i].nanoseconds = ns[i];
-    } catch (const nlohmann::json::exception& e) {
-      reject(number, "not the time of a step: " + io::plain_reason(e.what()));
-    }
-    begin = end + 1;
-  }
 }
 
 std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject> objects,
@@ -202,10 +173,8 @@ std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject
     }
   }
   if (!by_object.empty())
-    throw InputError(
-        "the records contain the object " + printable_name(by_object.begin()->first) +
-        ", which is not in the series; give the same --meshes, --resolutions and --subdivide as for the "
-        "shards");
+    throw InputError("the records contain the object " + printable_name(by_object.begin()->first) +
+                     ", which is not in the series");
   return rows;
 }
 

@@ -62,15 +62,12 @@ std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
                                       const BuildOptions& building, double diagonal,
                                       const std::function<void(const LrbRep&)>& progress);
 
-/// Runs all collisions of the shard, with the first seed; returns them in the order of merged().
+/// Runs all collisions of the shard, with the first seed; returns them in the order of sorted().
 std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
                                     const SweepOptions& options);
 
 /// Returns the times of the steps, which are not in their records: one JSON object on a line for each step.
 std::string times_to_json_lines(std::span<const ContactStep> steps);
-/// Assigns the steps their times, in any order. Throws InputError naming `file` if it does not match these
-/// steps.
-void read_times(const std::string& text, const std::string& file, std::vector<ContactStep>& steps);
 
 /// One resolution against one partner.
 struct SeriesRow {

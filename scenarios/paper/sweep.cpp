@@ -1,9 +1,8 @@
 #include "scenarios/paper/sweep.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
-#include <optional>
+#include <sstream>
 #include <tuple>
 
 #include <nlohmann/json.hpp>
@@ -14,23 +13,10 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/parallel.hpp>
+#include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/recorder.hpp>
+
 namespace lrb::paper {
-namespace {
-
-/// Returns true if the records of one collision, in the order of its steps, match the new counts.
-bool same_counts(std::span<const ContactStep> records, const CloseUp& found, const std::string& object) {
-  std::size_t next = 0;
-  for (const ContactStep& r : records) {
-    if (r.object != object || r.collision != found.collision) continue;
-    if (next >= found.steps.size()) return false;
-    const ContactStep& now = found.steps[next++];
-    if (r.step != now.step || r.counts[kPaper].comparisons != now.counts[kPaper].comparisons) return false;
-  }
-  return next == found.steps.size();
-}
-
-}  // namespace
 
 std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> steps,
                                                  const std::string& object) {
@@ -44,17 +30,11 @@ std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> st
           std::max_element(comparisons.begin(), comparisons.end(), less)->first};
 }
 
-CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol,
-                 std::span<const ContactStep> records) {
+CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol) {
   Workspace workspace;
   CloseUp out;
   out.collision = collision;
   out.steps = run_collision(pair.a.rep, pair.x.rep, pair.x.name, collision, protocol, workspace);
-  if (!same_counts(records, out, pair.x.name))
-    throw InputError(
-        "collision " + std::to_string(collision) + " of " + pair.a.name + " with " + pair.x.name +
-        " differs from the records, which come from another experiment; give the experiment that "
-        "wrote them, with the same options");
   trace::RecorderSettings settings;
   settings.request.recursion = kRecursions[kPaper];
   trace::Recorder recorder(pair.a.rep, pair.x.rep, settings);
@@ -68,73 +48,54 @@ CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProt
   return out;
 }
 
-namespace {
-
-/// Returns the settings that all shards of one experiment share.
-nlohmann::ordered_json experiment(const ShardFile& s) {
-  nlohmann::ordered_json out = {{"shards", s.shard.count}};
-  out.update(io::record_to_json(s.protocol));
-  out.update(io::record_to_json(s.resolutions));
-  out["lean"] = s.lean;
-  return out;
+std::string head_of(const KeptRun& run, std::span<const PaperObject> objects) {
+  nlohmann::ordered_json head = {
+      {"lrbscope", trace::lrbscope_version()}, {"shard", run.shard.index}, {"shards", run.shard.count}};
+  head.update(io::record_to_json(run.protocol));
+  head.update(io::record_to_json(run.resolutions));
+  head["lean"] = run.lean;
+  for (const PaperObject& o : objects) head["objects"].push_back(o.name + " " + trace::to_hex(o.rep.hash()));
+  return head.dump();
 }
 
-ShardFile read(const std::string& path) {
-  const auto reject = [&](const std::string& why) {
-    throw InputError(printable_name(path) + ": not written by `lrbscope paper --shard`: " + why +
-                     "; give the records.jsonl files of its shards' output folders");
-  };
-  const std::string text = io::read_text(path);
-  ShardFile s;
-  try {
-    const auto j = nlohmann::json::parse(text);
-    s.shard = {j.at("shard").get<std::uint32_t>(), j.at("shards").get<std::uint32_t>()};
-    s.protocol = io::record_from_json<PaperProtocol>(j);
-    s.resolutions = io::record_from_json<resolutions::ResolutionOptions>(j);
-    s.lean = j.value("lean", false);
-  } catch (const nlohmann::json::exception& e) {
-    reject(io::plain_reason(e.what()));
-  } catch (const InputError& e) {
-    reject(e.what());
-  }
-  return s;
-}
-
-}  // namespace
-
-std::string shard_file_of(const std::string& records) {
-  return (std::filesystem::path(records).parent_path() / "shard.json").string();
-}
-
-void write_shard_file(const ShardFile& shard, const std::string& folder) {
-  nlohmann::ordered_json j = {{"shard", shard.shard.index}};
-  j.update(experiment(shard));
-  io::write_text(folder + "/shard.json", j.dump(2) + "\n");
-}
-
-ShardFile read_shard_files(const std::vector<std::string>& records) {
-  std::optional<ShardFile> first;
+std::pair<KeptRun, std::vector<std::string>> read_shards(const std::vector<std::string>& files) {
+  std::pair<KeptRun, std::vector<std::string>> out;
+  auto& [whole, lines] = out;
+  nlohmann::json first;
   std::vector<std::uint32_t> there;
-  for (const std::string& file : records) {
-    const std::string path = shard_file_of(file);
-    const ShardFile s = read(path);
-    if (!first) first = s;
-    if (experiment(s) != experiment(*first))
-      throw InputError(printable_name(path) + ": belongs to another experiment than " +
-                       printable_name(shard_file_of(records.front())) +
-                       "; give all shards of one experiment, run with the same options");
-    there.push_back(s.shard.index);
+  for (const std::string& file : files) {
+    std::istringstream in(io::read_text(file));
+    std::string line;
+    std::getline(in, line);
+    auto head = nlohmann::json::parse(line, nullptr, false);
+    try {
+      there.push_back(head.at("shard").get<std::uint32_t>());
+      whole = {{0, head.at("shards").get<std::uint32_t>()},
+               io::record_from_json<PaperProtocol>(head),
+               io::record_from_json<resolutions::ResolutionOptions>(head),
+               head.at("lean").get<bool>()};
+    } catch (const std::exception& e) {
+      throw InputError(printable_name(file) +
+                       ": not written by `lrbscope paper --shard`: " + io::plain_reason(e.what()) +
+                       "; give the collisions.jsonl of its shards' output folders");
+    }
+    head.erase("shard");
+    if (there.size() == 1) first = head;
+    if (head != first)
+      throw InputError(printable_name(file) + ": belongs to another experiment than " +
+                       printable_name(files.front()) +
+                       "; give all shards of one experiment, run with the same options by the same version");
+    while (std::getline(in, line)) lines.push_back(line);
   }
-  std::sort(there.begin(), there.end());
-  for (std::uint32_t i = 0; i < first->shard.count; ++i) {
+  for (std::uint32_t i = 0; i < whole.shard.count; ++i) {
     const auto times = std::count(there.begin(), there.end(), i);
     if (times != 1)
-      throw InputError("--merge: shard " + std::to_string(i) + "/" + std::to_string(first->shard.count) +
+      throw InputError("--merge: shard " + std::to_string(i) + "/" + std::to_string(whole.shard.count) +
                        (times == 0 ? " is missing" : " occurs twice") +
-                       "; give each shard's records.jsonl once");
+                       "; give each shard's collisions.jsonl once");
   }
-  first->shard = {};
-  return *first;
+  whole.shard = {};
+  return out;
 }
 
 namespace {
@@ -142,12 +103,13 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-ordered_json to_json(const ContactStep& s) {
+ordered_json to_json(const ContactStep& s, bool times) {
   ordered_json j = {{"seed", s.seed},     {"time_step", s.time_step},
                     {"object", s.object}, {"collision", s.collision},
                     {"step", s.step},     {"relation", name_of(s.relation)}};
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
     j[std::string(name_of(kRecursions[i]))] = io::record_to_json(s.counts[i]);
+    if (times) j["nanoseconds"].push_back(s.counts[i].nanoseconds);
   }
   return j;
 }
@@ -162,9 +124,8 @@ ContactStep from_json(const json& j) {
   s.relation = io::JsonOf<Relation>::read(j.at("relation"));
   for (std::size_t i = 0; i < kRecursions.size(); ++i) {
     const std::string name(name_of(kRecursions[i]));
-    if (kRecursions[i] == Recursion::paper_wrapper && !j.contains(name))
-      continue;  // records of version 2.0.0
     s.counts[i] = io::record_from_json<RecursionCount>(j.at(name));
+    if (j.contains("nanoseconds")) s.counts[i].nanoseconds = j.at("nanoseconds").at(i).get<std::uint64_t>();
   }
   return s;
 }
@@ -222,9 +183,9 @@ std::vector<PaperProtocol> other_settings(const PaperProtocol& protocol) {
   return out;
 }
 
-std::string to_json_lines(std::span<const ContactStep> steps) {
+std::string to_json_lines(std::span<const ContactStep> steps, bool times) {
   std::string out;
-  for (const ContactStep& s : steps) out += to_json(s).dump() + "\n";
+  for (const ContactStep& s : steps) out += to_json(s, times).dump() + "\n";
   return out;
 }
 
@@ -238,24 +199,18 @@ std::vector<ContactStep> read_json_lines(const std::string& text, const std::str
                                             text.begin() + static_cast<std::ptrdiff_t>(end))));
     } catch (const std::exception& e) {
       throw InputError(printable_name(file) + ":" + std::to_string(line) +
-                       ": not a record of `lrbscope paper`: " + io::plain_reason(e.what()) +
-                       "; give the records.jsonl files written by its shards");
+                       ": not a record of `lrbscope paper`: " + io::plain_reason(e.what()));
     }
     begin = end + 1;
   }
   return steps;
 }
 
-std::vector<ContactStep> merged(std::vector<ContactStep> steps) {
+std::vector<ContactStep> sorted(std::vector<ContactStep> steps) {
   const auto key = [](const ContactStep& s) {
     return std::tie(s.seed, s.time_step, s.object, s.collision, s.step);
   };
   std::sort(steps.begin(), steps.end(), [&](const auto& x, const auto& y) { return key(x) < key(y); });
-  for (std::size_t i = 1; i < steps.size(); ++i)
-    if (key(steps[i - 1]) == key(steps[i]))
-      throw InputError("seed " + std::to_string(steps[i].seed) + ", object " + steps[i].object +
-                       ", collision " + std::to_string(steps[i].collision) + ", step " +
-                       std::to_string(steps[i].step) + " occurs twice; give each shard's records once");
   return steps;
 }
 

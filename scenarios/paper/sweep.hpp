@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/bodies/resolutions.hpp"
@@ -55,12 +56,12 @@ std::vector<ContactStep> run_seeds(std::span<const PaperObject> objects, const S
 /// after the first contact, and the first seed.
 std::vector<PaperProtocol> other_settings(const PaperProtocol& protocol);
 
-/// Returns one JSON object on a line for each step.
-std::string to_json_lines(std::span<const ContactStep> steps);
+/// Returns one JSON object on a line for each step; with the times, which are not reproducible, on request.
+std::string to_json_lines(std::span<const ContactStep> steps, bool times = false);
 /// Parses them; throws InputError that names `file` and the line.
 std::vector<ContactStep> read_json_lines(const std::string& text, const std::string& file);
-/// Sorts the steps of several sweeps and shards. Throws InputError if a step occurs twice.
-std::vector<ContactStep> merged(std::vector<ContactStep> steps);
+/// Returns the steps of several sweeps in order.
+std::vector<ContactStep> sorted(std::vector<ContactStep> steps);
 
 // Repeats single collisions of the sweep by the paper's recursion and records every event.
 
@@ -84,28 +85,22 @@ struct CloseUp {
 std::array<std::uint32_t, 2> easiest_and_hardest(std::span<const ContactStep> steps,
                                                  const std::string& object);
 
-/// Repeats a collision. Throws InputError if its counts differ from `records`, which must then be from
-/// another experiment.
-CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol,
-                 std::span<const ContactStep> records);
+/// Repeats a collision.
+CloseUp close_up(const PaperPair& pair, std::uint32_t collision, const PaperProtocol& protocol);
 
-// Describes the experiment of a shard, so that merging detects missing shards and shards of another
-// experiment.
+// A run keeps its finished collisions in a file: a line, the head, that describes the run, and one for each
+// collision. An interrupted run is continued from it, and the files of all shards together are a run.
 
-struct ShardFile {
+struct KeptRun {
   Shard shard;
   PaperProtocol protocol;
   resolutions::ResolutionOptions resolutions;  ///< of the series; most = 0: no series
   bool lean = false;                           ///< the series' bodies are built lean (BuildOptions)
 };
+std::string head_of(const KeptRun& run, std::span<const PaperObject> objects);
 
-/// Returns the path of the shard's description: beside its records.jsonl.
-std::string shard_file_of(const std::string& records);
-
-void write_shard_file(const ShardFile& shard, const std::string& folder);
-
-/// Reads the files beside these records.jsonl and returns their common experiment, as shard 0/1. Throws
-/// InputError if one is missing or of another experiment, or if they are not all n shards, once each.
-ShardFile read_shard_files(const std::vector<std::string>& records);
+/// Reads the files of shards. Returns their common run, as shard 0/1, and their lines without the heads.
+/// Throws InputError if one has no head or that of another run, or if they are not all n shards, once each.
+std::pair<KeptRun, std::vector<std::string>> read_shards(const std::vector<std::string>& files);
 
 }  // namespace lrb::paper
