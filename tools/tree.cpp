@@ -66,7 +66,7 @@ Trees read_trees(const TreeCommandOptions& o, std::vector<std::string>& notes) {
     out.engine = "lrbscope";
     const bodies::LoadedBody body = bodies::load_faces(o.file, o.corners);
     notes.insert(notes.end(), body.notes.begin(), body.notes.end());
-    profile::OwnTree own = profile::own_tree(body.rep);
+    profile::OwnTree own = profile::own_tree(body.rep, trace::TreeShape(body.rep.tree()));
     out.meshes.push_back(std::move(own.mesh));
     out.trees.push_back(std::move(own.tree));
   }

@@ -10,6 +10,7 @@
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/profile/query_walk.hpp"
+#include "scenarios/profile/tree_report.hpp"
 #include "scenarios/profile/volumes.hpp"
 #include "scenarios/record/engine_run.hpp"
 #include <lrbscope/body.hpp>
@@ -22,36 +23,6 @@
 
 namespace lrb::profile {
 namespace {
-
-capture::Mesh mesh_of(const LrbRep& rep) {
-  capture::Mesh out;
-  out.name = rep.name();
-  out.vertices.assign(rep.vertices().begin(), rep.vertices().end());
-  for (std::uint32_t s = 0; s < rep.real_simplex_count(); ++s) {
-    VertexId corners[3] = {0, 0, 0};
-    rep.simplex(SimplexId(s), corners);
-    out.triangles.push_back({corners[0], corners[1], corners[2]});
-  }
-  return out;
-}
-
-capture::Tree tree_of(const trace::TreeShape& shape, std::uint32_t side) {
-  capture::Tree out;
-  out.id = side + 1;
-  out.mesh = side;
-  out.volume = capture::VolumeKind::obb;
-  out.first_child = out.first_triangle = {0};
-  for (std::uint32_t n = 0; n < shape.size(); ++n) {
-    for (const std::uint32_t child : shape.children(n)) out.child.push_back(child);
-    for (const SimplexId s : shape.simplices(n)) out.triangle.push_back(s);
-    out.first_child.push_back(static_cast<std::uint32_t>(out.child.size()));
-    out.first_triangle.push_back(static_cast<std::uint32_t>(out.triangle.size()));
-    const trace::ShapeBox& box = shape.box(n);
-    for (const Eigen::Vector3d& v : {box.centre, box.half[0], box.half[1], box.half[2]})
-      out.volumes.insert(out.volumes.end(), v.data(), v.data() + 3);
-  }
-  return out;
-}
 
 /// Returns the events of one step.
 std::vector<capture::Event> events_of(std::span<const trace::Event> events) {
@@ -93,8 +64,11 @@ capture::Capture captured(const run::Recording& recording) {
   capture::Capture out;
   out.engine = trace.header.engine.empty() ? "lrbscope " + trace.header.lrbscope : trace.header.engine;
   for (std::uint32_t side = 0; side < 2; ++side) {
-    out.meshes.push_back(mesh_of(recording.bodies[side].rep));
-    out.trees.push_back(tree_of(recording.trees[side], side));
+    OwnTree own = own_tree(recording.bodies[side].rep, recording.trees[side]);
+    own.tree.id = side + 1;
+    own.tree.mesh = side;
+    out.meshes.push_back(std::move(own.mesh));
+    out.trees.push_back(std::move(own.tree));
   }
   for (std::size_t i = 0; i < trace.steps.size(); ++i) {
     const trace::Step& step = trace.steps[i];
@@ -313,11 +287,7 @@ run::Recording captured_run(const capture::Capture& capture, const TreePair& pai
     return capture.queries[i].kind == capture::QueryKind::shape;
   });
   // An engine that records no tests of triangles at all does not say which pairs it found.
-  const bool records_triangles =
-      std::any_of(capture.queries.begin(), capture.queries.end(), [](const capture::Query& q) {
-        return std::any_of(q.events.begin(), q.events.end(),
-                           [](const capture::Event& e) { return e.kind == capture::EventKind::triangles; });
-      });
+  const bool records_triangles = std::ranges::any_of(capture.queries, tests_triangles);
   for (std::size_t i = 0; i < pair.queries.size(); ++i) {
     progress("query", i, pair.queries.size());
     const capture::Query& query = capture.queries[pair.queries[i]];

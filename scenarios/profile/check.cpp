@@ -10,6 +10,7 @@
 #include "render/pictures/panel.hpp"
 #include "scenarios/profile/captured_run.hpp"
 #include "scenarios/profile/tree_report.hpp"
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
@@ -87,12 +88,6 @@ void report(const QueryVerdict& v, const capture::Query& query, const capture::C
         .push_back(head + sentence(w, capture.trees[trees[0]], capture.trees[trees[1]]));
 }
 
-std::string kind_text(capture::QueryKind kind) {
-  std::string out(name_of(kind));
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
 std::string percent(std::uint64_t part, std::uint64_t whole) {
   if (whole == 0) return "-";
   const double share = 100 * static_cast<double>(part) / static_cast<double>(whole);
@@ -103,7 +98,7 @@ std::string percent(std::uint64_t part, std::uint64_t whole) {
 template <class Row>
 void for_each_kind(std::span<const Check> checks, const Row& row) {
   for (const Check& c : checks)
-    for (const auto& [kind, sums] : c.kinds) row(c.engine, kind_text(kind), sums);
+    for (const auto& [kind, sums] : c.kinds) row(c.engine, io::in_words(name_of(kind)), sums);
 }
 
 report::Table owner_table(std::span<const Check> checks) {

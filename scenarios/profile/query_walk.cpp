@@ -1,11 +1,31 @@
 #include "scenarios/profile/query_walk.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "scenarios/profile/captured_run.hpp"
 
 namespace lrb::profile {
+namespace {
+
+/// A pair of nodes, and the step that leads from it to a given pair.
+struct PairAbove {
+  std::uint32_t a, b;
+  NodeStep step;
+};
+
+/// Calls visit(above) with the pairs from which two nodes may have been reached, until it returns true.
+template <class Visit>
+void find_above(const TreeIndex& tree_a, std::uint32_t a, const TreeIndex& tree_b, std::uint32_t b,
+                const Visit& visit) {
+  const std::uint32_t up_a = tree_a.parent[a], up_b = tree_b.parent[b];
+  const PairAbove above[] = {
+      {up_a, b, NodeStep::descend_a}, {a, up_b, NodeStep::descend_b}, {up_a, up_b, NodeStep::descend_both}};
+  for (const PairAbove& pair : above)
+    if (pair.a != kNull && pair.b != kNull && visit(pair)) return;
+}
+
+}  // namespace
+
 TreeIndex::TreeIndex(const capture::Tree& tree, std::size_t triangles)
     : parent(tree.size(), kNull),
       depth(tree.size(), kNull),
@@ -48,23 +68,12 @@ std::vector<Visit> visits_of(const TreeIndex& tree_a, const TreeIndex& tree_b,
   PairMap tests;  // the last test of each pair of nodes
   // Links visit i, of nodes a and b, to its predecessor. All children of a pair are reached by the same step.
   const auto link = [&](std::uint32_t a, std::uint32_t b, std::uint32_t i) {
-    const std::uint32_t up_a = tree_a.parent[a], up_b = tree_b.parent[b];
-    const struct {
-      std::uint32_t a, b;
-      NodeStep step;
-    } above[] = {
-        {up_a, b, NodeStep::descend_a}, {a, up_b, NodeStep::descend_b}, {up_a, up_b, NodeStep::descend_both}};
-    for (const auto& pair : above) {
-      if (pair.a == kNull || pair.b == kNull) continue;
+    find_above(tree_a, a, tree_b, b, [&](const PairAbove& pair) {
       const std::uint32_t* const found = tests.find(pair.a, pair.b);
-      if (found == nullptr) continue;
-      Visit& from = out[*found];
-      if (from.step && *from.step != pair.step) continue;
+      if (found == nullptr || !out[*found].lead(pair.step)) return false;
       out[i].parent = *found;
-      from.step = pair.step;
-      if (from.children < std::numeric_limits<std::uint8_t>::max()) ++from.children;
-      return;
-    }
+      return true;
+    });
   };
   for (std::uint32_t i = 0; i < events.size(); ++i) {
     const capture::Event& e = events[i];
@@ -159,22 +168,12 @@ void QueryWalk::link_strays() {
   for (const std::uint32_t i : order_) {
     if (parent_[i] != kNone || visit_of(0, 0) == i) continue;
     const capture::Event& e = query_->events[i];
-    const std::uint32_t up_a = index_[0]->parent[e.a], up_b = index_[1]->parent[e.b];
-    const struct {
-      std::uint32_t a, b;
-      NodeStep step;
-    } above[] = {{up_a, e.b, NodeStep::descend_a},
-                 {e.a, up_b, NodeStep::descend_b},
-                 {up_a, up_b, NodeStep::descend_both}};
-    for (const auto& pair : above) {
-      if (pair.a == kNull || pair.b == kNull) continue;
+    find_above(*index_[0], e.a, *index_[1], e.b, [&](const PairAbove& pair) {
       const std::uint32_t from = visit_of(pair.a, pair.b);
-      if (from == kNone || visits_[from].step.value_or(pair.step) != pair.step) continue;
+      if (from == kNone || !visits_[from].lead(pair.step)) return false;
       parent_[i] = from;
-      visits_[from].step = pair.step;
-      visits_[from].children += visits_[from].children < std::numeric_limits<std::uint8_t>::max();
-      break;
-    }
+      return true;
+    });
     if (parent_[i] == kNone) parent_[i] = closest_above(e.a, e.b);
   }
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -113,6 +114,14 @@ struct Visit {
   std::size_t parent = kNone;    ///< index of an event; kNone: the first pair, or unknown
   std::optional<NodeStep> step;  ///< the nodes that the engine descended from here; nullopt: none
   std::uint8_t children = 0;     ///< number of pairs visited from here; saturates at 255
+
+  /// Adds a pair that the engine came to by `to`. Returns false if it descended from here by another step.
+  bool lead(NodeStep to) {
+    if (step.value_or(to) != to) return false;
+    step = to;
+    children += children < std::numeric_limits<std::uint8_t>::max();
+    return true;
+  }
 };
 
 /// Returns a visit for each event of a query of two trees: finds the predecessor of each test, which is the
@@ -120,6 +129,17 @@ struct Visit {
 /// leaves as parent; visits of counters and phases are unused.
 std::vector<Visit> visits_of(const TreeIndex& tree_a, const TreeIndex& tree_b,
                              std::span<const capture::Event> events);
+
+inline std::array<Eigen::Vector3d, 3> corners_of(const capture::Mesh& mesh, std::uint32_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+/// Returns true if tests of triangles were recorded.
+inline bool tests_triangles(const capture::Query& query) {
+  return std::ranges::any_of(query.events,
+                             [](const capture::Event& e) { return e.kind == capture::EventKind::triangles; });
+}
 
 /// Triangles of two meshes by the capture's numbers, or of one: then a < b.
 struct TrianglePair {

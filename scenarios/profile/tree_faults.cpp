@@ -227,8 +227,8 @@ void Finder::find_in_parts(const NodeMeasures& measures, double tolerance) {
   }
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
     if (index_.leaf[t] == kNull) continue;
-    const auto& corners = mesh_.triangles[t];
-    const Polygon all = {mesh_.vertices[corners[0]], mesh_.vertices[corners[1]], mesh_.vertices[corners[2]]};
+    const std::array<Vector3d, 3> corners = corners_of(mesh_, t);
+    const Polygon all(corners.begin(), corners.end());
     const double area = area_of(all);
     std::vector<Polygon> left = {all}, outside;
     index_.for_each_leaf(t, [&](std::uint32_t leaf) {

@@ -63,11 +63,6 @@ AlignedBox3d coordinate_box(const trace::ShapeBox& box) {
   return {box.centre - reach, box.centre + reach};
 }
 
-std::array<Vector3d, 3> corners_of(const capture::Mesh& mesh, std::uint32_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
 double triangle_area(const std::array<Vector3d, 3>& t) {
   return (t[1] - t[0]).cross(t[2] - t[0]).norm() / 2;
 }
@@ -346,7 +341,7 @@ TreeReport report_tree(const capture::Tree& tree, const capture::Mesh& mesh, con
   return out;
 }
 
-OwnTree own_tree(const LrbRep& rep) {
+OwnTree own_tree(const LrbRep& rep, const trace::TreeShape& shape) {
   OwnTree out;
   out.mesh.name = rep.name();
   out.mesh.vertices.assign(rep.vertices().begin(), rep.vertices().end());
@@ -356,7 +351,6 @@ OwnTree own_tree(const LrbRep& rep) {
     if (rep.simplex_size() == 2) corners[2] = corners[1];
     out.mesh.triangles.push_back({corners[0], corners[1], corners[2]});
   }
-  const trace::TreeShape shape(rep.tree());
   out.tree.volume = VolumeKind::obb;
   out.tree.first_child = out.tree.first_triangle = {0};
   for (std::uint32_t n = 0; n < shape.size(); ++n) {

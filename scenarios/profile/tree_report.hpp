@@ -148,6 +148,6 @@ struct OwnTree {
   capture::Mesh mesh;  ///< the real simplices; a segment repeats its second corner
   capture::Tree tree;  ///< OBBs
 };
-OwnTree own_tree(const LrbRep& rep);
+OwnTree own_tree(const LrbRep& rep, const trace::TreeShape& shape);
 
 }  // namespace lrb::profile

@@ -30,11 +30,6 @@ double largest_term(const Pose& pose, const Eigen::Vector3d& x) {
   return (pose.r.cwiseAbs() * x.cwiseAbs() + pose.t.cwiseAbs()).maxCoeff();
 }
 
-Triangle triangle_of(const capture::Mesh& mesh, std::uint32_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
-
 Triangle moved(const Triangle& t, const Pose& pose) {
   return {pose.apply(t[0]), pose.apply(t[1]), pose.apply(t[2])};
 }
@@ -138,15 +133,6 @@ double overlap_depth(const Triangle& a, const Triangle& b) {
   return least;
 }
 
-namespace {
-
-bool tests_triangles(const Query& query) {
-  return std::any_of(query.events.begin(), query.events.end(),
-                     [](const Event& e) { return e.kind == EventKind::triangles; });
-}
-
-}  // namespace
-
 struct Checker::Posed {
   const Query& query;
   std::array<std::uint32_t, 2> trees;
@@ -158,8 +144,7 @@ struct Checker::Posed {
 };
 
 Checker::Checker(CapturedBodies& bodies, Precision precision) : bodies_(bodies), precision_(precision) {
-  for (const Query& q : bodies.capture().queries)
-    records_triangles_ = records_triangles_ || tests_triangles(q);
+  records_triangles_ = std::ranges::any_of(bodies.capture().queries, tests_triangles);
 }
 
 std::string_view words(PoseError error) {
@@ -265,7 +250,7 @@ WrongPair Checker::describe(const Posed& posed, const TrianglePair& pair, bool m
   WrongPair out;
   out.triangles = pair;
   out.missed = missed;
-  const Triangle a = triangle_of(*posed.meshes[0], pair.a), b = triangle_of(*posed.meshes[1], pair.b);
+  const Triangle a = corners_of(*posed.meshes[0], pair.a), b = corners_of(*posed.meshes[1], pair.b);
   const Triangle world_a = moved(a, posed.poses[0]), world_b = moved(b, posed.poses[1]);
   out.margin = missed ? overlap_depth(world_a, world_b) : gap_of(world_a, world_b);
   out.bound = error_bound(a, posed.poses[0], b, posed.poses[1], precision_);
@@ -308,7 +293,7 @@ void Checker::blame(const Posed& posed, const QueryWalk& walk, bool tested, Wron
   const std::uint32_t triangles[] = {pair.a, pair.b};
   for (std::size_t side = 0; side < 2; ++side) {
     if (bodies_.tree(posed.trees[side]).splits) continue;
-    for (const Eigen::Vector3d& x : triangle_of(*posed.meshes[side], triangles[side]))
+    for (const Eigen::Vector3d& x : corners_of(*posed.meshes[side], triangles[side]))
       wrong.outside[side] =
           std::max(wrong.outside[side], bodies_.volumes(posed.trees[side]).outside(wrong.nodes[side], x));
   }

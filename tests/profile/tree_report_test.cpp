@@ -26,7 +26,8 @@ constexpr VolumeKind kAll[] = {VolumeKind::aabb, VolumeKind::sphere, VolumeKind:
                                VolumeKind::kdop};
 
 capture::Mesh captured(Mesh mesh) {
-  return profile::own_tree(bodies::faces_of_mesh(std::move(mesh)).rep).mesh;
+  const bodies::LoadedBody body = bodies::faces_of_mesh(std::move(mesh));
+  return profile::own_tree(body.rep, trace::TreeShape(body.rep.tree())).mesh;
 }
 
 std::vector<std::string> texts(const profile::TreeReport& report, const capture::Tree& tree,
@@ -242,7 +243,7 @@ TEST_CASE("sampled EPO lies within three standard errors of that by clipping") {
 TEST_CASE("lrbscope's own trees have no faults") {
   for (matrix::Kind& kind : matrix::make_matrix(1).kinds) {
     const bodies::LoadedBody body = bodies::faces_of_mesh(std::move(kind.mesh));
-    const profile::OwnTree own = profile::own_tree(body.rep);
+    const profile::OwnTree own = profile::own_tree(body.rep, trace::TreeShape(body.rep.tree()));
     CAPTURE(own.mesh.name);
     CHECK(own.mesh.triangles.size() == body.rep.real_simplex_count());
     const profile::TreeReport report = profile::report_tree(own.tree, own.mesh);
