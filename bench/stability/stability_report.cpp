@@ -1,178 +1,20 @@
 #include "bench/stability/stability_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 
-#include "render/page_palette.hpp"
-#include "scenarios/io/files.hpp"
-#include "scenarios/report/assets.hpp"
 #include "scenarios/report/document.hpp"
-#include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
-#include <lrbscope/render/style.hpp>
 
 namespace lrb::stability {
 
 namespace {
 
-namespace page = render::page;
-
-// ---- The grid. Units: one cell; x to the right, y up, the first row's top at 0.
-
-constexpr double kCellWidth = 17, kCellHeight = 10.5;  // millimetres
-constexpr double kLeft = 2.9, kBottom = 1.8;
-constexpr double kFont = 6.5, kSmall = 0.8, kLine = 0.24;  // points; fraction of kFont
-
-std::string colour(render::Rgba c) {
-  return std::to_string((static_cast<unsigned>(c.r) << 16) + (static_cast<unsigned>(c.g) << 8) + c.b);
-}
-
-/// Collects rectangles and texts, and the commands that draw them in this order.
-class Sheet {
- public:
-  void rect(double x0, double y0, double x1, double y1, render::Rgba c) {
-    rects_.push_back(io::number_text((x0 + x1) / 2) + " " + io::number_text((y0 + y1) / 2) + " " +
-                     io::number_text(x0) + " " + io::number_text(x1) + " " + io::number_text(y0) + " " +
-                     io::number_text(y1) + " " + colour(c));
-  }
-  enum Style { normal, bold, small, small_right, small_centre, kStyles };
-  void text(double x, double y, Style style, const std::string& s, render::Rgba c = render::palette::kInk) {
-    if (!s.empty())
-      texts_[style].push_back(io::number_text(x) + " " + io::number_text(y) + " " +
-                              report::gnuplot_data_text(s) + " " + colour(c));
-  }
-  void write(report::Gnuplot& chart) const {
-    static constexpr std::array<const char*, kStyles> kNames = {"normal", "bold", "small", "small_right",
-                                                                "small_centre"};
-    static constexpr std::array<const char*, kStyles> kAligns = {"left", "right", "left", "right", "center"};
-    chart.add_data("rects", rects_);
-    std::string plot = "plot $rects using 1:2:3:4:5:6:7 with boxxyerror lc rgb variable";
-    for (std::size_t i = 0; i < kStyles; ++i) {
-      if (texts_[i].empty()) continue;
-      chart.add_data(kNames[i], texts_[i]);
-      const std::string font = i == bold
-                                   ? "DejaVu Sans Bold," + io::number_text(kFont)
-                                   : "DejaVu Sans," + io::number_text(i == normal ? kFont : kFont * kSmall);
-      plot += ", $" + std::string(kNames[i]) + " using 1:2:3:4 with labels " + kAligns[i] + " font '" + font +
-              "' tc rgb variable";
-    }
-    chart.script += plot + "\n";
-  }
-
- private:
-  std::vector<std::string> rects_;
-  std::array<std::vector<std::string>, kStyles> texts_;
-};
-
-/// Breaks text at spaces, and words longer than a line at underscores.
-std::vector<std::string> wrap(const std::string& text, std::size_t width) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string word; in >> word;) {
-    for (std::size_t cut; word.size() > width && (cut = word.rfind('_', width - 1)) != std::string::npos;) {
-      lines.push_back(word.substr(0, cut + 1));
-      word.erase(0, cut + 1);
-    }
-    if (!lines.empty() && lines.back().back() != '_' && lines.back().size() + word.size() < width)
-      lines.back() += " " + word;
-    else
-      lines.push_back(word);
-  }
-  return lines;
-}
-
-std::vector<std::string> title_lines(const methods::MethodInfo& method) {
-  constexpr std::size_t kCharacters = 16;
-  return wrap(method.title, kCharacters);
-}
-
-/// Of kNotRight.
-constexpr std::array<render::Rgba, 4> kColours = {page::kWrong.light, page::kCrashed.light,
-                                                  page::kTimedOut.light, page::kRejected.light};
-
 /// Returns the share of an outcome in the cases of a difficulty.
 double share_of(const Cell& cell, Outcome o, std::size_t difficulty) {
   return static_cast<double>(cell.of(o)[difficulty]) / static_cast<double>(cell.cases(difficulty));
-}
-
-void add_bars(Sheet& sheet, const Cell& cell, double x, double y) {
-  constexpr double kFrom = 0.07, kTo = 0.93, kLow = 0.1, kHigh = 0.5, kLeast = 0.05;
-  sheet.rect(x + kFrom - 0.02, y + kLow - 0.03, x + kTo + 0.02, y + kHigh + 0.03, render::kWhite);
-  const double step = (kTo - kFrom) / kDifficulties;
-  for (std::size_t i = 0; i < kDifficulties; ++i) {
-    if (cell.cases(i) == 0) continue;
-    const double left = x + kFrom + step * (static_cast<double>(i) + 0.1), right = left + 0.8 * step;
-    sheet.rect(left, y + kLow - 0.012, right, y + kLow, render::palette::kRule);
-    double at = y + kLow;
-    for (std::size_t k = 0; k < kNotRight.size(); ++k) {
-      const double share = share_of(cell, kNotRight[k], i);
-      if (share == 0) continue;
-      const double top = std::min(y + kHigh, at + std::max(kLeast, (kHigh - kLow) * share));
-      sheet.rect(left, at, right, top, kColours[k]);
-      at = top;
-    }
-  }
-}
-
-void add_cell(Sheet& sheet, const Cell& cell, double x, double y) {
-  constexpr double kGap = 0.02;
-  sheet.rect(x + kGap, y + kGap, x + 1 - kGap, y + 1 - kGap,
-             cell.only_rejected() ? page::kOnlyRejected.light
-                                  : page::kLevels[static_cast<std::size_t>(cell.level())].light);
-  const std::string failures = std::to_string(cell.failures()) + "/" + std::to_string(cell.answered());
-  sheet.text(x + 0.06, y + 0.8, Sheet::small, failures);
-  std::string marks;
-  for (const auto& [outcome, sign] :
-       {std::pair{Outcome::crashed, "\u2715"}, {Outcome::timed_out, "\u25f7"}, {Outcome::rejected, "\u2298"}})
-    if (const std::uint64_t n = cell.sum(outcome); n > 0)
-      marks += (marks.empty() ? "" : " ") + (sign + std::to_string(n));
-  // Marks that do not fit beside the failures get their own line.
-  constexpr std::size_t kBeside = 14;  // bytes; a mark's sign has three
-  sheet.text(x + 0.95, y + (failures.size() + marks.size() > kBeside ? 0.61 : 0.8), Sheet::small_right,
-             marks);
-  add_bars(sheet, cell, x, y);
-}
-
-void add_row_head(Sheet& sheet, const FamilyRow& family, double y) {
-  sheet.text(-0.08, y + 0.76, Sheet::bold, family.name);
-  if (family.benign.empty() && family.degenerate.empty()) return;
-  sheet.text(-0.08, y + 0.46, Sheet::small_right, family.benign + " \u2192", render::palette::kFaint);
-  sheet.text(-0.08, y + 0.2, Sheet::small_right, family.degenerate, render::palette::kFaint);
-}
-
-void add_column_head(Sheet& sheet, const methods::MethodInfo& method, double x) {
-  const std::vector<std::string> lines = title_lines(method);
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    sheet.text(x + 0.5, 0.2 + kLine * static_cast<double>(lines.size() - 1 - i), Sheet::small_centre,
-               lines[i]);
-}
-
-void add_legend(Sheet& sheet, double y, double columns, const std::string& absent) {
-  double x = -kLeft + 0.1;
-  const auto item = [&](render::Rgba c, const std::string& text) {
-    constexpr double kCharacter = 0.066;
-    const double needed = 0.35 + kCharacter * static_cast<double>(report::characters_of(text)) + 0.2;
-    if (x + needed > columns) {
-      x = -kLeft + 0.1;
-      y -= 0.42;
-    }
-    sheet.rect(x, y - 0.12, x + 0.22, y + 0.12, c);
-    sheet.text(x + 0.29, y, Sheet::small, text);
-    x += needed;
-  };
-  for (std::size_t i = 0; i < page::kLevels.size(); ++i) item(page::kLevels[i].light, kLevelNames[i]);
-  item(page::kOnlyRejected.light, "only refusals");
-  item(page::kWrong.light, "wrong answer");
-  item(page::kCrashed.light, "\u2715 crashed");
-  item(page::kTimedOut.light, "\u25f7 timed out");
-  item(page::kRejected.light, "\u2298 refused");
-  sheet.text(-kLeft + 0.1, y - 0.42, Sheet::small,
-             "Failures/cases not refused; bars: fraction of cases by difficulty, benign to degenerate.",
-             render::palette::kFaint);
-  sheet.text(-kLeft + 0.1, y - 0.72, Sheet::small, absent, render::palette::kFaint);
 }
 
 /// The failures of each method by difficulty, in percent. The meanings of the lowest and highest difficulty
@@ -200,42 +42,6 @@ report::Chart profile(const Grid& grid, std::size_t family) {
     }
     chart.series.push_back(std::move(s));
   }
-  return chart;
-}
-
-/// The grid.
-report::Gnuplot grid_chart(const Grid& whole) {
-  const Grid grid = present_part(whole);
-  const double columns = static_cast<double>(grid.methods.size());
-  const double rows = static_cast<double>(grid.families.size()) + 1.1;  // a little room above the sums
-  std::size_t max_lines = 1;
-  for (const methods::MethodInfo& m : grid.methods) max_lines = std::max(max_lines, title_lines(m).size());
-  const double top = 0.2 + kLine * static_cast<double>(max_lines);
-  report::Gnuplot chart;
-  chart.width = kCellWidth * (kLeft + columns + 0.1);
-  chart.height = kCellHeight * (top + rows + kBottom);
-  chart.font = kFont;
-  Sheet sheet;
-  for (std::size_t m = 0; m < grid.methods.size(); ++m) {
-    const double x = static_cast<double>(m);
-    add_column_head(sheet, grid.methods[m], x);
-    for (std::size_t f = 0; f < grid.families.size(); ++f) {
-      const double y = -1 - static_cast<double>(f);
-      add_cell(sheet, grid.at(f, m), x, y);
-    }
-    add_cell(sheet, sum_of_column(grid, m), x, -rows);
-  }
-  for (std::size_t f = 0; f < grid.families.size(); ++f)
-    add_row_head(sheet, grid.families[f], -1 - static_cast<double>(f));
-  sheet.text(-0.08, -rows + 0.5, Sheet::bold, "all families");
-  add_legend(sheet, -rows - 0.35, columns, absent_text(whole));
-
-  chart.script =
-      "unset border\nunset tics\nunset key\nset style fill solid 1 noborder\n"
-      "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin at screen 0\n";
-  chart.script += "set xrange [" + io::number_text(-kLeft) + ":" + io::number_text(columns + 0.1) +
-                  "]\nset yrange [" + io::number_text(-rows - kBottom) + ":" + io::number_text(top) + "]\n";
-  sheet.write(chart);
   return chart;
 }
 
@@ -455,9 +261,7 @@ report::Document write_stability_report(const Grid& grid, const report::Folder& 
   doc.file("grid.csv", csv_of(grid), "the outcomes of each method, family and difficulty");
   if (options.tex)
     doc.file("grid.tex", report::booktabs(table_of(present_part(grid))), "the grid, for LaTeX");
-  doc.print("stability", "the grid, for print", grid_chart(grid));
-  if (doc.notes().empty())
-    doc.print("stability-profiles", "failures by difficulty, for print", profile_chart(grid));
+  doc.print("stability-profiles", "failures by difficulty, for print", profile_chart(grid));
   doc.write(folder);
   return doc;
 }

@@ -20,10 +20,10 @@ struct ReportOptions {
   bool tex = false;                 ///< also write grid.tex, the table for LaTeX
 };
 
-/// Writes index.html, grid.csv with the counts by difficulty, and the charts stability (the grid) and
-/// stability-profiles (failures by difficulty, per family) as .svg and .png. Without gnuplot only the page is
-/// written, and the document's notes report it. Throws InputError if the sizes of the grid's arrays do not
-/// match, EnvironmentError if a file cannot be written.
+/// Writes index.html, grid.csv with the counts by difficulty, and the chart stability-profiles (failures by
+/// difficulty, per family) as .svg and .png. Without gnuplot only the page and the counts are written, and
+/// the document's notes report it. Throws InputError if the sizes of the grid's arrays do not match,
+/// EnvironmentError if a file cannot be written.
 report::Document write_stability_report(const Grid& grid, const report::Folder& folder,
                                         const ReportOptions& options = {});
 

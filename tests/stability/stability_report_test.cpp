@@ -2,9 +2,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <map>
-#include <regex>
-#include <set>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -12,19 +9,15 @@
 #include "bench/stability/case_meshes.hpp"
 #include "bench/stability/case_picture.hpp"
 #include "bench/stability/outcome_grid.hpp"
-#include "scenarios/bodies/shapes.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/report/chart.hpp"
 #include "tests/stability/made_up_grid.hpp"
 #include "tests/support/folder.hpp"
-#include "tests/support/text.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
-#include <lrbscope/render/style.hpp>
 
 using namespace lrb;
-using lrb::test::count;
 using namespace lrb::stability;
 
 namespace {
@@ -34,12 +27,6 @@ std::string scratch_folder(const std::string& name) {
   const auto path = all.path / name;
   std::filesystem::create_directories(path);
   return path.string();
-}
-
-std::map<std::uint32_t, int> colours(const render::Image& image) {
-  std::map<std::uint32_t, int> out;
-  for (const render::Rgba& p : image.pixels()) ++out[(p.r << 16U) | (p.g << 8U) | p.b];
-  return out;
 }
 
 /// For one test: another gnuplot, or none.
@@ -86,21 +73,11 @@ TEST_CASE("charts are drawn, and their texts are not run as commands" *
   grid.families[0].name = "`touch " + folder + "/ran`'; system('touch " + folder + "/ran')";
   CHECK(write_stability_report(grid, folder).notes().empty());
   CHECK_FALSE(std::filesystem::exists(folder + "/ran"));
-  for (const char* name : {"stability.svg", "stability-profiles.svg"}) {
-    const std::string svg = io::read_text(folder + "/" + name);
-    CHECK(svg.find("&lt;&amp;") != std::string::npos);
-    CHECK(svg.find("coplanar") != std::string::npos);
-  }
-  const std::string svg = io::read_text(folder + "/stability.svg");
-  CHECK(count(svg, "not installed here: bullet") == 1);
-  // A crash, a time-out and a refusal have their marks.
-  for (const char* mark : {"\u2715", "\u25f7", "\u2298"}) CHECK(count(svg, mark) > 1);
-  const render::Image png = render::read_png(folder + "/stability.png").image;
-  CHECK(png.width() > 1500);
-  const auto found = colours(png);
-  CHECK(found.contains(0xd55e00));
-  CHECK(found.contains(0x14161a));
-  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 6);  // nothing is left behind
+  const std::string svg = io::read_text(folder + "/stability-profiles.svg");
+  CHECK(svg.find("&lt;&amp;") != std::string::npos);
+  CHECK(svg.find("coplanar") != std::string::npos);
+  CHECK(render::read_png(folder + "/stability-profiles.png").image.width() > 500);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 4);  // nothing is left behind
 }
 
 TEST_CASE("gnuplot's error is reported in one line" * doctest::skip(!report::has_gnuplot())) {
