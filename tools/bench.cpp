@@ -15,10 +15,10 @@
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/capture.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
-using namespace lrb::bench;
+using namespace lrb::speed;
 using workers::WorkerMethod;
 
 struct BenchOptions : MeasureOptions {
@@ -39,22 +39,22 @@ bool is_peer(const workers::WorkerMethod& m) {
 }
 
 /// The option --build.
-int run_build_survey(const BenchOptions& o, std::vector<bench::BodyPair> bodies,
+int run_build_survey(const BenchOptions& o, std::vector<speed::BodyPair> bodies,
                      std::vector<workers::WorkerMethod> methods, const Globals& globals) {
-  // lrbscope's methods differ in their queries; bench::own_structures() are what it builds.
+  // lrbscope's methods differ in their queries; speed::own_structures() are what it builds.
   std::erase_if(methods, [](const workers::WorkerMethod& m) {
     return !m.info.present || m.info.has(methods::Trait::own_rep);
   });
   const report::Folder folder(o.folder);
-  const bench::BuildResults results = bench::survey_builds(
+  const speed::BuildResults results = speed::survey_builds(
       {std::move(bodies), std::move(methods), o.rounds, std::max(o.timeout, kLeastBuildTimeout), o.folder},
       progress_report(globals.quiet));
-  const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n";
-  const std::string text = head + bench::build_text(results);
+  const std::string head = speed::machine() + "; built with " + speed::build_flags() + "\n";
+  const std::string text = head + speed::build_text(results);
   print(text);
-  report::Document page = bench::build_page(results, o.tex);
-  page.number({"Machine", bench::machine(), bench::build_flags()}).command(globals.command_line);
-  page.file("builds.csv", bench::build_csv(results), "every build");
+  report::Document page = speed::build_page(results, o.tex);
+  page.number({"Machine", speed::machine(), speed::build_flags()}).command(globals.command_line);
+  page.file("builds.csv", speed::build_csv(results), "every build");
   page.file("builds.txt", text, "the tables as text");
   page.write(folder);
   for (const std::string& file : page.written()) print(o.folder + "/" + file + "\n");
@@ -101,43 +101,43 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
   std::vector<workers::WorkerMethod> methods = workers::find_methods();
   std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
   methods = chosen_methods(methods, o.methods);
-  std::vector<bench::BodyPair> pairs;
-  if (!o.models.empty()) pairs = bench::pairs_of_models(o.models);
+  std::vector<speed::BodyPair> pairs;
+  if (!o.models.empty()) pairs = speed::pairs_of_models(o.models);
   for (const std::uint32_t n : o.faces)
     if (n > 0)
-      for (bench::BodyPair& p : bench::generated_pairs(n)) {
+      for (speed::BodyPair& p : speed::generated_pairs(n)) {
         pairs.push_back(std::move(p));
         if (n != o.faces.front()) break;
       }
   if (o.build) return run_build_survey(o, std::move(pairs), std::move(methods), globals);
   make_folder(o.folder);
   const io::FolderLock lock(o.folder);
-  bench::SurveyOptions survey_options;
+  speed::SurveyOptions survey_options;
   survey_options.folder = o.folder;
   survey_options.timeout = o.timeout;
-  survey_options.contestants = bench::contestants(methods);
+  survey_options.contestants = speed::contestants(methods);
   {
     Progress bar("bodies", pairs.size(), globals.quiet);
-    for (const bench::BodyPair& p : pairs) {
+    for (const speed::BodyPair& p : pairs) {
       bar.set(survey_options.sets.size(), p.what);
-      survey_options.sets.push_back(bench::make_data_set(p, o.set, o.folder));
+      survey_options.sets.push_back(speed::make_data_set(p, o.set, o.folder));
     }
   }
   Progress bar("bench", 0, globals.quiet);
-  const std::vector<bench::Record> records = bench::survey(survey_options, bar.setter());
+  const std::vector<speed::Record> records = speed::survey(survey_options, bar.setter());
   bar.finish();
-  const bench::PeerTable table = bench::peer_table(survey_options.sets, workers::infos_of(methods), records);
-  const std::string head = bench::machine() + "; built with " + bench::build_flags() + "\n\n";
-  print(head + bench::in_brief(table));
-  const report::Table cells = bench::table_of_cells(table);
+  const speed::PeerTable table = speed::peer_table(survey_options.sets, workers::infos_of(methods), records);
+  const std::string head = speed::machine() + "; built with " + speed::build_flags() + "\n\n";
+  print(head + speed::in_brief(table));
+  const report::Table cells = speed::table_of_cells(table);
   io::write_text(o.folder + "/peers.txt",
-                 head + bench::in_brief(table) + "\n" + report::in_columns(cells, 4));
+                 head + speed::in_brief(table) + "\n" + report::in_columns(cells, 4));
   io::write_text(o.folder + "/peers.csv", report::csv(cells));
   print(o.folder + "/peers.txt\n" + o.folder + "/peers.csv\n" + o.folder + "/records.jsonl\n");
   if (!o.tex) return kOk;
   for (const auto& [mode, name] :
        {std::pair{Mode::all_pairs, "/all_pairs.tex"}, std::pair{Mode::first_pair, "/first_pair.tex"}}) {
-    io::write_text(o.folder + name, report::booktabs(bench::table_of_ratios(table, mode)));
+    io::write_text(o.folder + name, report::booktabs(speed::table_of_ratios(table, mode)));
     print(o.folder + name + "\n");
   }
   return kOk;
@@ -180,4 +180,4 @@ Command add_bench(App& root, const Globals& globals) {
           }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

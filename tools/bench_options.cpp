@@ -8,7 +8,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 std::vector<workers::WorkerMethod> chosen_methods(const std::vector<workers::WorkerMethod>& all,
                                                   const std::vector<std::string>& names) {
@@ -90,4 +90,4 @@ void print_rows(const std::string& title, const engines::Rows& rows, bool json) 
   for (const std::string& line : rows.lines) print(line + "\n");
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -12,7 +12,7 @@
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/options.hpp"
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 /// Returns the named methods, as chosen(). Throws EnvironmentError if one of those named is absent from this
 /// build.
@@ -22,7 +22,7 @@ std::vector<workers::WorkerMethod> chosen_methods(const std::vector<workers::Wor
 struct MeasureOptions {
   std::string folder, folder_help, models;
   std::vector<std::string> methods;
-  bench::SetOptions set;
+  speed::SetOptions set;
   double timeout = 20;
   bool tex = false;
 };
@@ -52,4 +52,4 @@ void write_scenario(const Contest& contest, const std::array<std::string, 2>& fi
 /// Prints a title and a table, or JSON.
 void print_rows(const std::string& title, const engines::Rows& rows, bool json);
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -16,7 +16,7 @@
 #include <lrbscope/validate.hpp>
 #include <lrbscope/wrapper.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct BuildCommandOptions {
@@ -108,4 +108,4 @@ Command add_build(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_build(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

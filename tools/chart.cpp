@@ -15,10 +15,10 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
-using namespace lrb::bench;
+using namespace lrb::speed;
 using workers::WorkerMethod;
 
 struct ChartOptions : MeasureOptions {
@@ -30,19 +30,19 @@ struct ChartOptions : MeasureOptions {
   unsigned rounds = 3;
   bool scenes = true;
   std::string width;
-  bench::ChartPrint print;
+  speed::ChartPrint print;
 };
 
 /// Returns the data sets of an earlier run for this quantity, by name.
-std::vector<bench::DataSet> read_sets(const std::string& folder, methods::Quantity quantity) {
+std::vector<speed::DataSet> read_sets(const std::string& folder, methods::Quantity quantity) {
   std::vector<std::string> files;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
     if (entry.path().string().ends_with(".set.json")) files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
-  std::vector<bench::DataSet> sets;
-  std::transform(files.begin(), files.end(), std::back_inserter(sets), bench::read_data_set);
-  std::erase_if(sets, [&](const bench::DataSet& s) { return s.quantity != quantity; });
+  std::vector<speed::DataSet> sets;
+  std::transform(files.begin(), files.end(), std::back_inserter(sets), speed::read_data_set);
+  std::erase_if(sets, [&](const speed::DataSet& s) { return s.quantity != quantity; });
   if (sets.empty())
     throw InputError(printable_name(folder) + ": no data sets found; run `lrbscope chart measure` first");
   return sets;
@@ -50,54 +50,54 @@ std::vector<bench::DataSet> read_sets(const std::string& folder, methods::Quanti
 
 void measure(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods,
              const Globals& globals) {
-  bench::SurveyOptions options;
+  speed::SurveyOptions options;
   options.folder = o.folder;
   options.timeout = o.timeout;
   options.judges = true;
   options.rounds = o.rounds;
-  options.contestants = bench::contestants(methods);
-  std::vector<bench::BodyPair> pairs;
-  if (!o.models.empty()) pairs = bench::pairs_of_models(o.models);
+  options.contestants = speed::contestants(methods);
+  std::vector<speed::BodyPair> pairs;
+  if (!o.models.empty()) pairs = speed::pairs_of_models(o.models);
   if (o.faces > 0)
-    for (bench::BodyPair& p : bench::generated_pairs(o.faces)) pairs.push_back(std::move(p));
+    for (speed::BodyPair& p : speed::generated_pairs(o.faces)) pairs.push_back(std::move(p));
   std::vector<std::string> names;
-  for (const bench::BodyPair& p : pairs) names.push_back(bench::set_name(p, o.set.quantity));
-  bench::write_plan(options, names);
-  for (const bench::BodyPair& p : pairs) options.sets.push_back(bench::make_data_set(p, o.set, o.folder));
+  for (const speed::BodyPair& p : pairs) names.push_back(speed::set_name(p, o.set.quantity));
+  speed::write_plan(options, names);
+  for (const speed::BodyPair& p : pairs) options.sets.push_back(speed::make_data_set(p, o.set, o.folder));
   Progress bar("measure", 0, globals.quiet);
-  bench::survey(options, bar.setter());
+  speed::survey(options, bar.setter());
   print(o.folder + "/records.jsonl\n");
 }
 
 void draw(const ChartOptions& o, const std::vector<workers::WorkerMethod>& methods,
           const report::Folder& folder, const Globals& globals) {
-  const std::vector<bench::DataSet> sets = read_sets(o.folder, o.set.quantity);
+  const std::vector<speed::DataSet> sets = read_sets(o.folder, o.set.quantity);
   const std::vector<methods::MethodInfo> infos = workers::infos_of(methods);
-  const std::vector<bench::Record> records = bench::read_records(o.folder + "/records.jsonl");
-  const std::vector<bench::Missing> missing = bench::missing_answers(o.folder, sets, records);
-  const std::string unfinished = bench::missing_text(missing);
+  const std::vector<speed::Record> records = speed::read_records(o.folder + "/records.jsonl");
+  const std::vector<speed::Missing> missing = speed::missing_answers(o.folder, sets, records);
+  const std::string unfinished = speed::missing_text(missing);
   if (!unfinished.empty()) note(globals, {unfinished});
-  const std::vector<bench::Point> points = bench::measure_points(sets, infos, records);
-  std::map<bench::SceneKey, std::string> scenes;
-  if (o.scenes) scenes = bench::write_scenes(sets, points, o.folder, progress_report(globals.quiet));
-  const auto charts = bench::accuracy_charts(sets, points, infos, [&](const bench::Point& p) {
+  const std::vector<speed::Point> points = speed::measure_points(sets, infos, records);
+  std::map<speed::SceneKey, std::string> scenes;
+  if (o.scenes) scenes = speed::write_scenes(sets, points, o.folder, progress_report(globals.quiet));
+  const auto charts = speed::accuracy_charts(sets, points, infos, [&](const speed::Point& p) {
     const auto it = scenes.find({p.set, p.pose_class});
     return it == scenes.end() ? std::string() : it->second;
   });
-  report::Document page = bench::accuracy_page(o.set.quantity, sets, points, infos, charts, unfinished);
-  page.number({"Machine", bench::machine(), bench::build_flags()}).command(globals.command_line);
+  report::Document page = speed::accuracy_page(o.set.quantity, sets, points, infos, charts, unfinished);
+  page.number({"Machine", speed::machine(), speed::build_flags()}).command(globals.command_line);
   page.link({"records.jsonl", "every answer of every method"});
-  page.file("points.jsonl", bench::to_lines(points), "computed from them");
-  page.file("chart.csv", bench::drawn_csv(points), "the points of the charts");
-  const report::Table settings = bench::table_of_settings(sets, points, infos);
+  page.file("points.jsonl", speed::to_lines(points), "computed from them");
+  page.file("chart.csv", speed::drawn_csv(points), "the points of the charts");
+  const report::Table settings = speed::table_of_settings(sets, points, infos);
   page.file("settings.csv", report::csv(settings), "which setting for which error");
   if (o.tex) page.file("settings.tex", report::booktabs(settings), "the same, for LaTeX with booktabs");
   for (const auto& [key, target] : scenes)
-    page.link({target, "scene, trace and pictures", key.first + ", " + bench::info_of(key.second).title});
-  page.print("chart", "for print", bench::accuracy_print(o.set.quantity, sets, missing, charts));
+    page.link({target, "scene, trace and pictures", key.first + ", " + speed::info_of(key.second).title});
+  page.print("chart", "for print", speed::accuracy_print(o.set.quantity, sets, missing, charts));
   if (o.print.width > 0)
     page.print("figure", figure::length_text(o.print.width * figure::kPointsPerMm) + " wide",
-               bench::accuracy_print(o.set.quantity, sets, missing, charts, o.print), true);
+               speed::accuracy_print(o.set.quantity, sets, missing, charts, o.print), true);
   page.write(folder);
   for (const std::string& line : page.notes()) std::cerr << "lrbscope: " << line << "\n";
   for (const std::string& file : page.written()) print(o.folder + "/" + file + "\n");
@@ -159,4 +159,4 @@ Command add_chart(App& root, const Globals& globals) {
           }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

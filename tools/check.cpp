@@ -15,7 +15,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/capture.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 using nlohmann::ordered_json;
@@ -175,4 +175,4 @@ Command add_check(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_check(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

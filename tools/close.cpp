@@ -11,7 +11,7 @@
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_repair.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -130,4 +130,4 @@ Command add_close(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_close(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -17,7 +17,7 @@
 #include <lrbscope/core/random.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct CollideOptions {
@@ -190,4 +190,4 @@ Command add_collide(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_collide(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

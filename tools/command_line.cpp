@@ -15,7 +15,7 @@
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 #define LRB_SETTER(declaration, call) \
   Option* Option::declaration {       \
@@ -290,4 +290,4 @@ std::optional<std::string> App::parse(const std::vector<std::string>& words) {
   return std::nullopt;
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

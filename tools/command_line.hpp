@@ -14,7 +14,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 /// An option, a flag or an argument. The setters return the option itself.
 class Option {
@@ -106,4 +106,4 @@ class App {
 /// Throws an error about an option's value that is reported as a usage error.
 [[noreturn]] void reject_value(const std::string& option, const std::string& why);
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

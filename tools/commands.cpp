@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 // Each adds a command with its options to the program, and returns the function that runs it.
 Command add_run(App& root, const Globals& globals);
@@ -68,4 +68,4 @@ std::string shell_line(const std::vector<std::string>& words) {
   return out;
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -11,7 +11,7 @@
 #include "tools/command_line.hpp"
 #include <lrbscope/core/strings.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 inline constexpr int kOk = 0, kMismatch = 1, kBadInput = 2, kEnvironment = 3;
 
@@ -53,4 +53,4 @@ std::string for_people(const nlohmann::ordered_json& value, int digits);
 /// Writes to stdout and checks that it was written. Throws EnvironmentError.
 void print(const std::string& text);
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -9,7 +9,7 @@
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct CompareOptions {
@@ -74,4 +74,4 @@ Command add_compare(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_compare(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

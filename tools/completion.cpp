@@ -14,7 +14,7 @@
 #include "tools/commands.hpp"
 #include <lrbscope/core/file.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 constexpr std::string_view kBash =
@@ -199,4 +199,4 @@ Command add_completion(App& root, const Globals&) {
           }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -18,7 +18,7 @@
 #include <lrbscope/render/rasterize.hpp>
 #include <lrbscope/trace/trace.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 using Level = render::Finding::Level;
@@ -143,4 +143,4 @@ Command add_doctor(App& root, const Globals&) {
   return {app, [json] { return run_doctor(*json); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

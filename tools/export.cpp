@@ -5,7 +5,7 @@
 
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
-#include "scenarios/export/model.hpp"
+#include "scenarios/exchange/model.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
@@ -19,7 +19,7 @@
 #include <lrbscope/trace/replay.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct ExportOptions {
@@ -270,4 +270,4 @@ Command add_export(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_export(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -22,7 +22,7 @@
 #include <lrbscope/render/svg.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct FigureOptions {
@@ -385,4 +385,4 @@ Command add_figure(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_figure(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -19,7 +19,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct GoldenOptions {
@@ -500,4 +500,4 @@ Command add_golden(App& root, const Globals& globals) {
           }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

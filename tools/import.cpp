@@ -13,7 +13,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct ImportOptions {
@@ -185,4 +185,4 @@ Command add_import(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_import(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

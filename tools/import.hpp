@@ -6,7 +6,7 @@
 #include "tools/commands.hpp"
 #include <lrbscope/trace/capture.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 /// A range of queries by number, both included.
 struct QueryRange {
@@ -23,4 +23,4 @@ QueryRange parse_queries(const std::string& text);
 void write_query_page(const capture::Capture& capture, const std::string& source, const std::string& folder,
                       const Globals& globals);
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -35,7 +35,7 @@
 #include <lrbscope/validate.hpp>
 #include <lrbscope/wrapper.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 namespace {
 
@@ -508,4 +508,4 @@ Command add_inspect(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_inspect(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

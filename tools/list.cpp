@@ -10,7 +10,7 @@
 #include "scenarios/spec/scenario.hpp"
 #include "tools/commands.hpp"
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct ListOptions {
@@ -92,4 +92,4 @@ Command add_list(App& root, const Globals&) {
   return {app, [o] { return run_list(*o); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -34,7 +34,7 @@
 
 extern char** environ;
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 using nlohmann::ordered_json;
@@ -397,4 +397,4 @@ Command add_live(App& root, const Globals& globals) {
   return {app, [o, &globals] { return Live(*o, globals).run(); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

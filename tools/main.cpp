@@ -21,10 +21,10 @@
 #include <lrbscope/trace/trace.hpp>
 
 int main(int argc, char** argv) {
-  return lrb::cli::main(argc, argv);
+  return lrb::tools::main(argc, argv);
 }
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 int complain(const char* kind, const std::string& message, int code) {
@@ -163,4 +163,4 @@ int main(int argc, char** argv) {
   return guarded([&] { return parse_and_run(argc, argv); });
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -10,7 +10,7 @@
 #include "scenarios/io/poses.hpp"
 #include <lrbscope/trace/record_fields.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 /// Returns the option that sets a field of a request: "--max-tests" for max_tests.
@@ -330,4 +330,4 @@ void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Rec
   recording.trace.header.pictures = spec::pictures_text(scenario.frames);
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

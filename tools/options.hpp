@@ -17,7 +17,7 @@
 #include <lrbscope/render/camera.hpp>
 #include <lrbscope/trace/event.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 /// Returns the named elements of `all` in their order, or all if none is named. Throws InputError for an
 /// unknown name.
@@ -153,4 +153,4 @@ std::uint32_t all_cores();
 int report_outcome(const run::RunOutcome& outcome, const std::string& folder, bool json,
                    const Globals& globals);
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -26,7 +26,7 @@
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/trace.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 namespace {
 
@@ -424,4 +424,4 @@ Command add_paper(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_paper(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -5,7 +5,7 @@
 #include "tools/pose_lines.hpp"
 #include <lrbscope/point_distance.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct PointsOptions {
@@ -78,4 +78,4 @@ Command add_points(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_points(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

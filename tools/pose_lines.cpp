@@ -6,7 +6,7 @@
 
 #include <lrbscope/collide.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 PoseLines::PoseLines(const std::string& path) {
   io::PoseList list = path.empty() ? io::PoseList{{Pose{}}, {"B in place"}} : io::open_poses(path);
@@ -100,4 +100,4 @@ void add_draw_options(App& app, DrawOptions& options, const std::string& picture
     app.add_flag("--convergence", options.history, "Add the convergence history: [work, lower, upper]");
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

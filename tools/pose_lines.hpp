@@ -26,7 +26,7 @@
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/workspace.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 /// Writes the closest feature of a face: its kind, and the vertices that span it.
 inline void write_feature_of(trace::JsonWriter& w, const Witness& witness) {
@@ -196,4 +196,4 @@ Command add_question(App& root, const Globals& globals) {
   return {app, [q, &globals] { return answer_each(*q, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -5,7 +5,7 @@
 #include "trace/trace_json_parts.hpp"
 #include <lrbscope/wrapper.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 /// The interiors of touching bodies may still overlap (see Relation::touching). This is decided for a query
@@ -120,4 +120,4 @@ Command add_query(App& root, const Globals& globals) {
   return add_question<PairsQuestion>(root, globals);
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -11,7 +11,7 @@
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/near_pairs.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 using run::PosedBodies;
@@ -309,4 +309,4 @@ Command add_clash(App& root, const Globals& globals) {
   return add_question<ClashQuestion>(root, globals);
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

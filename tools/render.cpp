@@ -17,7 +17,7 @@
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct RenderOptions {
@@ -178,4 +178,4 @@ Command add_render(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_render(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -12,7 +12,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct CrowdOptions {
@@ -140,4 +140,4 @@ Command add_run(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_run(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -20,7 +20,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 using namespace lrb::stability;
@@ -368,4 +368,4 @@ Command add_stability(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_stability(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -5,7 +5,7 @@
 #include "trace/trace_json_parts.hpp"
 #include <lrbscope/core/file.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 /// The motions of the command, each by two poses.
@@ -125,4 +125,4 @@ Command add_sweep(App& root, const Globals& globals) {
   return add_question<SweepQuestion>(root, globals);
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -28,7 +28,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 /// Returns true unless NO_COLOR is set and not empty (https://no-color.org), or the terminal is dumb.
@@ -274,4 +274,4 @@ void hold_pipe(const std::string& path) {
                            std::strerror(errno) + "); write them to a file, and name it instead");
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

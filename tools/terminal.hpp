@@ -8,7 +8,7 @@
 #include "scenarios/record/recorded_run.hpp"
 #include <lrbscope/build.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 
 /// A progress bar on stderr, removed when the work is done. If stderr is not a terminal, a line every ten
 /// seconds instead.
@@ -86,4 +86,4 @@ void end_as_by_closed_pipe();
 /// so that it can be read repeatedly. Leaves other paths alone. Throws EnvironmentError if there is no room.
 void hold_pipe(const std::string& path);
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -21,7 +21,7 @@
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/trace/capture.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 using io::number_text;
@@ -375,4 +375,4 @@ Command add_tree(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_tree(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

@@ -15,7 +15,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/explain.hpp>
 
-namespace lrb::cli {
+namespace lrb::tools {
 namespace {
 
 struct WhyOptions {
@@ -94,4 +94,4 @@ Command add_why(App& root, const Globals& globals) {
   return {app, [o, &globals] { return run_why(*o, globals); }};
 }
 
-}  // namespace lrb::cli
+}  // namespace lrb::tools

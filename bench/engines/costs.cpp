@@ -128,8 +128,8 @@ std::vector<Percentiles> percentiles(const Samples& samples) {
       all.push_back(*x);
     }
     if (all.empty()) return;
-    out.push_back({what, all.size(), bench::quantile(all, 0.5), bench::quantile(all, 0.9),
-                   bench::quantile(all, 0.99), bench::quantile(all, 1)});
+    out.push_back({what, all.size(), speed::quantile(all, 0.5), speed::quantile(all, 0.9),
+                   speed::quantile(all, 0.99), speed::quantile(all, 1)});
   };
   const auto number = [](std::uint64_t n) { return Value(static_cast<double>(n)); };
   add("us", [](const Answer& a) { return Value(a.microseconds); });

@@ -9,8 +9,8 @@
 ///                         a methods::Answer; without a method, the stability::RightAnswer
 ///   {"saved": FILE}       the same for the case of a file (bench/stability/case_meshes.hpp)
 ///   {"set": FILE, "question": K, ["setting"], ["errors"]}
-///                         a bench::Record for a query of a data set; with errors also those of the answer
-///   {"build": FILE.lrb}   a bench::BuildTime; the method may also be one of bench::own_structures()
+///                         a speed::Record for a query of a data set; with errors also those of the answer
+///   {"build": FILE.lrb}   a speed::BuildTime; the method may also be one of speed::own_structures()
 ///   {"bodies": [A, B], ["b": POSE, "tests", "list"]}
 ///                         reads and builds two bodies of files; at a pose of B, a methods::Answer with the
 ///                         number of pairs, and tests and pairs on request (bench/engines/engine.hpp)
@@ -136,21 +136,21 @@ class Answers {
     const auto known = std::find_if(entries_.begin(), entries_.end(), [&](const methods::MethodEntry& e) {
       return e.info.name == method_ && e.make != nullptr;
     });
-    return to_json(bench::time_build(known == entries_.end() ? nullptr : &*known, method_, file));
+    return to_json(speed::time_build(known == entries_.end() ? nullptr : &*known, method_, file));
   }
 
   ordered_json about_case(const cases::Case& c, bool both_ways) {
     if (method_.empty())
       return to_json(quantity_ == Quantity::pairs ? stability::expected_answer(c)
-                                                  : stability::true_number(quantity_, c));
-    if (quantity_ != Quantity::pairs) return workers::to_json(stability::ask_number(entry(quantity_), c));
+                                                  : quantities::true_number(quantity_, c));
+    if (quantity_ != Quantity::pairs) return workers::to_json(quantities::ask_number(entry(quantity_), c));
     if (!cases_) cases_.emplace(entry(Quantity::pairs));
     return workers::to_json(cases_->ask(c, both_ways));
   }
 
   ordered_json about_set(const json& question) {
     if (!set_) {
-      set_ = bench::read_data_set(question.at("set"));
+      set_ = speed::read_data_set(question.at("set"));
       const auto setting =
           question.contains("setting") ? std::optional<double>(question.at("setting")) : std::nullopt;
       queries_.emplace(entry(set_->quantity), setting, *set_, question.value("errors", false));
@@ -182,8 +182,8 @@ class Answers {
   Quantity quantity_;
   const std::vector<methods::MethodEntry>& entries_;
   std::optional<stability::StabilityRunner> cases_;
-  std::optional<bench::DataSet> set_;
-  std::optional<bench::BenchRunner> queries_;
+  std::optional<speed::DataSet> set_;
+  std::optional<speed::BenchRunner> queries_;
   std::unique_ptr<Method> method_of_bodies_;
   std::array<std::unique_ptr<MethodBody>, 2> bodies_;
 };

@@ -16,11 +16,12 @@
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::stability {
+namespace lrb::quantities {
 
 namespace {
 
 using Eigen::Vector3d;
+using stability::Quantity, stability::RightAnswer;
 
 /// Maximum number of faces, to bound the time of rational brute force to seconds.
 constexpr std::uint32_t kMaxFaces = 100, kMaxFacesForDepth = 20;
@@ -341,4 +342,4 @@ methods::Answer ask_number(const methods::MethodEntry& method, const cases::Case
   return out;
 }
 
-}  // namespace lrb::stability
+}  // namespace lrb::quantities

@@ -11,11 +11,11 @@
 #include "bench/stability/stability_experiment.hpp"
 #include <lrbscope/lrb_rep.hpp>
 
-namespace lrb::stability {
+namespace lrb::quantities {
 
 /// Returns why a quantity is not queried for a case: 2D bodies, coordinates that are not doubles, too many
 /// faces for rational arithmetic. Empty if it is queried.
-std::string why_unsupported(Quantity quantity, const cases::Case& c);
+std::string why_unsupported(stability::Quantity quantity, const cases::Case& c);
 
 /// Returns the question about a case. B approaches from its side of A, starting at a distance at which the
 /// bodies are separate; its translation is exactly zero at t = 3/4, though methods may round. Pairs are near
@@ -29,9 +29,9 @@ methods::Question question_of(const cases::Case& c);
 std::vector<SimplexPair> true_near_pairs(const LrbRep& a, const LrbRep& b, double within);
 std::vector<SimplexPair> true_self_intersections(const LrbRep& body);
 
-RightAnswer true_number(Quantity quantity, const cases::Case& c);
+stability::RightAnswer true_number(stability::Quantity quantity, const cases::Case& c);
 
 /// Asks a method about a case. A case for which the quantity is not queried is rejected.
 methods::Answer ask_number(const methods::MethodEntry& method, const cases::Case& c);
 
-}  // namespace lrb::stability
+}  // namespace lrb::quantities

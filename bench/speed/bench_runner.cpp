@@ -11,7 +11,7 @@
 #include "engine/mesh/face_pairs.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/error.hpp>
-namespace lrb::bench {
+namespace lrb::speed {
 
 void sweep_caches() {
   constexpr std::size_t kBytes = std::size_t{64} << 20, kLine = 64;
@@ -176,4 +176,4 @@ std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const 
   return pairs;
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

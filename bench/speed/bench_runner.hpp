@@ -12,7 +12,7 @@
 #include <lrbscope/collide.hpp>
 #include <lrbscope/lrb_rep.hpp>
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 class BenchRunner {
  public:
@@ -81,4 +81,4 @@ auto ask_again_and_again(const Query& query, QueryTimes& times) {
   return answer;
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

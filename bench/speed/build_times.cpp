@@ -21,23 +21,23 @@
 namespace lrb {
 
 template <>
-inline constexpr auto kFields<bench::BuildTime> =
-    std::tuple{field("body", &bench::BuildTime::body),
-               field("method", &bench::BuildTime::method),
-               field("round", &bench::BuildTime::round),
-               field("outcome", &bench::BuildTime::outcome),
-               field("message", &bench::BuildTime::message, Kept::if_set),
-               field("build_ms", &bench::BuildTime::build_ms),
-               field("build_cpu_ms", &bench::BuildTime::build_cpu_ms),
-               field("first_ms", &bench::BuildTime::first_ms),
-               field("first_cpu_ms", &bench::BuildTime::first_cpu_ms),
-               field("heap_bytes", &bench::BuildTime::heap_bytes),
-               field("contact", &bench::BuildTime::contact)};
-static_assert(covers_all_fields<bench::BuildTime>);
+inline constexpr auto kFields<speed::BuildTime> =
+    std::tuple{field("body", &speed::BuildTime::body),
+               field("method", &speed::BuildTime::method),
+               field("round", &speed::BuildTime::round),
+               field("outcome", &speed::BuildTime::outcome),
+               field("message", &speed::BuildTime::message, Kept::if_set),
+               field("build_ms", &speed::BuildTime::build_ms),
+               field("build_cpu_ms", &speed::BuildTime::build_cpu_ms),
+               field("first_ms", &speed::BuildTime::first_ms),
+               field("first_cpu_ms", &speed::BuildTime::first_cpu_ms),
+               field("heap_bytes", &speed::BuildTime::heap_bytes),
+               field("contact", &speed::BuildTime::contact)};
+static_assert(covers_all_fields<speed::BuildTime>);
 
 }  // namespace lrb
 
-namespace lrb::bench {
+namespace lrb::speed {
 namespace {
 
 /// A structure of lrbscope. Variants have the same colour and shape.
@@ -438,4 +438,4 @@ report::Document build_page(const BuildResults& r, bool tex) {
   return page;
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

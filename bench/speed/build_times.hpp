@@ -11,7 +11,7 @@
 #include "bench/workers/workers.hpp"
 #include "scenarios/report/document.hpp"
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 /// One build in its own process.
 struct BuildTime {
@@ -71,4 +71,4 @@ std::string build_csv(const BuildResults& results);
 /// first answer, and of memory.
 report::Document build_page(const BuildResults& results, bool tex = false);
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

@@ -13,7 +13,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
-namespace lrb::bench {
+namespace lrb::speed {
 namespace {
 
 /// The texts of charts, by the queried quantity.
@@ -596,4 +596,4 @@ report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& se
   return report::gnuplot(panels, report::layout_for(print.width, panels));
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

@@ -9,7 +9,7 @@
 #include "bench/speed/survey.hpp"
 #include "scenarios/report/document.hpp"
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 /// Returns the charts of speed against accuracy: for each pair of bodies (at least one, all for the same
 /// quantity) one per class of poses. `scene_of` returns the link of a point, relative to the page; empty: no
@@ -51,4 +51,4 @@ report::Table table_of_settings(const std::vector<DataSet>& sets, const std::vec
 /// Returns the points of a panel.
 std::vector<const Point*> panel(const std::vector<Point>& points, const std::string& set, PoseClass c);
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

@@ -13,17 +13,17 @@
 #include <lrbscope/error.hpp>
 
 template <>
-struct lrb::io::JsonOf<lrb::bench::Errors> {
-  static nlohmann::ordered_json write(const bench::Errors& errors) {
+struct lrb::io::JsonOf<lrb::speed::Errors> {
+  static nlohmann::ordered_json write(const speed::Errors& errors) {
     nlohmann::ordered_json out = nlohmann::ordered_json::object();
-    for (std::size_t m = 0; m < bench::kMetrics; ++m)
-      if (errors[m]) out[bench::kMetricInfos[m].name] = *errors[m];
+    for (std::size_t m = 0; m < speed::kMetrics; ++m)
+      if (errors[m]) out[speed::kMetricInfos[m].name] = *errors[m];
     return out;
   }
-  static bench::Errors read(const nlohmann::json& value) {
-    bench::Errors out;
-    for (std::size_t m = 0; m < bench::kMetrics; ++m)
-      if (const auto it = value.find(bench::kMetricInfos[m].name); it != value.end())
+  static speed::Errors read(const nlohmann::json& value) {
+    speed::Errors out;
+    for (std::size_t m = 0; m < speed::kMetrics; ++m)
+      if (const auto it = value.find(speed::kMetricInfos[m].name); it != value.end())
         out[m] = it->get<double>();
     return out;
   }
@@ -32,40 +32,40 @@ struct lrb::io::JsonOf<lrb::bench::Errors> {
 namespace lrb {
 
 template <>
-inline constexpr auto kFields<bench::Reply> =
-    std::tuple{field("contact", &bench::Reply::contact),
-               field("count", &bench::Reply::count),
-               field("missed", &bench::Reply::missed),
-               field("extra", &bench::Reply::extra),
-               field("cold_us", &bench::Reply::cold_us),
-               field("hot_us", &bench::Reply::hot_us),
-               field("face_tests", &bench::Reply::face_tests),
-               field("error_bound", &bench::Reply::error_bound, Kept::if_set),
-               field("lower", &bench::Reply::lower, Kept::if_set),
-               field("upper", &bench::Reply::upper, Kept::if_set)};
+inline constexpr auto kFields<speed::Reply> =
+    std::tuple{field("contact", &speed::Reply::contact),
+               field("count", &speed::Reply::count),
+               field("missed", &speed::Reply::missed),
+               field("extra", &speed::Reply::extra),
+               field("cold_us", &speed::Reply::cold_us),
+               field("hot_us", &speed::Reply::hot_us),
+               field("face_tests", &speed::Reply::face_tests),
+               field("error_bound", &speed::Reply::error_bound, Kept::if_set),
+               field("lower", &speed::Reply::lower, Kept::if_set),
+               field("upper", &speed::Reply::upper, Kept::if_set)};
 
 template <>
-inline constexpr auto kFields<bench::Record> =
-    std::tuple{field("set", &bench::Record::set),
-               field("method", &bench::Record::method),
-               field("setting", &bench::Record::setting, Kept::if_set),
-               field("question", &bench::Record::question),
-               field("round", &bench::Record::round, Kept::if_set),
-               field("class", &bench::Record::pose_class),
-               field("outcome", &bench::Record::outcome),
-               field("message", &bench::Record::message, Kept::if_set),
-               field("all", &bench::Record::all, Kept::if_set),
-               field("first", &bench::Record::first, Kept::if_set),
-               field("build_s", &bench::Record::build_seconds, Kept::if_set),
-               field("bytes", &bench::Record::bytes, Kept::if_set),
-               field("errors", &bench::Record::errors, Kept::if_set)};
+inline constexpr auto kFields<speed::Record> =
+    std::tuple{field("set", &speed::Record::set),
+               field("method", &speed::Record::method),
+               field("setting", &speed::Record::setting, Kept::if_set),
+               field("question", &speed::Record::question),
+               field("round", &speed::Record::round, Kept::if_set),
+               field("class", &speed::Record::pose_class),
+               field("outcome", &speed::Record::outcome),
+               field("message", &speed::Record::message, Kept::if_set),
+               field("all", &speed::Record::all, Kept::if_set),
+               field("first", &speed::Record::first, Kept::if_set),
+               field("build_s", &speed::Record::build_seconds, Kept::if_set),
+               field("bytes", &speed::Record::bytes, Kept::if_set),
+               field("errors", &speed::Record::errors, Kept::if_set)};
 
-static_assert(covers_all_fields<bench::Reply>);
-static_assert(covers_all_fields<bench::Record>);
+static_assert(covers_all_fields<speed::Reply>);
+static_assert(covers_all_fields<speed::Record>);
 
 }  // namespace lrb
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 namespace {
 
@@ -265,4 +265,4 @@ std::string name_of(const Record& r) {
   return name_of(r.method, r.setting);
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

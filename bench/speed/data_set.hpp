@@ -18,7 +18,7 @@
 #include <lrbscope/collide.hpp>
 #include <lrbscope/enum_names.hpp>
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 using lrb::name_of;  // the overload for enums, beside those for records
 
@@ -232,4 +232,4 @@ std::vector<Record> read_records(const std::string& path);
 std::string name_of(const Record& r);
 std::string name_of(const std::string& method, std::optional<double> setting);
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

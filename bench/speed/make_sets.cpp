@@ -20,7 +20,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
-namespace lrb::bench {
+namespace lrb::speed {
 
 Approaches::Approaches(const LrbRep& a, const LrbRep& b, double diagonal, std::uint64_t seed)
     : a_(a), b_(b), diagonal_(diagonal), random_(seed) {
@@ -316,4 +316,4 @@ std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
   return pages;
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

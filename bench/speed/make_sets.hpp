@@ -16,7 +16,7 @@
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/workspace.hpp>
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 // Finds poses at which two bodies are at a given distance or penetrate each other.
 
@@ -81,4 +81,4 @@ std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
                                              const std::vector<Point>& points, const std::string& folder,
                                              const run::ProgressReport& progress);
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

@@ -14,7 +14,7 @@
 #include <lrbscope/contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 
-namespace lrb::bench {
+namespace lrb::speed {
 namespace {
 
 /// The number of points between which distances are measured: enough for three digits, few enough to compare
@@ -505,4 +505,4 @@ std::string to_lines(const std::vector<Point>& points) {
   return out;
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

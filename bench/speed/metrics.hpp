@@ -13,7 +13,7 @@
 #include "engine/lrb/thickness.hpp"
 #include <lrbscope/workspace.hpp>
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 struct Point {
   std::string set, method;
@@ -145,4 +145,4 @@ Region of_points(const std::vector<Eigen::Vector3d>& points);
 /// Returns the errors. Two empty regions have no error; if only one is empty, all errors are the worst.
 RegionError region_error(const Region& exact, const Region& found, double diagonal);
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

@@ -10,7 +10,7 @@
 
 #include "bench/speed/metrics.hpp"
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 std::string machine() {
   std::ifstream in("/proc/cpuinfo");
@@ -301,4 +301,4 @@ report::Table table_of_cells(const PeerTable& t) {
   return table;
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

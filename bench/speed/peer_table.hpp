@@ -8,7 +8,7 @@
 #include "bench/speed/data_set.hpp"
 #include "scenarios/report/document.hpp"
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 /// Returns the processor as in /proc/cpuinfo: "2 cores of an AMD EPYC".
 std::string machine();
@@ -47,4 +47,4 @@ report::Table table_of_ratios(const PeerTable& table, Mode mode);
 /// Returns a row for every cell, with all its numbers.
 report::Table table_of_cells(const PeerTable& table);
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

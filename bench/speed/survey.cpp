@@ -10,7 +10,7 @@
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 
-namespace lrb::bench {
+namespace lrb::speed {
 namespace {
 
 // set, method at its setting, question, round
@@ -233,4 +233,4 @@ std::string missing_text(const std::vector<Missing>& missing) {
   return out + " The command that began it continues it.";
 }
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

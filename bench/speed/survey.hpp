@@ -10,7 +10,7 @@
 #include "bench/speed/data_set.hpp"
 #include "bench/workers/workers.hpp"
 
-namespace lrb::bench {
+namespace lrb::speed {
 
 /// A method at one setting of its parameter.
 struct Contestant {
@@ -55,4 +55,4 @@ std::vector<Missing> missing_answers(const std::string& folder, const std::vecto
 /// Returns a sentence that names them, or an empty string.
 std::string missing_text(const std::vector<Missing>& missing);
 
-}  // namespace lrb::bench
+}  // namespace lrb::speed

@@ -25,19 +25,19 @@
 #include <lrbscope/error.hpp>
 
 using namespace lrb;
-using namespace lrb::bench;
+using namespace lrb::speed;
 using lrb::test::Folder;
 using lrb::test::slurp;
 
 namespace {
 
-bench::BodyPair small_pair() {
+speed::BodyPair small_pair() {
   return {"spheres", "two bumpy spheres", [] { return shapes::bumpy_sphere(2, 1); },
           [] { return shapes::bumpy_sphere(2, 2); }};
 }
 
-bench::SetOptions few() {
-  bench::SetOptions o;
+speed::SetOptions few() {
+  speed::SetOptions o;
   o.poses = 4;
   return o;
 }
@@ -49,8 +49,8 @@ methods::MethodInfo info(const std::string& name) {
   return i;
 }
 
-bench::Record answer(const std::string& method, std::uint64_t question, bench::PoseClass c, double us) {
-  bench::Record r;
+speed::Record answer(const std::string& method, std::uint64_t question, speed::PoseClass c, double us) {
+  speed::Record r;
   r.set = "set";
   r.method = method;
   r.question = question;
@@ -60,21 +60,21 @@ bench::Record answer(const std::string& method, std::uint64_t question, bench::P
   return r;
 }
 
-bench::DataSet made_up_set(int questions) {
-  bench::DataSet set;
+speed::DataSet made_up_set(int questions) {
+  speed::DataSet set;
   set.name = "set";
-  for (int i = 0; i < questions; ++i) set.questions.push_back({bench::PoseClass::deep, 0, 0, {}, {}, {}});
+  for (int i = 0; i < questions; ++i) set.questions.push_back({speed::PoseClass::deep, 0, 0, {}, {}, {}});
   return set;
 }
 
 }  // namespace
 
 TEST_CASE("quantiles are observed values, means of ratios are geometric") {
-  CHECK(bench::quantile({5, 1, 4, 2, 3}, 0.5) == 3);
-  CHECK(bench::quantile({5, 1, 4, 2, 3}, 0.95) == 5);
-  CHECK(bench::quantile({1, 2}, 0.5) == 1);
-  CHECK(bench::quantile({}, 0.5) == 0);
-  CHECK(bench::geometric_mean({2, 8}) == doctest::Approx(4));
+  CHECK(speed::quantile({5, 1, 4, 2, 3}, 0.5) == 3);
+  CHECK(speed::quantile({5, 1, 4, 2, 3}, 0.95) == 5);
+  CHECK(speed::quantile({1, 2}, 0.5) == 1);
+  CHECK(speed::quantile({}, 0.5) == 0);
+  CHECK(speed::geometric_mean({2, 8}) == doctest::Approx(4));
 }
 
 TEST_CASE("the fast oracle of data sets agrees with brute force") {
@@ -84,21 +84,21 @@ TEST_CASE("the fast oracle of data sets agrees with brute force") {
   for (int i = 0; i < 20; ++i) {
     const Pose p = shapes::random_pose(random, a, b, 0.5);
     const auto expected = brute_force(a, Pose{}, b, p).pairs;
-    CHECK(bench::exact_pairs(a, Pose{}, b, p) == expected);
+    CHECK(speed::exact_pairs(a, Pose{}, b, p) == expected);
     met += expected.size();
   }
   CHECK(met > 100);
-  CHECK(bench::exact_pairs(a, Pose{}, a, Pose{}) == brute_force(a, Pose{}, a, Pose{}).pairs);
+  CHECK(speed::exact_pairs(a, Pose{}, a, Pose{}) == brute_force(a, Pose{}, a, Pose{}).pairs);
 }
 
 TEST_CASE("a data set contains poses of its classes, and is read back unchanged") {
   const Folder folder;
-  const bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  const speed::DataSet set = speed::make_data_set(small_pair(), few(), folder.path.string());
   REQUIRE(set.questions.size() == 4 * 4 + 1);
-  for (const bench::Question& q : set.questions)
-    CHECK(q.expected.empty() == (q.pose_class == bench::PoseClass::apart));
+  for (const speed::Question& q : set.questions)
+    CHECK(q.expected.empty() == (q.pose_class == speed::PoseClass::apart));
   CHECK(set.bodies.size() == 3);
-  const bench::DataSet again = bench::read_data_set(folder / "spheres.set.json");
+  const speed::DataSet again = speed::read_data_set(folder / "spheres.set.json");
   REQUIRE(again.questions.size() == set.questions.size());
   for (std::size_t i = 0; i < set.questions.size(); ++i) {
     CHECK(again.questions[i].pose_b.r == set.questions[i].pose_b.r);
@@ -108,57 +108,57 @@ TEST_CASE("a data set contains poses of its classes, and is read back unchanged"
   }
   // Made again only if asked for something else.
   const std::string before = slurp(folder / "spheres.set.json");
-  bench::make_data_set(small_pair(), few(), folder.path.string());
+  speed::make_data_set(small_pair(), few(), folder.path.string());
   CHECK(slurp(folder / "spheres.set.json") == before);
-  bench::SetOptions other = few();
+  speed::SetOptions other = few();
   other.seed = 2;
-  bench::make_data_set(small_pair(), other, folder.path.string());
+  speed::make_data_set(small_pair(), other, folder.path.string());
   CHECK(slurp(folder / "spheres.set.json") != before);
   folder.write("spheres.set.json", "{}");
-  CHECK_THROWS_AS(bench::read_data_set(folder / "spheres.set.json"), InputError);
+  CHECK_THROWS_AS(speed::read_data_set(folder / "spheres.set.json"), InputError);
 }
 
 TEST_CASE("records are read back from their lines, and a partial line is skipped") {
-  bench::Record r = answer("spheres", 3, bench::PoseClass::small, 1.5);
+  speed::Record r = answer("spheres", 3, speed::PoseClass::small, 1.5);
   r.setting = 4;
   r.round = 2;
   r.errors.emplace();
-  (*r.errors)[static_cast<std::size_t>(bench::Metric::hausdorff)] = 0.1;
-  (*r.errors)[static_cast<std::size_t>(bench::Metric::contact)] = 0;
+  (*r.errors)[static_cast<std::size_t>(speed::Metric::hausdorff)] = 0.1;
+  (*r.errors)[static_cast<std::size_t>(speed::Metric::contact)] = 0;
   r.all.missed = 7;
   r.build_seconds = 0.25;
-  const bench::Record same = bench::record_from(nlohmann::json::parse(to_json(r).dump()));
+  const speed::Record same = speed::record_from(nlohmann::json::parse(to_json(r).dump()));
   CHECK(to_json(same).dump() == to_json(r).dump());
-  CHECK(bench::name_of(same) == "spheres 4");
+  CHECK(speed::name_of(same) == "spheres 4");
   CHECK(same.errors == r.errors);
   CHECK(same.round == 2);
-  r.outcome = bench::Outcome::crashed;
+  r.outcome = speed::Outcome::crashed;
   r.message = "died";
-  CHECK(bench::record_from(to_json(r)).outcome == bench::Outcome::crashed);
+  CHECK(speed::record_from(to_json(r)).outcome == speed::Outcome::crashed);
   const Folder folder;
   const std::string line = to_json(r).dump();
   const std::string file = folder.write("records.jsonl", line + "\n" + line.substr(0, line.size() / 2));
-  CHECK(bench::read_records(file).size() == 1);
-  CHECK(bench::read_records(folder / "none.jsonl").empty());
-  CHECK_THROWS_AS(bench::record_from(nlohmann::json::parse("{}")), InputError);
+  CHECK(speed::read_records(file).size() == 1);
+  CHECK(speed::read_records(folder / "none.jsonl").empty());
+  CHECK_THROWS_AS(speed::record_from(nlohmann::json::parse("{}")), InputError);
 }
 
 TEST_CASE("ratios are medians over questions; faster engines are named") {
-  std::vector<bench::Record> records;
+  std::vector<speed::Record> records;
   for (std::uint64_t q = 0; q < 3; ++q) {
-    records.push_back(answer("ours", q, bench::PoseClass::deep, 10));
-    records.push_back(answer("slow", q, bench::PoseClass::deep, q == 0 ? 1 : 70));
-    records.push_back(answer("fast", q, bench::PoseClass::deep, 5));
+    records.push_back(answer("ours", q, speed::PoseClass::deep, 10));
+    records.push_back(answer("slow", q, speed::PoseClass::deep, q == 0 ? 1 : 70));
+    records.push_back(answer("fast", q, speed::PoseClass::deep, 5));
   }
-  bench::Record dead = answer("dead", 0, bench::PoseClass::deep, 0);
-  dead.outcome = bench::Outcome::crashed;
+  speed::Record dead = answer("dead", 0, speed::PoseClass::deep, 0);
+  dead.outcome = speed::Outcome::crashed;
   records.push_back(dead);
-  const bench::PeerTable t =
-      bench::peer_table({made_up_set(3)}, {info("ours"), info("slow"), info("fast"), info("dead")}, records);
-  CHECK(t.find("set", "slow", bench::PoseClass::deep, Mode::all_pairs)->ratio == 7);
-  CHECK(t.find("set", "fast", bench::PoseClass::deep, Mode::all_pairs)->ratio == 0.5);
-  CHECK(t.find("set", "dead", bench::PoseClass::deep, Mode::all_pairs)->crashed == 1);
-  const std::string text = bench::in_brief(t);
+  const speed::PeerTable t =
+      speed::peer_table({made_up_set(3)}, {info("ours"), info("slow"), info("fast"), info("dead")}, records);
+  CHECK(t.find("set", "slow", speed::PoseClass::deep, Mode::all_pairs)->ratio == 7);
+  CHECK(t.find("set", "fast", speed::PoseClass::deep, Mode::all_pairs)->ratio == 0.5);
+  CHECK(t.find("set", "dead", speed::PoseClass::deep, Mode::all_pairs)->crashed == 1);
+  const std::string text = speed::in_brief(t);
   CHECK(text.find("set, deep, 10 %, all pairs: fast 2.00x") != std::string::npos);
   CHECK(text.find("slow 0") == std::string::npos);
   CHECK(text.find("crash") != std::string::npos);
@@ -169,23 +169,23 @@ namespace {
 /// A data set with its errors, as workers judge the answers of methods.
 struct Judged {
   Folder folder;
-  bench::DataSet set = bench::make_data_set(small_pair(), few(), folder.path.string());
+  speed::DataSet set = speed::make_data_set(small_pair(), few(), folder.path.string());
   std::vector<LrbRep> bodies;
 
   Judged() {
-    for (const bench::BodyFile& b : set.bodies) bodies.push_back(load_lrb(folder / b.file));
+    for (const speed::BodyFile& b : set.bodies) bodies.push_back(load_lrb(folder / b.file));
   }
   /// Returns the record of a method that lists these pairs.
-  bench::Record record(const methods::MethodInfo& m, std::uint64_t q, double us,
+  speed::Record record(const methods::MethodInfo& m, std::uint64_t q, double us,
                        const std::vector<SimplexPair>& pairs) const {
-    const bench::Question& question = set.questions[q];
-    bench::Record r = answer(m.name, q, question.pose_class, us);
+    const speed::Question& question = set.questions[q];
+    speed::Record r = answer(m.name, q, question.pose_class, us);
     r.set = set.name;
     methods::Answer said;
     said.pairs = pairs;
     said.contact = !pairs.empty();
     r.all.contact = said.contact;
-    r.errors = bench::errors_of_answer(set, question, bodies[question.a], bodies[question.b], m, said);
+    r.errors = speed::errors_of_answer(set, question, bodies[question.a], bodies[question.b], m, said);
     return r;
   }
 };
@@ -194,24 +194,24 @@ struct Judged {
 
 TEST_CASE("points: failures score worst, and the Pareto frontier contains the undominated points") {
   const Judged judged;
-  const bench::DataSet& set = judged.set;
+  const speed::DataSet& set = judged.set;
   std::vector<methods::MethodInfo> infos = {info("right"), info("blind"), info("dead"), info("slow"),
                                             info("told")};
   infos.back().traits.set(methods::Trait::knows_poses_in_advance);
-  std::vector<bench::Record> records;
+  std::vector<speed::Record> records;
   for (std::uint64_t q = 0; q < set.questions.size(); ++q)
     for (const methods::MethodInfo& m : infos) {
       const double us = m.name == "slow" ? 9 : m.name == "blind" ? 1 : m.name == "told" ? 0.5 : 2;
-      bench::Record r =
+      speed::Record r =
           judged.record(m, q, us, m.name == "blind" ? std::vector<SimplexPair>{} : set.questions[q].expected);
       if (m.name == "right" || (m.name == "slow" && q > 0)) r.all.error_bound = 0.25 * set.diagonal;
-      if (m.name == "dead") r.outcome = bench::Outcome::timed_out;
+      if (m.name == "dead") r.outcome = speed::Outcome::timed_out;
       records.push_back(r);
     }
   std::size_t seen = 0;
-  const bench::PoseClass first_class = set.questions[0].pose_class;
-  for (const bench::Point& p : bench::measure_points({set}, infos, records)) {
-    const bool meets = p.pose_class != bench::PoseClass::apart;
+  const speed::PoseClass first_class = set.questions[0].pose_class;
+  for (const speed::Point& p : speed::measure_points({set}, infos, records)) {
+    const bool meets = p.pose_class != speed::PoseClass::apart;
     CHECK(p.proven_deviation.has_value() ==
           (p.method == "right" || (p.method == "slow" && p.pose_class != first_class)));
     if (p.method == "told") {  // it knew more
@@ -233,17 +233,17 @@ TEST_CASE("points: failures score worst, and the Pareto frontier contains the un
     if (p.method == "dead") {
       CHECK(p.error() == 1);
       CHECK(p.failed() == p.questions);
-      CHECK(*p.errors[static_cast<std::size_t>(bench::Metric::recall)] == 1);
+      CHECK(*p.errors[static_cast<std::size_t>(speed::Metric::recall)] == 1);
       CHECK_FALSE(p.frontier);
       CHECK(p.left_out == "no answer");
     }
     ++seen;
   }
-  CHECK(seen == 5 * bench::classes_of(bench::Quantity::pairs).size());
+  CHECK(seen == 5 * speed::classes_of(speed::Quantity::pairs).size());
 }
 
 TEST_CASE("a frontier needs times that differ by more than their rounds; others are too close to call") {
-  bench::DataSet set = made_up_set(2);
+  speed::DataSet set = made_up_set(2);
   // Two of equal error whose rounds overlap, one that is faster than either in every round but less accurate,
   // and one slower than all.
   const std::vector<std::pair<const char*, std::vector<double>>> methods = {{"ours", {10, 10.4, 9.9}},
@@ -251,13 +251,13 @@ TEST_CASE("a frontier needs times that differ by more than their rounds; others 
                                                                             {"coarse", {5, 5.2, 6}},
                                                                             {"late", {11, 12, 10.5}}};
   const auto points_of = [&](double factor) {
-    std::vector<bench::Record> records;
+    std::vector<speed::Record> records;
     std::vector<methods::MethodInfo> infos;
     for (const auto& [name, rounds] : methods) {
       infos.push_back(info(name));
       for (std::uint64_t round = 0; round < rounds.size(); ++round)
         for (std::uint64_t q = 0; q < 2; ++q) {
-          bench::Record r = answer(name, q, bench::PoseClass::deep, factor * rounds[round]);
+          speed::Record r = answer(name, q, speed::PoseClass::deep, factor * rounds[round]);
           r.round = round;
           if (round == 0) {
             r.errors.emplace();
@@ -267,8 +267,8 @@ TEST_CASE("a frontier needs times that differ by more than their rounds; others 
           records.push_back(r);
         }
     }
-    std::map<std::string, bench::Point> out;
-    for (const bench::Point& p : bench::measure_points({set}, infos, records)) out[p.method] = p;
+    std::map<std::string, speed::Point> out;
+    for (const speed::Point& p : speed::measure_points({set}, infos, records)) out[p.method] = p;
     return out;
   };
   auto points = points_of(1);
@@ -286,21 +286,21 @@ TEST_CASE("a frontier needs times that differ by more than their rounds; others 
   points = points_of(3);  // under load, which slows all alike
   CHECK(points["coarse"].frontier);
   CHECK((points["twin"].ties == std::vector<std::string>{"ours"}));
-  CHECK(bench::to_lines({points["ours"]}).find("\"too_close_to\":[\"twin\"]") != std::string::npos);
+  CHECK(speed::to_lines({points["ours"]}).find("\"too_close_to\":[\"twin\"]") != std::string::npos);
 }
 
 TEST_CASE("numbers are judged by their error, in diagonals or fractions of the motion") {
-  const auto error = [](Quantity quantity, double known, const bench::Record& r) {
-    bench::DataSet set;
+  const auto error = [](Quantity quantity, double known, const speed::Record& r) {
+    speed::DataSet set;
     set.name = r.set;
     set.quantity = quantity;
     set.diagonal = 2;
     set.questions.resize(1);
     set.questions[0].number = {known, known};
-    return bench::measure_points({set}, {info("some")}, {r}).at(0);
+    return speed::measure_points({set}, {info("some")}, {r}).at(0);
   };
   const auto said = [](double lower, double upper) {
-    bench::Record r = answer("some", 0, bench::PoseClass::apart, 3);
+    speed::Record r = answer("some", 0, speed::PoseClass::apart, 3);
     r.all.lower = lower;
     r.all.upper = upper;
     if (upper > lower) r.all.error_bound = upper - lower;
@@ -315,10 +315,10 @@ TEST_CASE("numbers are judged by their error, in diagonals or fractions of the m
   CHECK(error(Quantity::first_contact, 0.5, said(2, 2)).error() == 1);
   CHECK(error(Quantity::first_contact, 2, said(0.9, 0.9)).error() == 1);
   CHECK(error(Quantity::first_contact, 2, said(2, 2)).error() == 0);
-  bench::Record dead = said(1, 1);
-  dead.outcome = bench::Outcome::crashed;
+  speed::Record dead = said(1, 1);
+  dead.outcome = speed::Outcome::crashed;
   CHECK(error(Quantity::depth, 1, dead).error() == 1);
-  const bench::Point p = error(Quantity::depth, 1, said(1, 1));
+  const speed::Point p = error(Quantity::depth, 1, said(1, 1));
   CHECK(p.frontier);
   CHECK(p.errors[static_cast<std::size_t>(Metric::penetration)].has_value());
 }
@@ -326,19 +326,19 @@ TEST_CASE("numbers are judged by their error, in diagonals or fractions of the m
 TEST_CASE("errors of near pairs: missing and extra pairs, and the largest error of a distance") {
   // The nearest corners of two boxes are 5 apart: (3, 4, 0).
   const LrbRep a = build_lrb(shapes::box()), b = methods::at_pose(a, Pose::translation({4, 5, 0.5}));
-  bench::DataSet set;
+  speed::DataSet set;
   set.quantity = Quantity::near_pairs;
   set.diagonal = 10;
-  bench::Question q;
-  q.expected = bench::exact_pairs(a, Pose{}, b, Pose{}, 5);
+  speed::Question q;
+  q.expected = speed::exact_pairs(a, Pose{}, b, Pose{}, 5);
   REQUIRE(q.expected.size() > 2);
-  CHECK(bench::exact_pairs(a, Pose{}, b, Pose{}, std::nextafter(5, 0)).empty());
+  CHECK(speed::exact_pairs(a, Pose{}, b, Pose{}, std::nextafter(5, 0)).empty());
   const auto error = [&](std::vector<SimplexPair> pairs, double distance, Metric m) {
     std::sort(pairs.begin(), pairs.end());
     methods::Answer found;
     found.distances.assign(pairs.size(), distance);
     found.pairs = std::move(pairs);
-    return bench::errors_of_answer(set, q, a, b, info("near"), found)[static_cast<std::size_t>(m)];
+    return speed::errors_of_answer(set, q, a, b, info("near"), found)[static_cast<std::size_t>(m)];
   };
   CHECK(*error(q.expected, 5, Metric::list) == 0);
   CHECK(*error(q.expected, 5, Metric::distance) == 0);

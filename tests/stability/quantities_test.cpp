@@ -15,6 +15,7 @@
 #include <lrbscope/self_intersections.hpp>
 
 using namespace lrb;
+using namespace lrb::quantities;
 using namespace lrb::stability;
 
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "scenarios/export/model.hpp"
+#include "scenarios/exchange/model.hpp"
 
 namespace lrb::exchange {
 namespace {

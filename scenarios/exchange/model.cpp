@@ -1,4 +1,4 @@
-#include "scenarios/export/model.hpp"
+#include "scenarios/exchange/model.hpp"
 
 #include <algorithm>
 #include <cmath>

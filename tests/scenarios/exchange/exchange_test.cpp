@@ -10,7 +10,7 @@
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/bodies/shapes.hpp"
-#include "scenarios/export/model.hpp"
+#include "scenarios/exchange/model.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/spec/scenario.hpp"

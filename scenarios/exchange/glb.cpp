@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/export/model.hpp"
+#include "scenarios/exchange/model.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "render/canvas.hpp"
-#include "scenarios/export/model.hpp"
+#include "scenarios/exchange/model.hpp"
 
 namespace lrb::exchange {
 namespace {
