@@ -126,6 +126,8 @@ self_test() {
 engine/core/geometry.hpp "engine/collide/tree_query.hpp"
 engine/tree/kernel_setup.hpp <lrbscope/collide.hpp>
 engine/include/lrbscope/mesh.hpp <lrbscope/scene.hpp>
+engine/include/lrbscope/lrb_rep.hpp "engine/collide/tree_query.hpp"
+trace/include/lrbscope/trace/event.hpp "tools/options.hpp"
 render/scene_parts.hpp "scenarios/io/files.hpp"
 END
   mkdir "$copy/engine/attic" && : >"$copy/engine/attic/x.hpp"

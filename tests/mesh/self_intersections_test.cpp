@@ -327,3 +327,35 @@ TEST_CASE("self-intersections: no pairs, no faces, and too many pairs") {
 }
 
 }  // namespace lrb::test
+
+TEST_CASE("self-intersections of faces with common corners: a fold, a spike, a duplicate") {
+  Mesh m;
+  m.vertices = {{0, 0, 0},      {1, 0, 0},       {0, 1, 0},   {0.25, 0.25, 0},
+                {0.25, 0.5, 1}, {0.5, 0.25, -1}, {0.5, -1, 0}};
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    m.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
+  };
+  add(0, 1, 2);
+  add(1, 0, 3);  // folded onto the first along their edge
+  SelfIntersections found = listed_in(m);
+  REQUIRE(found.pairs.size() == 1);
+  CHECK(found.pairs[0].kind == SelfContact::overlap);
+  CHECK(found.pairs[0].shared == 2);
+  m.face_offsets = {0}, m.face_vertices = {};
+  add(0, 1, 2);
+  add(0, 4, 5);  // shares a corner, and passes through the interior
+  found = listed_in(m);
+  REQUIRE(found.pairs.size() == 1);
+  CHECK(found.pairs[0].kind == SelfContact::cross);
+  CHECK(found.pairs[0].shared == 1);
+  REQUIRE(found.pairs[0].segments == 1);
+  CHECK(found.segments[0][0].norm() * found.segments[0][1].norm() == 0);  // from the corner
+  m.face_offsets = {0}, m.face_vertices = {};
+  add(0, 1, 2);
+  add(1, 2, 0);
+  add(0, 1, 6);  // beside the first: shares an edge only
+  found = listed_in(m);
+  REQUIRE(found.pairs.size() == 1);
+  CHECK(found.pairs[0].kind == SelfContact::overlap);
+  CHECK(found.pairs[0].shared == 3);
+}
