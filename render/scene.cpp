@@ -320,7 +320,7 @@ Eigen::Vector3d exploded_way(const LrbRep& rep, const Pose& pose, RegionId r, do
   constexpr double kSpread = 1.1;  // way of the outermost layer, as a share of the wrapper's radius
   // The outermost layer rises first, and the others follow, one after the other.
   const double layers = rep.layer_count(), rise = explode * layers - (layers - 1 - rep.layer(r));
-  if (!(rise > 0)) return Eigen::Vector3d::Zero();
+  if (!(rise > 0) || rep.lids(r).empty()) return Eigen::Vector3d::Zero();  // a filled void has none
   // A region moves where its lids look.
   Eigen::Vector3d out = Eigen::Vector3d::Zero();
   for (const FaceId f : rep.lids(r)) {

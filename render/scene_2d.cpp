@@ -217,17 +217,25 @@ class Scene2dBuilder {
   /// Leaves out faces that lie on another one: two dashed lines on each other would look solid.
   std::vector<FaceId> uncovered(const std::vector<FaceId>& faces) const {
     constexpr double kNear = 1e-3;  // of the length: less than a line's width
-    const auto is_on = [&](FaceId f, FaceId g) {
-      const std::vector<Vector3d> x = c_.corners(f, Vector3d::Zero()), y = c_.corners(g, Vector3d::Zero());
+    std::vector<std::vector<Vector3d>> corners;
+    for (const FaceId f : faces) corners.push_back(c_.corners(f, Vector3d::Zero()));
+    const auto is_on = [&](std::size_t f, std::size_t g) {
+      const std::vector<Vector3d>&x = corners[f], &y = corners[g];
+      // Most are beside each other.
+      const Eigen::AlignedBox3d box_x = Eigen::AlignedBox3d(x[0]).extend(x[1]);
+      const Eigen::AlignedBox3d box_y = Eigen::AlignedBox3d(y[0]).extend(y[1]);
+      if (box_x.squaredExteriorDistance(box_y) > kNear * kNear * (y[1] - y[0]).squaredNorm()) return false;
       std::vector<Cover> covers;
       add_cover({x[0], x[1]}, {y[0], y[1]}, kNear * (y[1] - y[0]).norm(), covers);
       return !covers.empty() && covers[0].to - covers[0].from > 1 - kNear;
     };
     std::vector<FaceId> out;
-    for (const FaceId f : faces)
-      if (std::none_of(faces.begin(), faces.end(),
-                       [&](FaceId g) { return g != f && is_on(f, g) && (g < f || !is_on(g, f)); }))
-        out.push_back(f);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      bool is_covered = false;
+      for (std::size_t g = 0; g < faces.size() && !is_covered; ++g)
+        is_covered = g != f && is_on(f, g) && (g < f || !is_on(g, f));
+      if (!is_covered) out.push_back(faces[f]);
+    }
     return out;
   }
 

@@ -115,8 +115,8 @@ class PaperWork {
   /// Takes the collisions of lines.
   void take(const std::vector<std::string>& lines) {
     for (const std::string& line : lines)
-      if (const auto value = nlohmann::json::parse(line, nullptr, false); value.is_object())
-        known_[value.value("collision", "")] = paper::read_json_lines(value.value("records", ""), path_);
+      if (const auto kept = paper::kept_collision(line))
+        known_[kept->first] = paper::read_json_lines(kept->second, path_.empty() ? "--merge" : path_);
   }
 
   /// `mesh_faces` 0: an object of the paper, instead of a mesh.
@@ -137,10 +137,10 @@ class PaperWork {
   std::vector<paper::ContactStep> collide(const paper::CollisionTask& task, bool merging,
                                           Workspace& workspace) {
     const std::uint64_t a = task.a.rep.hash(), x = task.x.rep.hash();
-    const std::string key = nlohmann::json(task.protocol.step).dump() + " " +
-                            std::to_string(task.protocol.steps_after) + " " +
-                            std::to_string(task.protocol.seed) + " " + task.x.name + " " + trace::to_hex(a) +
-                            trace::to_hex(x) + " " + std::to_string(task.collision);
+    const std::string key =
+        nlohmann::json(task.protocol.step).dump() + " " + std::to_string(task.protocol.steps_after) + " " +
+        std::to_string(task.protocol.seed) + " " + task.x.name + " " + trace::to_hex(a) + trace::to_hex(x) +
+        " " + std::to_string(task.collision) + (task.scalable_only ? " scalable" : "");
     const double seconds =
         expected_seconds(task.protocol, task.x.draws.empty() ? 0 : task.x.rep.real_face_count(), a == x);
     const auto known = known_.find(key);

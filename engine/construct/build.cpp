@@ -314,12 +314,15 @@ std::string rejection(const Mesh& mesh, const MeshReport& report) {
   return text;
 }
 
-/// `meeting`: the faces that intersect others in more than shared vertices and edges.
-LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vector<FaceId>& meeting,
-             const BuildOptions& options) {
+void check_options(const Mesh& mesh, const BuildOptions& options) {
   if (options.merge_planes && (options.lean || mesh.dim == 2))
     throw InputError(printable_name(mesh.name) + ": cannot merge planes " +
                      (mesh.dim == 2 ? "of a 2D body" : "in a lean LRB-rep"));
+}
+
+/// `meeting`: the faces that intersect others in more than shared vertices and edges.
+LrbRep build(const Mesh& mesh, const std::vector<FaceUse>& use, const std::vector<FaceId>& meeting,
+             const BuildOptions& options) {
   // Step 1: the faces that intersect others. Do interiors of the body overlap, or do its faces only touch?
   const auto meets = [&](FaceId f) { return std::binary_search(meeting.begin(), meeting.end(), f); };
   const bool overlapping = !meeting.empty() && overlaps_itself(mesh, use, [&](FaceId f, FaceId g) {
@@ -339,6 +342,7 @@ LrbRep build_lrb(const CheckedMesh& checked, const BuildOptions& options) {
   const FloatMode float_mode;
   // The mesh was checked before; its results are reused.
   if (!checked.report().buildable()) throw InputError(rejection(checked.mesh(), checked.report()));
+  check_options(checked.mesh(), options);
   Workers workers(options.threads);
   return build(checked.mesh(), checked.use(), checked.self_intersecting_faces(workers), options);
 }
@@ -348,6 +352,7 @@ LrbRep build_lrb(const Mesh& mesh, const BuildOptions& options) {
   // Reject meshes that cannot be built before the more expensive search for self-intersections.
   const MeshFindings found = examine(mesh);
   if (!found.report.buildable()) throw InputError(rejection(mesh, found.report));
+  check_options(mesh, options);
   Workers workers(options.threads);
   return build(mesh, found.use, self_intersecting_faces(mesh, found.use, workers), options);
 }

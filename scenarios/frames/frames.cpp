@@ -100,7 +100,10 @@ class FrameJob {
       options.title = state.caption();
       options.units_per_pixel = look_.scale();
       options.background = look_.paper();
-      out.push_back(render::svg(list(look_.views[view], plain), all[view], options));
+      render::DrawList drawn = list(look_.views[view], plain);
+      const render::Projection projection(all[view], options.width, options.height, render::bounds(drawn));
+      const Eigen::AlignedBox2d frame(Eigen::Vector2d(0, 0), Eigen::Vector2d(options.width, options.height));
+      out.push_back(render::svg(with_leaders(std::move(drawn), projection, frame), all[view], options));
     }
     return out;
   }

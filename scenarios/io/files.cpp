@@ -128,8 +128,8 @@ UnfinishedFile::UnfinishedFile(std::string path, const std::string& head, Other 
   if (other == Other::refused && !lines_.empty() && lines_.front() != head)
     throw InputError(
         printable_name(path_) +
-        ": belongs to an interrupted run with other settings or of another version; finish that run, "
-        "remove the file, or give another folder (-o)");
+        ": belongs to a run with other settings or of another version; finish that run, remove the file, or "
+        "give another folder (-o)");
   if (lines_.empty() || lines_.front() != head)
     lines_.clear();
   else

@@ -58,6 +58,17 @@ std::string head_of(const KeptRun& run, std::span<const PaperObject> objects) {
   return head.dump();
 }
 
+std::optional<std::pair<std::string, std::string>> kept_collision(const std::string& line) {
+  const auto value = nlohmann::json::parse(line, nullptr, false);
+  std::pair<std::string, std::string> out;
+  for (const auto& [name, text] : {std::pair{"collision", &out.first}, std::pair{"records", &out.second}}) {
+    if (!value.is_object() || !value.contains(name) || !value[name].is_string()) return std::nullopt;
+    *text = value[name].get<std::string>();
+    if (text->empty()) return std::nullopt;
+  }
+  return out;
+}
+
 std::pair<KeptRun, std::vector<std::string>> read_shards(const std::vector<std::string>& files) {
   std::pair<KeptRun, std::vector<std::string>> out;
   auto& [whole, lines] = out;
@@ -79,13 +90,21 @@ std::pair<KeptRun, std::vector<std::string>> read_shards(const std::vector<std::
                        ": not written by `lrbscope paper --shard`: " + io::plain_reason(e.what()) +
                        "; give the collisions.jsonl of its shards' output folders");
     }
+    if (head.value("lrbscope", nlohmann::json()) != trace::lrbscope_version())
+      throw InputError(printable_name(file) + ": expected a shard of lrbscope " + trace::lrbscope_version() +
+                       "; run it again");
     head.erase("shard");
     if (there.size() == 1) first = head;
     if (head != first)
       throw InputError(printable_name(file) + ": belongs to another experiment than " +
                        printable_name(files.front()) +
                        "; give all shards of one experiment, run with the same options by the same version");
-    while (std::getline(in, line)) lines.push_back(line);
+    for (std::size_t number = 2; std::getline(in, line); ++number) {
+      if (!kept_collision(line))
+        throw InputError(printable_name(file) + ":" + std::to_string(number) +
+                         ": expected a collision with its records; run this shard again");
+      lines.push_back(line);
+    }
   }
   for (std::uint32_t i = 0; i < whole.shard.count; ++i) {
     const auto times = std::count(there.begin(), there.end(), i);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -98,6 +99,9 @@ struct KeptRun {
   bool lean = false;                           ///< the series' bodies are built lean (BuildOptions)
 };
 std::string head_of(const KeptRun& run, std::span<const PaperObject> objects);
+
+/// Returns the key and the records of a collision that a run keeps in a line; nothing for another line.
+std::optional<std::pair<std::string, std::string>> kept_collision(const std::string& line);
 
 /// Reads the files of shards. Returns their common run, as shard 0/1, and their lines without the heads.
 /// Throws InputError if one has no head or that of another run, or if they are not all n shards, once each.

@@ -38,9 +38,12 @@ std::string cell_html(const std::string& cell, bool numeric) {
 /// `commands` are between backticks.
 std::string text_html(const Text& text) {
   std::string html = render::escape_markup(text.text);
-  bool is_open = false;
-  for (std::size_t at = html.find('`'); at != std::string::npos; at = html.find('`', at), is_open = !is_open)
-    html.replace(at, 1, is_open ? "</code>" : "<code>");
+  std::size_t end = 0;
+  for (std::size_t at = html.find('`'); at != std::string::npos; at = html.find('`', at)) {
+    if (end = html.find('`', at + 1); end == std::string::npos) break;
+    html.replace(end, 1, "</code>");
+    html.replace(at, 1, "<code>");
+  }
   return fill("<div><h2>{}</h2><p>{!}</p></div>\n", {text.title, html});
 }
 

@@ -155,6 +155,7 @@ BuildOptions read_build(const io::JsonNode& node, std::uint64_t seed) {
   if (const auto n = node.get("merge_planes")) o.merge_planes = n->boolean();
   if (const auto n = node.get("lean")) o.lean = n->boolean();
   if (const auto n = node.get("seed")) o.seed = n->integer(0, kAnySeed);
+  if (o.merge_planes && o.lean) node.fail_key("merge_planes", "cannot merge planes in a lean LRB-rep");
   return o;
 }
 

@@ -97,7 +97,7 @@ TEST_CASE(
     options.max_lids = 12;
     const LrbRep rep = check_mesh(mesh).buildable() ? build_lrb(mesh, options) : test::open_body(mesh);
     RandomEngine random(5);
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 20; ++i) {
       Pose p = random_pose(random, rep, rep, uniform(random, 0.3, 0.9));
       if (i % 5 == 4 && mesh.dim == 3) p.r *= Eigen::Vector3d(1, 0.5, -2).asDiagonal();  // not rigid
       const auto expected = brute_force(rep, Pose{}, rep, p).pairs;

@@ -54,7 +54,7 @@ export function listenToKeys(actions) {
   document.addEventListener("keydown", (e) => {
     const key = e.key.length === 1 ? e.key.toLowerCase() : e.key, { target } = e;
     if (!actions[key] || e.ctrlKey || e.metaKey || e.altKey) return;
-    const moves = key.startsWith("Arrow") || key === "Home" || key === "End";
+    const moves = key.startsWith("Arrow") || /^(Home|End|Page)/.test(key);
     if (target.isContentEditable || target.matches?.("select, textarea")) return;
     if (target.matches?.(moves ? "input" : "input:not([type=range])")) return;
     if (target.closest?.("dialog[open]") && key !== "?") return;

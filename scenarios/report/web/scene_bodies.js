@@ -188,7 +188,7 @@ export class FaceMesh {
   /** Orders the shown faces from back to front along a direction, as glass is to be drawn. */
   sort(ahead) {
     const { index, drawRange, attributes } = this.mesh.geometry, { array } = attributes.position,
-      key = ahead.map((x) => x.toFixed(2)).join();
+      key = ahead.map((x) => x.toFixed(1)).join();
     if (!index || key === this.sortedAlong) return;
     this.sortedAlong = key;
     const depths = new Float32Array(this.triangles), corners = index.array.subarray(0, drawRange.count),

@@ -1,6 +1,5 @@
 import { byId, copyText, digits, Playback } from "./dom.js";
 import { COUNTERS } from "./scene_bodies.js";
-import { NONE } from "./scene_run.js";
 
 // ---- the time line: sliders over steps and over the events of a step, buttons, and playback
 export class Timeline {
