@@ -326,8 +326,6 @@ TEST_CASE("self-intersections: no pairs, no faces, and too many pairs") {
                        doctest::Contains("limit set by max_pairs"), InputError);
 }
 
-}  // namespace lrb::test
-
 TEST_CASE("self-intersections of faces with common corners: a fold, a spike, a duplicate") {
   Mesh m;
   m.vertices = {{0, 0, 0},      {1, 0, 0},       {0, 1, 0},   {0.25, 0.25, 0},
@@ -359,3 +357,5 @@ TEST_CASE("self-intersections of faces with common corners: a fold, a spike, a d
   CHECK(found.pairs[0].kind == SelfContact::overlap);
   CHECK(found.pairs[0].shared == 3);
 }
+
+}  // namespace lrb::test
