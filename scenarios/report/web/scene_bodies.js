@@ -556,6 +556,7 @@ export class BodyView {
       new FaceMesh(body, glass.faces, this.materials[share > 0 ? "lids" : "openLids"], glass.shifts),
     ];
     this.pieces[1].mesh.renderOrder = 2;
+    if (body.dim === 3) this.pieces[1].show(() => true); // to be sorted
     if (share > 0 && ends.length)
       this.reached = this.farthest((visit) => {
         for (const x of this.extremes) visit(...x);
@@ -594,9 +595,9 @@ export class BodyView {
 
   /** Orders the lids from back to front. `ahead`: the direction of the view in the world. */
   sortLids(ahead) {
-    if (this.lids.mesh.visible && this.body.dim === 3)
-      this.lids.sort(
-          ahead.clone().transformDirection(new THREE.Matrix4().getInverse(this.group.matrix)).toArray());
+    if (this.body.dim === 2) return;
+    const along = ahead.clone().transformDirection(new THREE.Matrix4().getInverse(this.group.matrix)).toArray();
+    for (const glass of [this.lids, ...this.pieces.slice(1)]) if (glass.mesh.visible) glass.sort(along);
   }
 
   /** Shows faces that have a counter in the exact colour of the scale, without lighting; on a ghost, these
