@@ -205,10 +205,10 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
   if (options.colour_per) spec.colour_per = *options.colour_per;
   if (options.node_boxes) spec.node_boxes = options.node_boxes;
   run::check_frame_size(spec);
-  if (options.view && *options.view > std::max<std::size_t>(1, spec.views.size()))
-    throw InputError("--view: expected at most " +
-                     std::to_string(std::max<std::size_t>(1, spec.views.size())) +
-                     ", the number of views, found " + std::to_string(*options.view));
+  const std::size_t views = std::max<std::size_t>(1, spec.views.size());  // none named: one by default
+  if (options.view && *options.view > views)
+    throw InputError("--view: expected at most " + std::to_string(views) + ", the number of views, found " +
+                     std::to_string(*options.view));
   if (options.view && !spec.views.empty()) spec.views = {spec.views[*options.view - 1]};
   apply(options.camera, spec.views);
 }

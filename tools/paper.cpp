@@ -103,7 +103,8 @@ class PaperWork {
       : path_(std::move(path)),
         file_(path_, head, io::UnfinishedFile::Other::refused),
         bar_("paper", 0, globals.quiet) {
-    take(file_.lines());
+    for (const std::string& line : file_.lines())
+      if (const auto kept = paper::kept_collision(line)) take(*kept, path_);
     if (!known_.empty())
       note(globals, {"continues an interrupted run, of which " + std::to_string(known_.size()) +
                      " collisions are in " + path_});
@@ -112,11 +113,9 @@ class PaperWork {
                            "; the same command goes on from there");
   }
 
-  /// Takes the collisions of lines.
-  void take(const std::vector<std::string>& lines) {
-    for (const std::string& line : lines)
-      if (const auto kept = paper::kept_collision(line))
-        known_[kept->first] = paper::read_json_lines(kept->second, path_.empty() ? "--merge" : path_);
+  /// Takes a collision that another run has finished. `source`: for errors in its records.
+  void take(const paper::KeptCollision& kept, const std::string& source) {
+    known_[kept.key] = paper::read_json_lines(kept.records, source);
   }
 
   /// `mesh_faces` 0: an object of the paper, instead of a mesh.
@@ -177,16 +176,16 @@ class PaperWork {
 
 /// Takes the protocol and the resolutions from the shards to be merged, and returns their collisions; drops
 /// the series if the experiment defines none. Throws InputError if there is nothing to divide into shards.
-std::vector<std::string> settle(PaperOptions& o, paper::PaperExperiment& experiment) {
+std::vector<paper::KeptCollision> settle(PaperOptions& o, paper::PaperExperiment& experiment) {
   if (!experiment.collides() && (!o.shard.empty() || !o.merge.empty()))
     throw InputError("experiment " + experiment.name +
                      ": has no collisions, so it does not take --shard or --merge");
   if (!o.merge.empty()) {
-    auto [whole, lines] = paper::read_shards(o.merge);
+    auto [whole, collisions] = paper::read_shards(o.merge);
     experiment.protocol = whole.protocol;
     o.series.resolutions = whole.resolutions;
     o.series.lean = whole.lean;
-    return std::move(lines);
+    return std::move(collisions);
   }
   if (!experiment.collides() || (experiment.name != "paper" && o.series.meshes.empty()))
     o.series.resolutions.most = 0;  // other experiments have a series only if meshes are given
@@ -290,7 +289,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
     return kOk;
   }
   paper::PaperExperiment experiment = experiment_of(o);
-  const std::vector<std::string> merged = settle(o, experiment);
+  const std::vector<paper::KeptCollision> merged = settle(o, experiment);
   const paper::PaperProtocol& protocol = experiment.protocol;
   const bool merging = !o.merge.empty(), is_shard = !o.shard.empty();
   paper::SweepOptions sweep{protocol, {}, o.jobs > 0 ? o.jobs : all_cores()};
@@ -312,7 +311,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
   PaperWork work(
       !computes || merging ? "" : o.folder + (is_shard ? "/collisions.jsonl" : "/unfinished.jsonl"),
       paper::head_of(run, objects), globals);
-  work.take(merged);
+  for (const paper::KeptCollision& kept : merged) work.take(kept, "--merge");
   sweep.runner = [&](const paper::CollisionTask& task, Workspace& w) {
     return work.collide(task, merging, w);
   };

@@ -58,10 +58,10 @@ std::string head_of(const KeptRun& run, std::span<const PaperObject> objects) {
   return head.dump();
 }
 
-std::optional<std::pair<std::string, std::string>> kept_collision(const std::string& line) {
+std::optional<KeptCollision> kept_collision(const std::string& line) {
   const auto value = nlohmann::json::parse(line, nullptr, false);
-  std::pair<std::string, std::string> out;
-  for (const auto& [name, text] : {std::pair{"collision", &out.first}, std::pair{"records", &out.second}}) {
+  KeptCollision out;
+  for (const auto& [name, text] : {std::pair{"collision", &out.key}, std::pair{"records", &out.records}}) {
     if (!value.is_object() || !value.contains(name) || !value[name].is_string()) return std::nullopt;
     *text = value[name].get<std::string>();
     if (text->empty()) return std::nullopt;
@@ -69,9 +69,9 @@ std::optional<std::pair<std::string, std::string>> kept_collision(const std::str
   return out;
 }
 
-std::pair<KeptRun, std::vector<std::string>> read_shards(const std::vector<std::string>& files) {
-  std::pair<KeptRun, std::vector<std::string>> out;
-  auto& [whole, lines] = out;
+std::pair<KeptRun, std::vector<KeptCollision>> read_shards(const std::vector<std::string>& files) {
+  std::pair<KeptRun, std::vector<KeptCollision>> out;
+  auto& [whole, collisions] = out;
   nlohmann::json first;
   std::vector<std::uint32_t> there;
   for (const std::string& file : files) {
@@ -100,10 +100,11 @@ std::pair<KeptRun, std::vector<std::string>> read_shards(const std::vector<std::
                        printable_name(files.front()) +
                        "; give all shards of one experiment, run with the same options by the same version");
     for (std::size_t number = 2; std::getline(in, line); ++number) {
-      if (!kept_collision(line))
+      auto kept = kept_collision(line);
+      if (!kept)
         throw InputError(printable_name(file) + ":" + std::to_string(number) +
                          ": expected a collision with its records; run this shard again");
-      lines.push_back(line);
+      collisions.push_back(std::move(*kept));
     }
   }
   for (std::uint32_t i = 0; i < whole.shard.count; ++i) {

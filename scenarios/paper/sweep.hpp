@@ -100,11 +100,15 @@ struct KeptRun {
 };
 std::string head_of(const KeptRun& run, std::span<const PaperObject> objects);
 
-/// Returns the key and the records of a collision that a run keeps in a line; nothing for another line.
-std::optional<std::pair<std::string, std::string>> kept_collision(const std::string& line);
+struct KeptCollision {
+  std::string key;      ///< of the bodies and the protocol
+  std::string records;  ///< of its steps, as JSON lines
+};
+/// Reads a line after the head. Returns nullopt if it is not a collision.
+std::optional<KeptCollision> kept_collision(const std::string& line);
 
-/// Reads the files of shards. Returns their common run, as shard 0/1, and their lines without the heads.
+/// Reads the files of shards. Returns their common run, as shard 0/1, and their collisions.
 /// Throws InputError if one has no head or that of another run, or if they are not all n shards, once each.
-std::pair<KeptRun, std::vector<std::string>> read_shards(const std::vector<std::string>& files);
+std::pair<KeptRun, std::vector<KeptCollision>> read_shards(const std::vector<std::string>& files);
 
 }  // namespace lrb::paper
