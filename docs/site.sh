@@ -2,7 +2,6 @@
 # docs/site.sh OUT [API]: makes a site of these pages in OUT/html, with mkdocs (Debian's package), which must not warn. Targets of links
 # out of this folder are copied. API: the folder with Doxygen's HTML, if it exists. Then checks that every link and anchor in the site
 # has a target, and that no page loads external resources.
-# LRBSCOPE: the program that makes the demo [build/release/bin/lrbscope].
 set -euo pipefail
 docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tree=$(dirname "$docs")
@@ -14,20 +13,6 @@ mkdir -p "$out/pages/source"
 out=$(cd "$out" && pwd)
 
 cp "$docs"/*.md "$docs"/*.png "$docs"/*.svg "$out/pages/"
-# The demo: a live page, if the program (LRBSCOPE) was built with the engine for pages (-DLRB_WASM=ON).
-program=${LRBSCOPE:-$tree/build/release/bin/lrbscope}
-if "$program" --quiet run collision --live --frames none -o "$out/live" >/dev/null 2>"$out/live.txt"; then
-  cp "$out/live/live.html" "$out/pages/"
-  sed -i 's|drag a body on a \[live page\](scenarios.md#a-live-page)\.|[drag a body on this live page](live.html); [how it works](scenarios.md#a-live-page).|
-    s|a live page\](scenarios.md#a-live-page)|&, [try it here](live.html)|' "$out/pages/start.md"
-  sed -i 's|^In `live.html`,|In `live.html` ([try it here](live.html)),|' "$out/pages/scenarios.md"
-  grep -q '(live.html)' "$out/pages/start.md" && grep -q '(live.html)' "$out/pages/scenarios.md" ||
-    { echo "site.sh: the pages do not link to live.html" >&2 && exit 1; }
-else
-  echo "site.sh: no live page: $(head -n 1 "$out/live.txt")" >&2
-  sed -i 's|drag a body on a \[live page\](scenarios.md#a-live-page)\.|& (This site was built without one.)|' "$out/pages/start.md"
-fi
-rm -rf "$out/live" "$out/live.txt"
 mv "$out/pages/start.md" "$out/pages/index.md"
 cp "$tree/CHANGELOG.md" "$out/pages/changelog.md"
 cp "$tree/CONTRIBUTING.md" "$out/pages/contributing.md"

@@ -24,7 +24,7 @@ struct CollideOptions {
   TwoMeshes meshes;
   std::string folder;
   PictureOptions picture;
-  bool live = false, json = false;
+  bool json = false;
 };
 
 /// Returns a motion that moves B's centre towards A's, from a separate position until some distance past the
@@ -113,12 +113,11 @@ spec::Scenario make_scenario(const TwoMeshes& o, const std::vector<bodies::Loade
 }
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
-  if (o.live) run::check_live_page();
   if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
   const auto [scenario, recording] = record_meshes(o.meshes, o.picture, globals);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
-  const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line,
-                                                 progress_report(globals.quiet), o.live);
+  const run::RunOutcome outcome =
+      run::write_run(scenario, recording, folder, globals.command_line, progress_report(globals.quiet));
   animate_frames(o.picture, folder);
   return report_outcome(outcome, folder, o.json, globals);
 }
@@ -184,7 +183,6 @@ Command add_collide(App& root, const Globals& globals) {
   add_clock_option(*app, meshes.clock);
   add_picture_options(*app, o->picture, UpOption::auto_by_default);
   add_animation_option(*app, o->picture);
-  add_live_option(*app, o->live);
   app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   add_join_option(*app, meshes.corners);
   return {app, [o, &globals] { return run_collide(*o, globals); }};

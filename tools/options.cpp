@@ -295,12 +295,6 @@ void add_animation_option(App& app, PictureOptions& options) {
                  "Also write the frames as an animation; formats other than PNG need ffmpeg");
 }
 
-void add_live_option(App& app, bool& live) {
-  app.add_flag("--live", live,
-               "Also write live.html, a page in which B can be dragged and the engine answers each pose "
-               "(needs a program built with -DLRB_WASM=ON)");
-}
-
 void animate_frames(const PictureOptions& options, const std::string& folder) {
   if (!options.animation.empty()) run::animate(folder, options.animation);
 }

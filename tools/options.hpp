@@ -117,9 +117,6 @@ void add_animation_option(App& app, PictureOptions& options);
 /// Encodes the frames in a folder as an animation, if one was requested.
 void animate_frames(const PictureOptions& options, const std::string& folder);
 
-/// Adds --live, for commands that write a run.
-void add_live_option(App& app, bool& live);
-
 /// Adds --up.
 void add_up_option(App& app, std::string& up, UpOption values = UpOption::axis);
 /// Replaces --up auto by the axis on which the body is most stable, or z, and notes it.

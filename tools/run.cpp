@@ -96,7 +96,7 @@ struct RunCommandOptions {
   std::optional<Recursion> recursion;
   std::optional<EventLevel> events;
   std::optional<trace::Clock> clock;
-  bool live = false, json = false;
+  bool json = false;
 };
 
 int run_run(const RunCommandOptions& o, const Globals& globals) {
@@ -109,7 +109,7 @@ int run_run(const RunCommandOptions& o, const Globals& globals) {
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   if (o.folder.empty()) io::reject_run_of_another(folder, o.scenario);
   run::RunOutcome outcome =
-      run::run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet), o.live);
+      run::run_scenario(scenario, folder, globals.command_line, progress_report(globals.quiet));
   if (o.folder.empty()) io::mark_run(folder, o.scenario);
   animate_frames(o.picture, folder);
   return report_outcome(outcome, folder, o.json, globals);
@@ -135,7 +135,6 @@ Command add_run(App& root, const Globals& globals) {
   add_clock_option(*app, o->clock);
   add_picture_options(*app, o->picture);
   add_animation_option(*app, o->picture);
-  add_live_option(*app, o->live);
   app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   return {app, [o, &globals] { return run_run(*o, globals); }};
 }

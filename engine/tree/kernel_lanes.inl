@@ -8,8 +8,6 @@
 #include <immintrin.h>
 #elif defined(__aarch64__)
 #include <arm_neon.h>
-#elif defined(__wasm_simd128__)
-#include <wasm_simd128.h>
 #endif
 
 namespace lrb {
@@ -94,9 +92,6 @@ inline std::uint32_t bits(Lanes lanes) {
   const Int8 bit = lanes & kBit;
   const auto* half = reinterpret_cast<const int32x4_t*>(&bit);
   return static_cast<std::uint32_t>(vaddvq_s32(half[0] | half[1]));
-#elif defined(__wasm_simd128__)
-  const auto* half = reinterpret_cast<const v128_t*>(&lanes);
-  return static_cast<std::uint32_t>(wasm_i32x4_bitmask(half[0]) | wasm_i32x4_bitmask(half[1]) << 4);
 #else
   std::uint32_t result = 0;
   for (int k = 0; k < 8; ++k) result |= static_cast<std::uint32_t>(lanes[k] & 1) << k;
@@ -201,15 +196,6 @@ inline Int8 bytes_to_int(const std::uint8_t* q) {
   } u;
   u.half[0] = vmovl_u16(vget_low_u16(words));
   u.half[1] = vmovl_high_u16(words);
-  return u.all;
-#elif defined(__wasm_simd128__)
-  const v128_t words = wasm_u16x8_load8x8(q);
-  union {
-    v128_t half[2];
-    Int8 all;
-  } u;
-  u.half[0] = wasm_u32x4_extend_low_u16x8(words);
-  u.half[1] = wasm_u32x4_extend_high_u16x8(words);
   return u.all;
 #else
   Int8 x;

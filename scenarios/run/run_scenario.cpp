@@ -1,18 +1,10 @@
 #include "scenarios/run/run_scenario.hpp"
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
 
-#include <nlohmann/json.hpp>
-#include <zlib.h>
-
-#include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/engine_run.hpp"
-#include "scenarios/report/assets.hpp"
 #include "scenarios/run/run_page.hpp"
-#include "scenarios/run/scene_json.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -23,53 +15,6 @@
 
 namespace lrb::run {
 namespace {
-
-// The live page of a run: body B can be dragged and rotated, and the engine, compiled to WebAssembly (wasm/),
-// answers each pose exactly in the page. The page contains the bodies and the engine and fetches nothing.
-
-constexpr const char* kLivePage = "live.html";
-constexpr const char* kEngine = "lrbscope_engine.js";
-
-bool has_engine() {
-  const auto files = io::embedded_files();
-  return std::any_of(files.begin(), files.end(), [](const io::EmbeddedFile& f) { return f.name == kEngine; });
-}
-
-/// Returns bytes compressed in zlib's format, which browsers decompress ("deflate"), in base64.
-std::string compressed(const std::string& bytes) {
-  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
-  std::vector<std::uint8_t> out(size);
-  constexpr int kLevel = 9;
-  if (compress2(out.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                static_cast<uLong>(bytes.size()), kLevel) != Z_OK)
-    throw EnvironmentError("zlib cannot compress a body (out of memory)");
-  return report::base64(out.data(), size);
-}
-
-/// Returns the page. `folder`: contains a.lrb and b.lrb of the run.
-std::string live_page(const RecordedRun& recorded, const std::string& folder, const std::string& command) {
-  nlohmann::json data = posed_bodies_json(recorded);
-  data["command"] = command;
-  // Equal bodies are stored once.
-  const std::string a = io::read_text(folder + "/a.lrb"), b = io::read_text(folder + "/b.lrb");
-  data["files"] = {compressed(a), a == b ? std::string() : compressed(b)};
-  const std::string text = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  std::string library;
-  for (const char* name : {"three.min.js", "OrbitControls.js"})
-    library += "\n" + std::string(io::embedded_file(name));
-  return report::filled(
-      io::embedded_file("drag.html"),
-      {{"title", render::escape_markup(recorded.title)},
-       {"purpose", render::escape_markup(recorded.purpose)},
-       {"style",
-        render::page_root_css() + render::scene_root_css() + std::string(io::embedded_file("page.css")) +
-            std::string(io::embedded_file("scene.css")) + std::string(io::embedded_file("drag.css"))},
-       {"version", trace::lrbscope_version()},
-       {"data", report::script_safe(text)},
-       {"library", library},
-       {"engine", io::embedded_file(kEngine)},
-       {"script", report::script_of(std::array<std::string, 1>{"drag"})}});
-}
 
 /// Throws, before any file is written, if the scenario requests a frame that cannot be drawn.
 void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
@@ -89,13 +34,6 @@ std::vector<trace::SummaryBody> summary_bodies(const RecordedRun& recorded) {
 
 }  // namespace
 
-void check_live_page() {
-  if (!has_engine())
-    throw EnvironmentError(
-        "--live: this program was built without the engine for pages; configure it with -DLRB_WASM=ON, which needs "
-        "Debian's emscripten");
-}
-
 RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording) {
   return recorded_run_of(scenario.name, scenario.purpose, recording);
 }
@@ -114,7 +52,7 @@ RecordedRun recorded_run_of(const std::string& title, const std::string& purpose
 }
 
 RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
-                     const std::string& command, const ProgressReport& progress, bool live) {
+                     const std::string& command, const ProgressReport& progress) {
   const RecordedRun recorded = recorded_run_of(scenario, recording);
   check(scenario, recorded);
   for (const char* name : {"a.lrb", "b.lrb", "trace.json", "summary.json", "index.html"})
@@ -153,11 +91,6 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
                                                  ? "passes with their caps and reasons of rejection, as JSON"
                                                  : "totals, statistics and time steps, as JSON"};
   std::vector<report::Link> links = {trace_link(trace_file), summary};
-  std::filesystem::remove(folder + "/" + kLivePage, error);
-  if (live) {
-    io::write_text(folder + "/" + kLivePage, live_page(recorded, folder, command));
-    links.push_back({kLivePage, "B can be dragged; the engine answers in the page"});
-  }
   run_page(recorded, drawn, folder,
            {scenario.name, scenario.purpose, command, trace_file, std::move(links), out.mismatches,
             "lrbscope why --run " + io::shell_word(folder)})
@@ -166,12 +99,8 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
 }
 
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
-                        const ProgressReport& progress, bool live) {
-  if (live) check_live_page();
-  if (live && scenario.bodies.size() != 2)
-    throw InputError("--live: expected a scenario with two bodies, found " + scenario.name + " with " +
-                     std::to_string(scenario.bodies.size()));
-  return write_run(scenario, record(scenario, progress), folder, command, progress, live);
+                        const ProgressReport& progress) {
+  return write_run(scenario, record(scenario, progress), folder, command, progress);
 }
 
 }  // namespace lrb::run

@@ -10,9 +10,6 @@
 
 namespace lrb::run {
 
-/// Throws EnvironmentError if the program was built without the engine for pages, which live.html needs.
-void check_live_page();
-
 struct RunOutcome {
   std::vector<std::string> mismatches;  ///< failed expectations
   std::vector<std::string> notes;       ///< to be printed
@@ -26,11 +23,11 @@ RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& rec
 RecordedRun recorded_run_of(const std::string& title, const std::string& purpose, const Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
-/// montage.png}, and with `live` also live.html.
+/// montage.png}.
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
-                        const ProgressReport& progress, bool live = false);
+                        const ProgressReport& progress);
 /// Writes the same files for a run that has been recorded.
 RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
-                     const std::string& command, const ProgressReport& progress, bool live = false);
+                     const std::string& command, const ProgressReport& progress);
 
 }  // namespace lrb::run

@@ -546,34 +546,4 @@ json scene_colours() {
           {"categories", std::move(categories)}};
 }
 
-json posed_bodies_json(const RecordedRun& p) {
-  const SceneFrame frame = scene_frame(p);
-  json bodies = json::array(), steps = json::array();
-  for (std::size_t i = 0; i < p.reps.size(); ++i) {
-    json body = body_json(p, i, frame, {}, kNull);
-    const Eigen::Vector3d centre = body_centre(*p.reps[i]);
-    body["geometry"] = geometry(*p.reps[i], frame);
-    body["boxes"] = boxes_json(*p.reps[i], frame, {});
-    body["centre"] = {centre.x(), centre.y(), centre.z()};
-    body["simplices"] = p.reps[i]->real_simplex_count();
-    const std::string none = packed(Numbers());
-    body["counts"] = {{"tests", none}, {"hits", none}};
-    bodies.push_back(std::move(body));
-  }
-  const auto rows = [](const Pose& pose) {
-    json out = json::array();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) out.push_back(pose.r(row, column));
-      out.push_back(pose.t[row]);
-    }
-    return out;
-  };
-  for (const trace::Step& step : p.trace->steps)
-    steps.push_back({{"index", step.index}, {"poses", {rows(step.pose_a), rows(step.pose_b)}}});
-  return {{"dim", p.reps[0]->dim()},    {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
-          {"unit", frame.unit},         {"view", view_json(p.trace->header)},
-          {"colours", scene_colours()}, {"bodies", std::move(bodies)},
-          {"steps", std::move(steps)}};
-}
-
 }  // namespace lrb::run

@@ -64,8 +64,4 @@ struct SceneSource {
 std::string scene_json(const RecordedRun& recorded, const SceneSource& source,
                        const SceneLimits& limits = {});
 
-/// Returns the bodies of a run and their poses at each step, without events, for a page that queries the
-/// bodies itself (drag.js). Vertices as in scene_json(); poses are those of the run, as doubles.
-nlohmann::json posed_bodies_json(const RecordedRun& recorded);
-
 }  // namespace lrb::run

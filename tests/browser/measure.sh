@@ -21,11 +21,6 @@ make_pages() {
   "$lrbscope" --quiet tree "$out/meet/a.lrb" -o "$out/tree" >/dev/null
   pages=()
   for name in meet build dent plane open near compare golden tree; do pages+=("$out/$name/index.html"); done
-  if "$lrbscope" --quiet run "$work/meet.json" --live --frames none -o "$out/live" >/dev/null 2>&1; then
-    pages+=("$out/live/live.html")
-  else
-    echo "measure.sh: no live page: the program was built without LRB_WASM"
-  fi
   if [ -n "${2:-}" ]; then
     "$2" "$out/stability" >/dev/null
     pages+=("$out/stability/index.html")

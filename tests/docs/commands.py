@@ -33,7 +33,6 @@ NOT_RUN = [
         r"^(lrbscope paper|seq 0 3)",
         "takes minutes; tests/shards runs it in parts, spec and paper tests its experiments",
     ),
-    ("", r" --live\b", "needs the engine for pages; tests/browser/live.sh"),
     ("docs/tails_and_worst.md", r"fcl|command:|run\.lrbcap", "needs another engine or its capture; engines_tests"),
     ("", r"--method ours,fcl", "needs another engine; engines_tests"),
     ("docs/profiling.md", r"out/fcl", "needs FCL; tests/examples/capture.sh"),

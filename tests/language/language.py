@@ -9,7 +9,7 @@ import re
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-TOPS = ("engine", "trace", "render", "scenarios", "bench", "tools", "python", "wasm", "examples", "tests", "docs", "cmake")
+TOPS = ("engine", "trace", "render", "scenarios", "bench", "tools", "python", "examples", "tests", "docs", "cmake")
 CODE = (".cpp", ".hpp", ".inl", ".h", ".c", ".js")
 SCRIPTS = (".py", ".pyi", ".sh", ".cmake", ".txt", ".yml")
 SKIPPED = re.compile(r"(^|/)(third_party|golden|corpus|__pycache__)(/|$)|\.min\.js$|tests/language/")

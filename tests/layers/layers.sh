@@ -7,7 +7,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
-tops=(engine trace render scenarios bench tools python wasm)
+tops=(engine trace render scenarios bench tools python)
 
 check() { # the tree's root
   cd "$1"
