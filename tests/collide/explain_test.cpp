@@ -41,10 +41,6 @@ std::vector<ExplainedScene> scenes() {
   return out;
 }
 
-Points corners(const LrbRep& rep, const Pose& pose, SimplexId s) {
-  return simplex_points(rep, pose, s);
-}
-
 /// Checks the invariants of any explanation.
 void check(const ExplainedScene& s, const SimplexPair& pair, exact::Meet meet) {
   CAPTURE(pair.a);
@@ -64,7 +60,8 @@ void check(const ExplainedScene& s, const SimplexPair& pair, exact::Meet meet) {
     CHECK(e.contact.corner_count > 0);
     CHECK(e.contact.meet == meet);
   } else {
-    const double distance = simplex_distance(corners(s.a, {}, pair.a), corners(s.b, s.pose, pair.b));
+    const double distance =
+        simplex_distance(simplex_points(s.a, {}, pair.a), simplex_points(s.b, s.pose, pair.b));
     CHECK(e.distance == doctest::Approx(distance).epsilon(1e-6));
     if (e.decided_by == DecidedBy::node_boxes) CHECK(e.nodes.back().gap <= e.distance * (1 + 1e-6));
   }

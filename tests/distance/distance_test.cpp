@@ -21,37 +21,6 @@ namespace {
 
 using test::closed;
 
-double radius_about_first(const test::Points& points) {
-  double radius = 0;
-  for (const Eigen::Vector3d& x : points) radius = std::max(radius, (x - points[0]).norm());
-  return radius;
-}
-
-/// The squared distance of two bodies whose surfaces do not meet: of the pairs that are nearest in doubles,
-/// exactly.
-Rational surface_distance_sq(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  const std::vector<test::Points> of_a = test::real_simplices(a, pose_a),
-                                  of_b = test::real_simplices(b, pose_b);
-  // The oracle in doubles loses digits for large coordinates: a generous bound on its error.
-  double size = 0;
-  for (const auto* points : {&of_a, &of_b})
-    for (const test::Points& simplex : *points)
-      for (const Eigen::Vector3d& x : simplex) size = std::max(size, x.cwiseAbs().maxCoeff());
-  const double about = test::surface_distance(of_a, of_b) * (1 + 1e-7) + 1e-7 * size;
-  Rational least = -1;
-  for (const test::Points& s : of_a)
-    for (const test::Points& t : of_b) {
-      const double radii = radius_about_first(s) + radius_about_first(t);
-      if ((s[0] - t[0]).norm() * (1 - 1e-12) - radii > about) continue;
-      const double apart = test::simplex_distance(s, t);
-      if (apart > about) continue;
-      if (least >= 0 && oracle::square(apart * (1 - 1e-6)) > least && apart > 1e-5 * size) continue;
-      const Rational sq = oracle::distance_sq(s, t);
-      if (least < 0 || sq < least) least = sq;
-    }
-  return least;
-}
-
 double size_of(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   const auto of = [](const LrbRep& rep, const Pose& pose) {
     Eigen::AlignedBox3d box;
@@ -102,7 +71,8 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
   t.inside += holds;
   t.apart += !holds;
   REQUIRE(d.solids_upper() == (holds ? 0 : d.upper));
-  const Rational sq = surface_distance_sq(a, pose_a, b, pose_b);
+  const Rational sq =
+      test::surface_distance_sq(test::real_simplices(a, pose_a), test::real_simplices(b, pose_b));
   CAPTURE(d.lower);
   CAPTURE(d.upper);
   CAPTURE(std::sqrt(sq.convert_to<double>()));

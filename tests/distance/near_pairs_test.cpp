@@ -24,12 +24,6 @@ struct PairsSeen {
   int queries = 0, pairs = 0, meet = 0, close_calls = 0;
 };
 
-exact::Meet meet_of(const test::Points& s, const test::Points& t) {
-  const double *x[3], *y[3];
-  for (std::size_t k = 0; k < s.size(); ++k) x[k] = s[k].data(), y[k] = t[k].data();
-  return s.size() == 3 ? exact::meet_triangles(x, y) : exact::meet_segments(x, y);
-}
-
 /// Checks the answer for each pair of two bodies.
 void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b, double within,
            PairsSeen& seen) {
@@ -48,7 +42,7 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
   std::size_t next = 0;
   for (SimplexId s = 0; s < a.real_simplex_count(); ++s)
     for (SimplexId t = 0; t < b.real_simplex_count(); ++t) {
-      const exact::Meet meet = meet_of(of_a[s], of_b[t]);
+      const exact::Meet meet = test::meet_of(of_a[s], of_b[t]);
       const double apart = meet != exact::Meet::disjoint ? 0 : test::simplex_distance(of_a[s], of_b[t]);
       bool is_near = apart <= within;
       if (meet == exact::Meet::disjoint && std::abs(apart - within) <= rough) {

@@ -19,20 +19,6 @@ namespace {
 
 using test::closed;
 
-/// The squared distance, exactly, of the simplices that are closest in doubles.
-Rational distance_sq(const std::vector<test::Points>& simplices, const Vector3d& p, double size) {
-  std::vector<double> apart;
-  for (const test::Points& s : simplices) apart.push_back(test::simplex_distance({p}, s));
-  const double least = *std::min_element(apart.begin(), apart.end());
-  std::optional<Rational> exact;
-  for (std::size_t i = 0; i < simplices.size(); ++i) {
-    if (apart[i] > least * (1 + 1e-7) + 1e-9 * size) continue;
-    const Rational d = oracle::distance_sq({p}, simplices[i]);
-    if (!exact || d < *exact) exact = d;
-  }
-  return *exact;
-}
-
 /// The number of times that a closed surface winds around a point beside it.
 double winding(const std::vector<test::Points>& simplices, const Vector3d& p) {
   double sum = 0;
@@ -68,7 +54,7 @@ void check(const LrbRep& rep, const Pose& pose, const std::vector<Vector3d>& poi
     if (rep.dim() == 2) p.z() = 0;
     CAPTURE(p);
     const PointDistance& d = found[i];
-    const Rational truth = distance_sq(simplices, p, size + p.norm());
+    const Rational truth = test::surface_distance_sq({test::Points{p}}, simplices);
     REQUIRE(oracle::square(d.lower) <= truth);
     REQUIRE(truth <= oracle::square(d.upper));
     REQUIRE(d.upper - d.lower <= 1e-12 * size + 2.3e-13 * d.upper + 1e-15 * d.upper);

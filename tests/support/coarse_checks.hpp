@@ -39,19 +39,19 @@ inline bool wrappers_are_disjoint(const LrbRep& a, const Pose& pose_a, const Lrb
 class RealSurfaces {
  public:
   RealSurfaces(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b)
-      : a_(a), pose_a_(pose_a), b_(b), pose_b_(pose_b), of_{simplices(a, pose_a), simplices(b, pose_b)} {}
+      : a_(a),
+        pose_a_(pose_a),
+        b_(b),
+        pose_b_(pose_b),
+        of_{real_simplices(a, pose_a), real_simplices(b, pose_b)} {}
 
   /// Returns how far a pair of an answer is off the bodies, both together: the most over the corners of where
   /// its simplices meet. 0 where they only come within rounding of each other.
   double off(const SimplexPair& pair) const {
     const Points p = simplex_points(a_, pose_a_, pair.a), q = simplex_points(b_, pose_b_, pair.b);
-    const double *pp[3], *qq[3];
-    for (std::size_t k = 0; k < p.size(); ++k) {
-      pp[k] = p[k].data();
-      qq[k] = q[k].data();
-    }
-    const exact::PairContact c =
-        a_.dim() == 3 ? exact::contact_of_triangles(pp, qq) : exact::contact_of_segments(pp, qq);
+    const auto pp = pointers(p), qq = pointers(q);
+    const exact::PairContact c = a_.dim() == 3 ? exact::contact_of_triangles(pp.data(), qq.data())
+                                               : exact::contact_of_segments(pp.data(), qq.data());
     double most = 0;
     for (std::uint8_t i = 0; i < c.corner_count; ++i)
       most = std::max(most, distance(c.corners[i].x, 0) + distance(c.corners[i].x, 1));
@@ -71,17 +71,6 @@ class RealSurfaces {
   double between() const { return surface_distance(of_[0], of_[1]); }
 
  private:
-  static std::vector<Points> simplices(const LrbRep& rep, const Pose& pose) {
-    std::vector<Points> out;
-    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) out.push_back(simplex_points(rep, pose, s));
-    return out;
-  }
-  static double reach(const Points& s) {
-    double most = 0;
-    for (const Eigen::Vector3d& x : s) most = std::max(most, (x - s[0]).norm());
-    return most;
-  }
-
   const LrbRep& a_;
   Pose pose_a_;
   const LrbRep& b_;

@@ -16,6 +16,7 @@
 #include "tests/support/bodies.hpp"
 #include "tests/support/margins.hpp"
 #include "tests/support/rational_oracle.hpp"
+#include "tests/support/simplex_distance.hpp"
 #include "tests/support/tree_content.hpp"
 #include <lrbscope/lrb_rep.hpp>
 
@@ -215,24 +216,13 @@ void check_axes(const std::vector<Range3>& home, const std::vector<Range3>& gues
 
 /// How two simplices meet in the world, says the rational oracle.
 int oracle_meet(const Scene& s, SimplexId a, SimplexId b) {
-  VertexId va[3], vb[3];
-  s.a->simplex(a, va);
-  s.b->simplex(b, vb);
-  Eigen::Vector3d x[6];
-  for (int c = 0; c < 3; ++c) {
-    x[c] = s.pose_a.apply(s.a->vertices()[va[c]]);
-    x[3 + c] = s.pose_b.apply(s.b->vertices()[vb[c]]);
-  }
-  const double *pa[3] = {x[0].data(), x[1].data(), x[2].data()},
-               *pb[3] = {x[3].data(), x[4].data(), x[5].data()};
-  return oracle::meet_of_simplices(pa, pb, 3);
+  const test::Points x = test::simplex_points(*s.a, s.pose_a, a), y = test::simplex_points(*s.b, s.pose_b, b);
+  return oracle::meet_of_simplices(test::pointers(x).data(), test::pointers(y).data(), 3);
 }
 
 Eigen::AlignedBox3d world_box(const LrbRep& rep, const Pose& pose, SimplexId simplex) {
-  VertexId v[3];
-  rep.simplex(simplex, v);
   Eigen::AlignedBox3d box;
-  for (const VertexId corner : v) box.extend(pose.apply(rep.vertices()[corner]));
+  for (const Eigen::Vector3d& x : test::simplex_points(rep, pose, simplex)) box.extend(x);
   return box;
 }
 

@@ -3,12 +3,14 @@
 /// engine.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
 
@@ -22,6 +24,32 @@ inline Points simplex_points(const LrbRep& rep, const Pose& pose, SimplexId s) {
   Points out;
   for (int k = 0; k < rep.simplex_size(); ++k) out.push_back(pose.apply(rep.vertices()[v[k]]));
   return out;
+}
+
+/// Returns the real simplices of a body in the world.
+inline std::vector<Points> real_simplices(const LrbRep& rep, const Pose& pose) {
+  std::vector<Points> out;
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) out.push_back(simplex_points(rep, pose, s));
+  return out;
+}
+
+/// Returns the greatest distance from the first corner to another.
+inline double reach(const Points& s) {
+  double most = 0;
+  for (const Eigen::Vector3d& x : s) most = std::max(most, (x - s[0]).norm());
+  return most;
+}
+
+/// Returns the corners as the exact predicates take them.
+inline std::array<const double*, 3> pointers(const Points& corners) {
+  std::array<const double*, 3> out{};
+  for (std::size_t k = 0; k < corners.size(); ++k) out[k] = corners[k].data();
+  return out;
+}
+
+inline exact::Meet meet_of(const Points& s, const Points& t) {
+  return s.size() == 3 ? exact::meet_triangles(pointers(s).data(), pointers(t).data())
+                       : exact::meet_segments(pointers(s).data(), pointers(t).data());
 }
 
 inline double point_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
