@@ -24,20 +24,24 @@ namespace {
 
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
+Points corners_of(const Mesh& m, FaceId f) {
+  Points out;
+  for (const VertexId v : m.face(f)) out.push_back(m.vertices[v]);
+  return out;
+}
+
+int oracle_meet(const Points& a, const Points& b) {
+  return oracle::meet_of_simplices(pointers(a).data(), pointers(b).data(), a.size());
+}
+
 /// Every pair of triangles without a common vertex that meets, by linear programming over all pairs.
 Pairs meeting_strangers(const Mesh& m) {
   Pairs found;
-  const std::size_t n = static_cast<std::size_t>(m.dim);
   for (FaceId f = 0; f < m.face_count(); ++f)
     for (FaceId g(f + 1); g < m.face_count(); ++g) {
       const auto a = m.face(f), b = m.face(g);
       if (std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end()) continue;
-      const double *pa[3], *pb[3];
-      for (std::size_t i = 0; i < n; ++i) {
-        pa[i] = m.vertices[a[i]].data();
-        pb[i] = m.vertices[b[i]].data();
-      }
-      if (oracle::meet_of_simplices(pa, pb, n) != 0) found.push_back({f, g});
+      if (oracle_meet(corners_of(m, f), corners_of(m, g)) != 0) found.push_back({f, g});
     }
   return found;
 }
@@ -69,15 +73,9 @@ void check_kinds(const Mesh& m, const SelfIntersections& found, const Pairs& exp
     CHECK(pair.shared == 0);
     REQUIRE(pair.segments > 0);
     CHECK(pair.curve < found.curves);
-    const double *pa[3], *pb[3];
-    Points of_a, of_b;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(m.dim); ++k) {
-      of_a.push_back(m.vertices[m.face(pair.a)[k]]);
-      of_b.push_back(m.vertices[m.face(pair.b)[k]]);
-    }
-    for (std::size_t k = 0; k < of_a.size(); ++k) pa[k] = of_a[k].data(), pb[k] = of_b[k].data();
+    const Points of_a = corners_of(m, pair.a), of_b = corners_of(m, pair.b);
     // 2: their interiors cross. An overlap has an area (2D: a length).
-    const bool crosses = oracle::meet_of_simplices(pa, pb, of_a.size()) == 2;
+    const bool crosses = oracle_meet(of_a, of_b) == 2;
     CHECK((pair.kind == SelfContact::cross) == crosses);
     const bool has_area =
         m.dim == 3 ? pair.segments >= 3
