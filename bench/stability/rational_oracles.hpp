@@ -18,25 +18,26 @@ using Rational = boost::multiprecision::cpp_rational;  // represents doubles exa
 
 using Corners = std::vector<Eigen::Vector3d>;  ///< 1 to 3 points
 
-/// Solves a linear system in place. Returns nullopt if it is singular.
-inline std::optional<std::vector<Rational>> solve(std::vector<std::vector<Rational>> m,
-                                                  std::vector<Rational> r) {
-  const std::size_t n = r.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    std::size_t pivot = i;
-    while (pivot < n && m[pivot][i] == 0) ++pivot;
-    if (pivot == n) return std::nullopt;
-    std::swap(m[i], m[pivot]);
-    std::swap(r[i], r[pivot]);
-    for (std::size_t k = 0; k < n; ++k) {
-      if (k == i || m[k][i] == 0) continue;
-      const Rational f = m[k][i] / m[i][i];
-      for (std::size_t j = i; j < n; ++j) m[k][j] -= f * m[i][j];
-      r[k] -= f * r[i];
+/// Returns the unique solution of linear equations (rows: coefficients, then the right side; at least as many
+/// as unknowns), or nullopt without a unique one.
+inline std::optional<std::vector<Rational>> unique_solution(std::vector<std::vector<Rational>> m) {
+  const std::size_t n = m.empty() ? 0 : m[0].size() - 1;
+  for (std::size_t c = 0; c < n; ++c) {
+    std::size_t r = c;
+    while (r < m.size() && m[r][c] == 0) ++r;
+    if (r == m.size()) return std::nullopt;
+    std::swap(m[r], m[c]);
+    for (std::size_t i = 0; i < m.size(); ++i) {
+      if (i == c || m[i][c] == 0) continue;
+      const Rational f = m[i][c] / m[c][c];
+      for (std::size_t k = c; k <= n; ++k) m[i][k] -= f * m[c][k];
     }
   }
-  for (std::size_t i = 0; i < n; ++i) r[i] /= m[i][i];
-  return r;
+  for (std::size_t i = n; i < m.size(); ++i)
+    if (m[i][n] != 0) return std::nullopt;
+  std::vector<Rational> x;
+  for (std::size_t i = 0; i < n; ++i) x.push_back(m[i][n] / m[i][i]);
+  return x;
 }
 
 using RationalPoints = std::vector<std::array<Rational, 3>>;
@@ -60,13 +61,12 @@ inline std::optional<RationalClosest> closest_of_features(const RationalPoints& 
   for (std::size_t k = 1; k < f.size(); ++k) ways.push_back(minus(f[k], f[0]));
   for (std::size_t k = 1; k < g.size(); ++k) ways.push_back(minus(g[0], g[k]));
   const std::array<Rational, 3> between = minus(g[0], f[0]);
-  std::vector<std::vector<Rational>> m(ways.size(), std::vector<Rational>(ways.size()));
-  std::vector<Rational> r(ways.size());
+  std::vector<std::vector<Rational>> m(ways.size());
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    r[i] = dot(ways[i], between);
-    for (std::size_t j = 0; j < ways.size(); ++j) m[i][j] = dot(ways[i], ways[j]);
+    for (const auto& way : ways) m[i].push_back(dot(ways[i], way));
+    m[i].push_back(dot(ways[i], between));
   }
-  const auto share = solve(m, r);
+  const auto share = unique_solution(m);
   if (!share) return std::nullopt;
   Rational sum[2] = {0, 0};
   RationalClosest out{f[0], g[0], 0};

@@ -21,7 +21,7 @@ using exact::ContactCorner;
 using exact::Feature;
 using exact::PairContact;
 using lrb::test::Kind;
-using Simplex = std::vector<oracle::RationalPoint>;
+using Simplex = oracle::Points<oracle::cpp_rational>;
 
 namespace {
 
@@ -33,7 +33,7 @@ unsigned corners_of(const Feature& f, std::size_t n) {
 }
 
 /// Least dimension: a face with fewer corners must not hold the point.
-bool is_least_feature(const Simplex& s, const Feature& f, const oracle::RationalPoint& x) {
+bool is_least_feature(const Simplex& s, const Feature& f, const oracle::Point<oracle::cpp_rational>& x) {
   const unsigned face = corners_of(f, s.size());
   if (!oracle::holds(s, face, x)) return false;
   for (unsigned other = 1; other < (1u << s.size()); ++other) {
@@ -43,7 +43,8 @@ bool is_least_feature(const Simplex& s, const Feature& f, const oracle::Rational
 }
 
 /// Within the accuracy promised, taking the largest extent of both simplices along the axis.
-bool is_close(const ContactCorner& c, const oracle::RationalPoint& x, const test::SimplexPair& s) {
+bool is_close(const ContactCorner& c, const oracle::Point<oracle::cpp_rational>& x,
+              const test::SimplexPair& s) {
   for (std::size_t k = 0; k < x.size(); ++k) {
     const auto [low, high] = std::minmax_element(s.p.begin(), s.p.end(),
                                                  [k](const auto& p, const auto& q) { return p[k] < q[k]; });
@@ -60,8 +61,8 @@ bool is_close(const ContactCorner& c, const oracle::RationalPoint& x, const test
 
 /// The extreme points of the intersection. Of degenerate simplices it is a point or segment, of which every
 /// point that was found may be listed, so the lexicographic extremes are kept.
-std::vector<oracle::RationalPoint> extreme_points(const Simplex& a, const Simplex& b, bool degenerate) {
-  std::vector<oracle::RationalPoint> r;
+oracle::Points<oracle::cpp_rational> extreme_points(const Simplex& a, const Simplex& b, bool degenerate) {
+  oracle::Points<oracle::cpp_rational> r;
   for (const auto& c : oracle::intersection_corners(a, b)) r.push_back(c.x);
   std::sort(r.begin(), r.end());
   r.erase(std::unique(r.begin(), r.end()), r.end());
@@ -70,8 +71,8 @@ std::vector<oracle::RationalPoint> extreme_points(const Simplex& a, const Simple
 }
 
 /// The corner of the contact that is this point: closest, and with the right features.
-bool has_corner(const PairContact& c, const oracle::RationalPoint& x, const Simplex& a, const Simplex& b,
-                const test::SimplexPair& s) {
+bool has_corner(const PairContact& c, const oracle::Point<oracle::cpp_rational>& x, const Simplex& a,
+                const Simplex& b, const test::SimplexPair& s) {
   return std::any_of(c.corners.begin(), c.corners.begin() + c.corner_count, [&](const ContactCorner& k) {
     return is_close(k, x, s) && is_least_feature(a, k.on_a, x) && is_least_feature(b, k.on_b, x);
   });

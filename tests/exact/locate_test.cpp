@@ -14,7 +14,7 @@
 using namespace lrb;
 using exact::RationalPoint;
 using exact::RayHit;
-using Corners = std::vector<oracle::RationalPoint>;
+using Corners = oracle::Points<oracle::cpp_rational>;
 using Vec = std::array<double, 3>;
 using Triangle = std::array<const double*, 3>;
 
@@ -23,7 +23,7 @@ namespace {
 constexpr unsigned kFaces3[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
 
 /// 1 inside, 0 outside, -1 on the boundary of the simplex (tetrahedron or triangle, maybe flat).
-int where(const Corners& corners, const oracle::RationalPoint& x) {
+int where(const Corners& corners, const oracle::Point<oracle::cpp_rational>& x) {
   const unsigned all = (1u << corners.size()) - 1;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (oracle::holds(corners, all & ~(1u << i), x)) return -1;
@@ -69,13 +69,13 @@ Corners rational_corners(const std::array<Vec, 4>& p, std::size_t dim) {
 /// A rational point that is likely to be in the simplex, on its faces, or level with its corners.
 struct Mixture {
   RationalPoint engine;
-  oracle::RationalPoint exact;
+  oracle::Point<oracle::cpp_rational> exact;
 };
 
 Mixture random_mixture(test::Rng& rng, const std::array<Vec, 4>& p, int dim) {
   std::vector<RationalPoint> points;
   std::vector<double> weights;
-  oracle::RationalPoint sum(static_cast<std::size_t>(dim));
+  oracle::Point<oracle::cpp_rational> sum(static_cast<std::size_t>(dim));
   double total = 0;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i) {
     const double w = test::random_int(rng, 0, 3);

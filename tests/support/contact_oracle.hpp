@@ -4,51 +4,25 @@
 /// rationals. Where it has one solution and that is positive, the point is a basic point of the intersection.
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
+#include "bench/stability/rational_oracles.hpp"
 #include "tests/support/hull_oracle.hpp"
 
 namespace lrb::oracle {
 
-using RationalPoint = std::vector<cpp_rational>;
-
-inline RationalPoint to_rational_point(const double* p, std::size_t dim) {
-  RationalPoint r;
-  for (std::size_t k = 0; k < dim; ++k) r.emplace_back(p[k]);  // exact
-  return r;
-}
-
-/// Returns the unique solution of A x = b (rows: coefficients, then b), or nullopt without a unique one.
-inline std::optional<std::vector<cpp_rational>> unique_solution(std::vector<std::vector<cpp_rational>> m) {
-  const std::size_t n = m[0].size() - 1;
-  for (std::size_t c = 0; c < n; ++c) {
-    std::size_t r = c;
-    while (r < m.size() && m[r][c] == 0) ++r;
-    if (r == m.size()) return std::nullopt;
-    std::swap(m[r], m[c]);
-    for (std::size_t i = 0; i < m.size(); ++i) {
-      if (i == c || m[i][c] == 0) continue;
-      const cpp_rational f = m[i][c] / m[c][c];
-      for (std::size_t k = c; k <= n; ++k) m[i][k] -= f * m[c][k];
-    }
-  }
-  for (std::size_t i = n; i < m.size(); ++i) {
-    if (m[i][n] != 0) return std::nullopt;
-  }
-  std::vector<cpp_rational> x;
-  for (std::size_t i = 0; i < n; ++i) x.push_back(m[i][n] / m[i][i]);
-  return x;
+inline Point<cpp_rational> to_rational_point(const double* p, std::size_t dim) {
+  return {p, p + dim};  // exact
 }
 
 /// A corner of the intersection, and the faces it was found on, as bit sets of corners.
 struct Corner {
-  RationalPoint x;
+  Point<cpp_rational> x;
   unsigned on_a, on_b;
 };
 
-inline std::vector<Corner> intersection_corners(const std::vector<RationalPoint>& a,
-                                                const std::vector<RationalPoint>& b) {
+inline std::vector<Corner> intersection_corners(const Points<cpp_rational>& a,
+                                                const Points<cpp_rational>& b) {
   const std::size_t n = a.size(), dim = a[0].size();
   std::vector<Corner> r;
   for (unsigned fa = 1; fa < (1u << n); ++fa) {
@@ -72,7 +46,7 @@ inline std::vector<Corner> intersection_corners(const std::vector<RationalPoint>
       if (m[0].size() - 1 > m.size()) continue;
       const auto x = unique_solution(m);
       if (!x || std::any_of(x->begin(), x->end(), [](const cpp_rational& w) { return w <= 0; })) continue;
-      RationalPoint p(dim);
+      Point<cpp_rational> p(dim);
       for (std::size_t i = 0; i < of_a.size(); ++i) {
         for (std::size_t k = 0; k < dim; ++k) p[k] += (*x)[i] * a[of_a[i]][k];
       }
@@ -83,7 +57,7 @@ inline std::vector<Corner> intersection_corners(const std::vector<RationalPoint>
 }
 
 /// True if x is in the convex hull of the chosen corners.
-inline bool holds(const std::vector<RationalPoint>& simplex, unsigned chosen, const RationalPoint& x) {
+inline bool holds(const Points<cpp_rational>& simplex, unsigned chosen, const Point<cpp_rational>& x) {
   std::vector<std::vector<cpp_rational>> rows(x.size() + 1);
   std::size_t n = 0;
   for (std::size_t i = 0; i < simplex.size(); ++i) {

@@ -51,26 +51,14 @@ int meet_of_simplices(const double* const* a, const double* const* b, std::size_
 int orientation(const std::vector<const double*>& points) {
   const std::size_t n = points.size() - 1;
   const auto p = to_integers({points}, n)[0];
-  std::vector<std::vector<cpp_rational>> m(n, std::vector<cpp_rational>(n));
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < n; ++k) m[i][k] = cpp_rational(p[i + 1][k] - p[0][k]);
-  }
-  int sign = 1;
-  for (std::size_t c = 0; c < n; ++c) {  // Gauss
-    std::size_t r = c;
-    while (r < n && m[r][c] == 0) ++r;
-    if (r == n) return 0;
-    if (r != c) {
-      std::swap(m[r], m[c]);
-      sign = -sign;
-    }
-    if (m[c][c] < 0) sign = -sign;
-    for (std::size_t i = c + 1; i < n; ++i) {
-      const cpp_rational f = m[i][c] / m[c][c];
-      for (std::size_t k = c; k < n; ++k) m[i][k] -= f * m[c][k];
-    }
-  }
-  return sign;
+  const auto from_first = [&](std::size_t i, std::size_t k) { return cpp_int(p[i][k] - p[0][k]); };
+  const auto minor = [&](std::size_t i, std::size_t j) {
+    return cpp_int(from_first(i, 0) * from_first(j, 1) - from_first(i, 1) * from_first(j, 0));
+  };
+  if (n == 2) return minor(1, 2).sign();
+  return cpp_int(minor(1, 2) * from_first(3, 2) + minor(2, 3) * from_first(1, 2) +
+                 minor(3, 1) * from_first(2, 2))
+      .sign();
 }
 
 int affine_dimension_of(const std::vector<const double*>& points, std::size_t dim) {
