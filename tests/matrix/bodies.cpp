@@ -28,24 +28,6 @@ Mesh noisy_quads(std::uint32_t slices, std::uint32_t rings, double noise, std::u
   return test::quad_ball(slices, rings, [&] { return 1 + noise * uniform(random, -1, 1); });
 }
 
-/// Each coordinate of each vertex changed by up to `by`.
-Mesh shaken(Mesh mesh, double by) {
-  RandomEngine random(1);
-  for (Vector3d& v : mesh.vertices)
-    for (double& x : v) x += by * uniform(random, -1, 1);
-  return mesh;
-}
-
-Mesh sheet(std::uint32_t n) {
-  Mesh mesh;
-  for (std::uint32_t i = 0; i <= n; ++i)
-    for (std::uint32_t j = 0; j <= n; ++j) mesh.vertices.push_back(Vector3d(i, j, 0) / n);
-  for (std::uint32_t i = 0; i < n * (n + 1); ++i)
-    if (i % (n + 1) != n)
-      mesh.add_face(std::array{VertexId(i), VertexId(i + n + 1), VertexId(i + n + 2), VertexId(i + 1)});
-  return mesh;
-}
-
 /// One triangle.
 Mesh lone(const Vector3d& third) {
   return test::with_face({}, {{0, 0, 0}, {1, 0, 0}, third}, {VertexId(0), VertexId(1), VertexId(2)});
@@ -98,11 +80,11 @@ std::vector<Kind> make_kinds(int noisy) {
     add("folded-" + std::to_string(i), noisy_quads(8, 2 + i % 3, 0.02 + 0.38 * ((i + 3) % 4) / 3.0, 100 + i),
         true, true, false);
   add("open", test::without_faces(rock, {FaceId(0), FaceId(1), FaceId(9)}), false, false, true, "stl");
-  add("sheet", sheet(5), false, false);
+  add("sheet", test::sheet(5), false, false);
   add("triangle", lone({0, 1, 0}), false, false, true, "off");
   add("line", lone({0.5, 0, 0}), false, false, false);
   add("crossing-once", spiked(icosphere(1)), true, true, false, "stl");
-  add("crossing-often", shaken(icosphere(2), 0.5), true, true, false);
+  add("crossing-often", test::shaken(icosphere(2), 0.5, 1), true, true, false);
   add("two-apart", several({ball, translated(ball, {3, 0, 0})}), true, true, true, "stl");
   add("two-touching", several({shapes::box(), shapes::box({1, 0, 0}, {2, 1, 1})}), true, true, false);
   add("two-overlapping", several({ball, translated(ball, {0.9, 0.2, 0.1})}), true, true, false, "off");
@@ -164,12 +146,10 @@ Step step_at(const LrbRep& a, const LrbRep& b, const Pose& pose) {
   Step step{pose, torture::swept_brute_force(a, Pose{}, b, pose), 0};
   if (!step.truth.pairs.empty()) return step;
   Eigen::AlignedBox3d box[2];
-  std::vector<test::Points> surface[2];
+  const std::vector<test::Points> surface[2] = {test::real_simplices(a, {}), test::real_simplices(b, pose)};
   for (const int side : {0, 1})
-    for (SimplexId s = 0; s < (side ? b : a).real_simplex_count(); ++s) {
-      surface[side].push_back(test::simplex_points(side ? b : a, side ? pose : Pose{}, s));
-      for (const Vector3d& x : surface[side].back()) box[side].extend(x);
-    }
+    for (const test::Points& simplex : surface[side])
+      for (const Vector3d& x : simplex) box[side].extend(x);
   if (!box[0].intersects(box[1])) step.truth.relation = Relation::separate;
   step.distance = test::surface_distance(surface[0], surface[1]);
   return step;

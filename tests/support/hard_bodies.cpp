@@ -1,5 +1,6 @@
 #include "tests/support/hard_bodies.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace lrb::hard {
 namespace {
@@ -24,21 +26,8 @@ Vector3d on_circle(std::uint32_t i, std::uint32_t n, double radius = 1, double z
 
 /// Vertices 0 .. n - 1 below, n .. 2n - 1 above them.
 Mesh prism(const std::vector<Vector3d>& below, const std::vector<Vector3d>& above) {
-  const auto n = static_cast<std::uint32_t>(below.size());
-  Mesh mesh;
-  mesh.vertices = below;
-  mesh.vertices.insert(mesh.vertices.end(), above.begin(), above.end());
-  std::vector<VertexId> bottom(n), top(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    bottom[i] = VertexId(n - 1 - i);
-    top[i] = VertexId(n + i);
-  }
-  mesh.add_face(bottom);
-  mesh.add_face(top);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t j = (i + 1) % n;
-    mesh.add_face(std::array{VertexId(i), VertexId(j), VertexId(n + j), VertexId(n + i)});
-  }
+  Mesh mesh = test::prism(std::vector<Eigen::Vector2d>(below.size()));
+  std::copy(above.begin(), above.end(), std::copy(below.begin(), below.end(), mesh.vertices.begin()));
   return mesh;
 }
 
