@@ -6,7 +6,6 @@ lines show values of the output. Lines that are not run are in NOT_RUN with a re
 programs: a new line is run or needs a reason.
 """
 import json
-import math
 import os
 import re
 import shutil
@@ -31,7 +30,7 @@ NOT_RUN = [
     (
         "docs/paper.md",
         r"^(lrbscope paper|seq 0 3)",
-        "takes minutes; tests/shards runs it in parts, spec and paper tests its experiments",
+        "takes minutes; tests/commands/paper.txt runs it in parts, spec and paper tests its experiments",
     ),
     ("docs/tails_and_worst.md", r"fcl|command:|run\.lrbcap", "needs another engine or its capture; engines_tests"),
     ("", r"--method ours,fcl", "needs another engine; engines_tests"),
@@ -56,11 +55,6 @@ FINDS = [r"^lrbscope inspect .*--draw", r"^lrbscope compare "]
 SECONDS = 300
 
 
-def pose(x, turn=0.0):
-    c, s = math.cos(turn), math.sin(turn)
-    return "%r %r 0 %r %r %r 0 0.1 0 0 1 0.05" % (c, -s, x, s, c)
-
-
 def stand_ins(tree, page, run):
     """Makes the files that a page's commands speak of, in the working folder."""
     fine = 5 if page == "docs/queries.md" else 3  # pair 1340,4539
@@ -78,9 +72,9 @@ def stand_ins(tree, page, run):
     shell.ball("meshes/a.obj", 2)
     shell.ball("meshes/b.obj", 2, 0.5)
     with open("poses.txt", "w") as f:
-        f.writelines(pose(2.2 - 0.15 * i, 0.1 * i) + "\n" for i in range(9))
+        f.writelines(shell.pose(2.2 - 0.15 * i, 0.1 * i) + "\n" for i in range(9))
     with open("motions.txt", "w") as f:
-        f.write(pose(4) + " " + pose(0, 0.5) + "\n" + pose(4) + " " + pose(5) + "\n")
+        f.write(shell.pose(4) + " " + shell.pose(0, 0.5) + "\n" + shell.pose(4) + " " + shell.pose(5) + "\n")
     with open("points.csv", "w") as f:
         f.writelines("0.1,%r,2\n" % (0.25 * i) for i in range(9))
     run("lrbscope export poses.txt --what poses -o poses.csv")
