@@ -40,34 +40,14 @@ struct Wrapped {
   }
 };
 
-bool boxes_disjoint(const double* const a[3], const double* const b[3], int n) {
-  for (int axis = 0; axis < n; ++axis) {
-    double low_a = INFINITY, high_a = -INFINITY, low_b = INFINITY, high_b = -INFINITY;
-    for (int k = 0; k < n; ++k) {
-      low_a = std::min(low_a, a[k][axis]);
-      high_a = std::max(high_a, a[k][axis]);
-      low_b = std::min(low_b, b[k][axis]);
-      high_b = std::max(high_b, b[k][axis]);
-    }
-    if (high_a < low_b || high_b < low_a) return true;
-  }
-  return false;
-}
-
 /// Whether two closed surfaces have no point in common and neither reaches into what the other encloses.
 bool are_apart(const Wrapped& a, const Wrapped& b, RandomEngine& random) {
   const int n = a.rep.dim();
   for (const SimplexId s : a.simplices)
     for (const SimplexId t : b.simplices) {
-      VertexId v[3], w[3];
-      a.rep.simplex(s, v);
-      b.rep.simplex(t, w);
-      const double *p[3], *q[3];
-      for (int k = 0; k < n; ++k) {
-        p[k] = a.x[v[k]].data();
-        q[k] = b.x[w[k]].data();
-      }
-      if (!boxes_disjoint(p, q, n) && oracle::meet_of_simplices(p, q, static_cast<std::size_t>(n)) != 0)
+      const auto p = torture::corners_of(a.rep, a.x, s), q = torture::corners_of(b.rep, b.x, t);
+      if (!torture::boxes_disjoint(p.data(), q.data(), n) &&
+          oracle::meet_of_simplices(p.data(), q.data(), static_cast<std::size_t>(n)) != 0)
         return false;
     }
   const auto has_corner_in = [&](const Wrapped& inner, const Wrapped& outer) {

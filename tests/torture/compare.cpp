@@ -209,35 +209,11 @@ class Comparison {
       SimplexPair p{static_cast<SimplexId>(random_() % c_.a->real_simplex_count()),
                     static_cast<SimplexId>(random_() % c_.b->real_simplex_count())};
       if (i % 2 == 0 && !brute_.pairs.empty()) p = brute_.pairs[random_() % brute_.pairs.size()];
-      const double *ca[3], *cb[3];
-      corners(*c_.a, xa, p.a, ca);
-      corners(*c_.b, xb, p.b, cb);
-      if (boxes_disjoint(ca, cb)) continue;
+      const auto ca = corners_of(*c_.a, xa, p.a), cb = corners_of(*c_.b, xb, p.b);
+      if (boxes_disjoint(ca.data(), cb.data(), c_.a->dim())) continue;
       ++checked;
-      ask_oracle(p, ca, cb);
+      ask_oracle(p, ca.data(), cb.data());
     }
-  }
-
-  static void corners(const LrbRep& rep, const std::vector<WorldPoint>& x, SimplexId s,
-                      const double* out[3]) {
-    VertexId v[3];
-    rep.simplex(s, v);
-    for (int k = 0; k < rep.dim(); ++k) out[k] = x[v[k]].data();
-  }
-
-  bool boxes_disjoint(const double* const a[3], const double* const b[3]) const {
-    const int n = c_.a->dim();
-    for (int axis = 0; axis < n; ++axis) {
-      double a_low = a[0][axis], a_high = a_low, b_low = b[0][axis], b_high = b_low;
-      for (int k = 1; k < n; ++k) {
-        a_low = std::min(a_low, a[k][axis]);
-        a_high = std::max(a_high, a[k][axis]);
-        b_low = std::min(b_low, b[k][axis]);
-        b_high = std::max(b_high, b[k][axis]);
-      }
-      if (a_high < b_low || b_high < a_low) return true;
-    }
-    return false;
   }
 
   void ask_oracle(const SimplexPair& p, const double* const a[3], const double* const b[3]) {

@@ -52,6 +52,31 @@ inline int side_of(const WorldPoint& a, const WorldPoint& b, const WorldPoint& c
   return oracle::orientation({a.data(), b.data(), c.data()});
 }
 
+/// Returns the corners of a simplex among a body's world points.
+inline std::array<const double*, 3> corners_of(const LrbRep& rep, const std::vector<WorldPoint>& x,
+                                               SimplexId s) {
+  VertexId v[3];
+  rep.simplex(s, v);
+  std::array<const double*, 3> out{};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(rep.dim()); ++k) out[k] = x[v[k]].data();
+  return out;
+}
+
+/// True if the boxes of two simplices with n corners in n dimensions are disjoint.
+inline bool boxes_disjoint(const double* const a[3], const double* const b[3], int n) {
+  for (int axis = 0; axis < n; ++axis) {
+    double low_a = INFINITY, high_a = -INFINITY, low_b = INFINITY, high_b = -INFINITY;
+    for (int k = 0; k < n; ++k) {
+      low_a = std::min(low_a, a[k][axis]);
+      high_a = std::max(high_a, a[k][axis]);
+      low_b = std::min(low_b, b[k][axis]);
+      high_b = std::max(high_b, b[k][axis]);
+    }
+    if (high_a < low_b || high_b < low_a) return true;
+  }
+  return false;
+}
+
 class ParityOracle {
  public:
   ParityOracle(const LrbRep& rep, const Pose& pose) : ParityOracle(rep, pose, all_real(rep)) {}

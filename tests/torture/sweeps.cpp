@@ -5,6 +5,7 @@
 #include "engine/motion/contact_search.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/bodies.hpp"
+#include "tests/support/simplex_distance.hpp"
 #include "tests/torture/children.hpp"
 #include "tests/torture/torture.hpp"
 
@@ -223,19 +224,8 @@ class SweepChecker {
 
   bool pair_meets(const FirstContactResult& r, const Pose& pose_a, const Pose& pose_b) {
     ++t_.samples;
-    Eigen::Vector3d corners[2][3];
-    const double* at[2][3];
-    for (int side = 0; side < 2; ++side) {
-      const LrbRep& rep = side == 0 ? bodies_.a : bodies_.b;
-      VertexId v[3];
-      rep.simplex(side == 0 ? r.pair.a : r.pair.b, v);
-      for (int k = 0; k < rep.simplex_size(); ++k) {
-        corners[side][k] = (side == 0 ? pose_a : pose_b).apply(rep.vertices()[v[k]]);
-        at[side][k] = corners[side][k].data();
-      }
-    }
-    return (bodies_.a.dim() == 3 ? exact::meet_triangles(at[0], at[1])
-                                 : exact::meet_segments(at[0], at[1])) != exact::Meet::disjoint;
+    return test::meet_of(test::simplex_points(bodies_.a, pose_a, r.pair.a),
+                         test::simplex_points(bodies_.b, pose_b, r.pair.b)) != exact::Meet::disjoint;
   }
 
   void complain(std::uint64_t& counter, const char* what) {
