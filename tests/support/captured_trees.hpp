@@ -66,11 +66,10 @@ inline std::vector<double> volume_around(capture::VolumeKind kind, const std::ve
   return out;
 }
 
-/// Returns a tree that halves the triangles along their longest extent down to leaves of `leaf_size`. Nodes
-/// are numbered breadth first. OBBs and RSS have a random frame each.
-inline capture::Tree halving_tree(const capture::Mesh& mesh, capture::VolumeKind kind,
-                                  std::size_t leaf_size = 1) {
-  using Eigen::Vector3d;
+/// Returns a tree over the triangles of a mesh, with nodes numbered breadth first. `split` returns the parts
+/// of a node's triangles, which are its children, or none for a leaf. OBBs and RSS have a random frame each.
+template <class Split>
+capture::Tree tree_of(const capture::Mesh& mesh, capture::VolumeKind kind, Split split) {
   capture::Tree tree;
   tree.volume = kind;
   if (kind == capture::VolumeKind::kdop) tree.directions = directions_of_18();
@@ -80,36 +79,46 @@ inline capture::Tree halving_tree(const capture::Mesh& mesh, capture::VolumeKind
   std::iota(nodes[0].begin(), nodes[0].end(), 0U);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     std::vector<std::uint32_t> all = std::move(nodes[n]);
-    std::vector<Vector3d> points;
-    Eigen::AlignedBox3d centres;
-    const auto centre = [&](std::uint32_t t) {
-      const auto& c = mesh.triangles[t];
-      return Vector3d((mesh.vertices[c[0]] + mesh.vertices[c[1]] + mesh.vertices[c[2]]) / 3);
-    };
-    for (const std::uint32_t t : all) {
+    std::vector<Eigen::Vector3d> points;
+    for (const std::uint32_t t : all)
       for (const std::uint32_t v : mesh.triangles[t]) points.push_back(mesh.vertices[v]);
-      centres.extend(centre(t));
-    }
     const std::vector<double> numbers = volume_around(kind, points, shapes::random_rotation(random));
     tree.volumes.insert(tree.volumes.end(), numbers.begin(), numbers.end());
-    if (all.size() <= leaf_size) {
-      tree.triangle.insert(tree.triangle.end(), all.begin(), all.end());
-    } else {
-      Eigen::Index axis = 0;
-      centres.sizes().maxCoeff(&axis);
-      const auto median = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-      std::nth_element(all.begin(), median, all.end(), [&](std::uint32_t s, std::uint32_t t) {
-        const double x = centre(s)[axis], y = centre(t)[axis];
-        return x != y ? x < y : s < t;
-      });
-      for (int k = 0; k < 2; ++k) tree.child.push_back(static_cast<std::uint32_t>(nodes.size()) + k);
-      nodes.emplace_back(all.begin(), median);
-      nodes.emplace_back(median, all.end());
+    std::vector<std::vector<std::uint32_t>> parts = split(all);
+    if (parts.empty()) tree.triangle.insert(tree.triangle.end(), all.begin(), all.end());
+    for (std::vector<std::uint32_t>& part : parts) {
+      tree.child.push_back(static_cast<std::uint32_t>(nodes.size()));
+      nodes.push_back(std::move(part));
     }
     tree.first_child.push_back(static_cast<std::uint32_t>(tree.child.size()));
     tree.first_triangle.push_back(static_cast<std::uint32_t>(tree.triangle.size()));
   }
   return tree;
+}
+
+/// Returns a tree that halves the triangles along their longest extent down to leaves of `leaf_size`.
+inline capture::Tree halving_tree(const capture::Mesh& mesh, capture::VolumeKind kind,
+                                  std::size_t leaf_size = 1) {
+  const auto centre = [&](std::uint32_t t) {
+    const auto& c = mesh.triangles[t];
+    return Eigen::Vector3d((mesh.vertices[c[0]] + mesh.vertices[c[1]] + mesh.vertices[c[2]]) / 3);
+  };
+  return tree_of(mesh, kind, [&](std::vector<std::uint32_t>& all) {
+    std::vector<std::vector<std::uint32_t>> halves;
+    if (all.size() <= leaf_size) return halves;
+    Eigen::AlignedBox3d centres;
+    for (const std::uint32_t t : all) centres.extend(centre(t));
+    Eigen::Index axis = 0;
+    centres.sizes().maxCoeff(&axis);
+    const auto median = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), median, all.end(), [&](std::uint32_t s, std::uint32_t t) {
+      const double x = centre(s)[axis], y = centre(t)[axis];
+      return x != y ? x < y : s < t;
+    });
+    halves.emplace_back(all.begin(), median);
+    halves.emplace_back(median, all.end());
+    return halves;
+  });
 }
 
 }  // namespace lrb::test

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "scenarios/profile/volumes.hpp"
+#include "tests/support/captured_trees.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/pose.hpp>
@@ -61,41 +62,25 @@ class FaultyEngine {
   /// to leaves of at most `leaf` triangles. Returns its index.
   std::uint32_t grow(std::uint32_t mesh, std::mt19937_64& random, std::uint32_t leaf = 1,
                      std::uint32_t width = 2) {
-    capture::Tree tree;
+    const capture::Mesh& m = capture.meshes[mesh];
+    capture::Tree tree = tree_of(m, capture::VolumeKind::aabb, [&](std::vector<std::uint32_t>& all) {
+      std::vector<std::vector<std::uint32_t>> groups;
+      if (all.size() <= leaf) return groups;
+      // Ordered along a random axis, and cut at random places.
+      const int axis = static_cast<int>(random() % 3);
+      std::stable_sort(all.begin(), all.end(), [&](std::uint32_t x, std::uint32_t y) {
+        return m.vertices[m.triangles[x][0]][axis] < m.vertices[m.triangles[y][0]][axis];
+      });
+      const std::size_t parts = std::min<std::size_t>(all.size(), 2 + random() % (width - 1));
+      std::set<std::size_t> cuts{0, all.size()};
+      while (cuts.size() < parts + 1) cuts.insert(1 + random() % (all.size() - 1));
+      for (auto cut = cuts.begin(); std::next(cut) != cuts.end(); ++cut)
+        groups.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(*cut),
+                            all.begin() + static_cast<std::ptrdiff_t>(*std::next(cut)));
+      return groups;
+    });
     tree.id = static_cast<std::uint32_t>(capture.trees.size() + 1);
     tree.mesh = mesh;
-    const capture::Mesh& m = capture.meshes[mesh];
-    // Breadth first, so that the children of a node are adjacent and the root is node 0.
-    std::vector<std::vector<std::uint32_t>> nodes(1);
-    for (std::uint32_t t = 0; t < m.triangles.size(); ++t) nodes[0].push_back(t);
-    tree.first_child = tree.first_triangle = {0};
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-      std::vector<std::uint32_t> all = nodes[n];
-      Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
-      for (const std::uint32_t t : all)
-        for (const std::uint32_t v : m.triangles[t])
-          low = low.cwiseMin(m.vertices[v]), high = high.cwiseMax(m.vertices[v]);
-      tree.volumes.insert(tree.volumes.end(), {low[0], low[1], low[2], high[0], high[1], high[2]});
-      if (all.size() <= leaf) {
-        tree.triangle.insert(tree.triangle.end(), all.begin(), all.end());
-      } else {
-        // Ordered along a random axis, and cut at random places.
-        const int axis = static_cast<int>(random() % 3);
-        std::stable_sort(all.begin(), all.end(), [&](std::uint32_t x, std::uint32_t y) {
-          return m.vertices[m.triangles[x][0]][axis] < m.vertices[m.triangles[y][0]][axis];
-        });
-        const std::size_t parts = std::min<std::size_t>(all.size(), 2 + random() % (width - 1));
-        std::set<std::size_t> cuts{0, all.size()};
-        while (cuts.size() < parts + 1) cuts.insert(1 + random() % (all.size() - 1));
-        for (auto cut = cuts.begin(); std::next(cut) != cuts.end(); ++cut) {
-          tree.child.push_back(static_cast<std::uint32_t>(nodes.size()));
-          nodes.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(*cut),
-                             all.begin() + static_cast<std::ptrdiff_t>(*std::next(cut)));
-        }
-      }
-      tree.first_child.push_back(static_cast<std::uint32_t>(tree.child.size()));
-      tree.first_triangle.push_back(static_cast<std::uint32_t>(tree.triangle.size()));
-    }
     capture.trees.push_back(std::move(tree));
     return static_cast<std::uint32_t>(capture.trees.size() - 1);
   }

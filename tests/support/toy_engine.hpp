@@ -4,7 +4,6 @@
 #include <functional>
 #include <string>
 
-#include "tests/support/captured_trees.hpp"
 #include "tests/support/faulty_engine.hpp"
 #include <lrbscope/mesh.hpp>
 
