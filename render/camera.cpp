@@ -171,9 +171,9 @@ Camera fit_contact(std::span<const Vector3d> contact, const Eigen::AlignedBox3d&
     if (const auto at = projection.to_pixel(p)) seen.extend(*at);
   }
   if (seen.isEmpty()) return camera;
-  const Eigen::Vector2d off =
+  const Eigen::Vector2d deviation =
       (seen.center() - Eigen::Vector2d(0.5 * width, 0.5 * height)) * projection.unit_per_pixel(box.center());
-  const Vector3d move = projection.axes().row(0) * off.x() - projection.axes().row(1) * off.y();
+  const Vector3d move = projection.axes().row(0) * deviation.x() - projection.axes().row(1) * deviation.y();
   camera.eye += move;
   camera.target += move;
   return camera;
@@ -241,11 +241,11 @@ Vector3d Projection::to_screen(const Vector3d& e) const {
 }
 
 double Projection::nearer(double depth, double heights) const {
-  const double way = heights * height_ / focal_;  // perspective: at distance 1
-  if (orthographic_) return depth - 2 * way / (far_ - near_);
+  const double direction = heights * height_ / focal_;  // perspective: at distance 1
+  if (orthographic_) return depth - 2 * direction / (far_ - near_);
   // With depth = infinite - c / z, moving a point to z (1 - way) scales its difference from `infinite`.
   const double infinite = (far_ + near_) / (far_ - near_);
-  return infinite - (infinite - depth) / (1 - way);
+  return infinite - (infinite - depth) / (1 - direction);
 }
 
 std::optional<Eigen::Vector2d> Projection::to_pixel(const Vector3d& world) const {

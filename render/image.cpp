@@ -145,8 +145,8 @@ int columns_for(const std::vector<Panel>& panels) {
     const int rows = (n + columns - 1) / columns, gaps = rows * columns - n;
     const double shape =
         static_cast<double>(columns * panels[0].image.width()) / (rows * panels[0].image.height());
-    const double off = std::abs(std::log(shape / kShape)) + 0.5 * gaps / n;
-    if (off < least) least = off, best = columns;
+    const double deviation = std::abs(std::log(shape / kShape)) + 0.5 * gaps / n;
+    if (deviation < least) least = deviation, best = columns;
   }
   return best;
 }

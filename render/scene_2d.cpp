@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 /// The part [from, to] of a segment, as shares of its length, along which another one is within the width.
 struct Cover {
   double from, to;
-  int way;  ///< 1: the other has the same direction, -1: the opposite one
+  int direction;  ///< 1: the other has the same direction, -1: the opposite one
 };
 
 /// Returns the distance of a point from the line through p in direction `along` (of length 1).
@@ -55,7 +55,7 @@ void add_rest(const Segment2d& s, const std::vector<Cover>& covers, double width
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double centre = (cuts[i] + cuts[i + 1]) / 2;
     int net = 1;
-    for (const Cover& c : covers) net += c.from < centre && centre < c.to ? c.way : 0;
+    for (const Cover& c : covers) net += c.from < centre && centre < c.to ? c.direction : 0;
     const bool kept = net != 0 && cuts[i] < cuts[i + 1];
     if (kept && begin < 0) begin = cuts[i];
     if (begin >= 0 && (net == 0 || i + 2 == cuts.size())) {
@@ -75,7 +75,7 @@ std::vector<Segment2d> without_hairs(const std::vector<Segment2d>& segments, dou
     for (std::size_t j = 0; j < segments.size(); ++j)
       if (j != i) add_cover(segments[i], segments[j], width, covers);
     const bool any_opposite =
-        std::any_of(covers.begin(), covers.end(), [](const Cover& c) { return c.way < 0; });
+        std::any_of(covers.begin(), covers.end(), [](const Cover& c) { return c.direction < 0; });
     if (any_opposite)
       add_rest(segments[i], covers, width, out);
     else

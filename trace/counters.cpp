@@ -316,7 +316,7 @@ void take_cap(PassSummary& p, const Event& e, const Event* tried_before) {
   if (cap.verdict != CapVerdict::accepted) return;
   p.lids += cap.faces;
   p.covered += cap.covered;
-  if (std::isfinite(cap.off)) p.off = std::max(p.off, cap.off);
+  if (std::isfinite(cap.deviation)) p.deviation = std::max(p.deviation, cap.deviation);
 }
 
 void take(PassSummary& p, EventId id, const Trace& trace) {

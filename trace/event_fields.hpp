@@ -94,7 +94,7 @@ void event_fields(auto& io, Is<Event> auto& e) {
       has_wrapper = false;
       stored_word<BuildStage>(io, "stage", e.detail);
       if constexpr (kReads) e.boundary = 0;
-      if (io.has("distance allowed", e.off() > 0)) io.real("distance allowed", e.boundary);
+      if (io.has("distance allowed", e.deviation() > 0)) io.real("distance allowed", e.boundary);
       break;
     case EventKind::patch:
       has_wrapper = false;

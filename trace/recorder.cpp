@@ -13,8 +13,8 @@ namespace lrb::trace {
 namespace {
 
 /// Returns a deviation as stored in events; negative means not measured.
-float deviation_of(double off) {
-  return off < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(off);
+float deviation_of(double deviation) {
+  return deviation < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(deviation);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void ConstructRecorder::cap(const TriedCap& cap) {
                                      .covered = cap.covered,
                                      .verdict = cap.verdict,
                                      .careful = cap.careful,
-                                     .off = deviation_of(cap.off)},
+                                     .deviation = deviation_of(cap.deviation)},
                         patch_));
 }
 

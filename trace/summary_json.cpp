@@ -80,7 +80,7 @@ void write_pass(JsonWriter& w, const PassSummary& p) {
   w.key("refused");
   write_caps(w, p.caps);
   w.member("lids", p.lids).member("faces_covered", p.covered);
-  if (p.off > 0) w.member("distance", p.off);
+  if (p.deviation > 0) w.member("distance", p.deviation);
   w.member("faces_barred", p.excluded).member("vertices_without_patch", p.no_patch);
   w.member("vertices_that_wait", p.waiting).member("given_up", p.given_up).end_object();
 }

@@ -374,7 +374,8 @@ class Checker {
     if (names_region && !has_cause({EventKind::cap, EventKind::pass}))
       bad("its cause is neither a cap nor a pass");
     if (e.kind == EventKind::pass && e.detail >= kEnumNames<BuildStage>.size()) bad("unknown stage");
-    if (e.kind == EventKind::pass && !(e.off() >= 0)) bad("its deviation is not a number of at least 0");
+    if (e.kind == EventKind::pass && !(e.deviation() >= 0))
+      bad("its deviation is not a number of at least 0");
     if (e.kind == EventKind::cap && e.detail >= kEnumNames<CapVerdict>.size()) bad("unknown verdict");
     if (e.kind == EventKind::cap && !has_cause({EventKind::patch})) bad("its cause is not a patch");
     if (e.kind == EventKind::patch && e.boundary != kNull &&

@@ -320,7 +320,7 @@ class WalkFollower {
   explicit WalkFollower(const Trace& trace)
       : walk_(trace.header.request.recursion == Recursion::complete ? Walk::bodies : Walk::recursion) {}
 
-  void see(const Event& e) {
+  void follow(const Event& e) {
     if (e.kind != EventKind::begin) return;
     const auto [phase, walked_a, walked_b] = e.phase_begin();
     if (phase == Phase::walk) walk_ = walked_a > 0 || walked_b > 0 ? Walk::levels : Walk::bodies;
@@ -387,7 +387,7 @@ WorkChart work_chart(const Trace& trace) {
   WalkFollower follower(trace);
   for (EventId i = 0; i < trace.events.size(); ++i) {
     const Event& e = trace.events[i];
-    follower.see(e);
+    follower.follow(e);
     const std::optional<WorkPart> part = work_part(e);
     if (!part) continue;
     const std::size_t at = cell_of(*part, follower.walk());

@@ -34,8 +34,8 @@ Case make_slide(RandomEngine& random, double difficulty) {
     begin = {-2, static_cast<double>(pick(random, -2, 2)), 0};
   }
   const bool turns = pick(random, 0, 2) == 0, tilted = pick(random, 0, 2) == 0;
-  const double off = random() % 2 ? slack(difficulty) : -slack(difficulty);
-  begin.z() = off;
+  const double deviation = random() % 2 ? slack(difficulty) : -slack(difficulty);
+  begin.z() = deviation;
   const Pose scene = tilted ? any_pose(random) : Pose{};
   const Pose turn = Pose::rotation(scene.r * Vector3d(0, 0, 1), turns ? 1e-4 : 0);
   c.pose_a = scene;

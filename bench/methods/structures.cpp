@@ -91,19 +91,19 @@ class Spheres : public MethodOf<SphereBody> {
       const Item item = stack.back();
       stack.pop_back();
       const Sphere &p = a.body.spheres[item.a], &q = b.body.spheres[item.b];
-      const Eigen::Vector3d way = b_in_a.apply(q.centre) - p.centre;
+      const Eigen::Vector3d direction = b_in_a.apply(q.centre) - p.centre;
       ++answer.face_tests;
       const double reach = p.radius + q.radius;
-      if (way.squaredNorm() > reach * reach) continue;
+      if (direction.squaredNorm() > reach * reach) continue;
       const std::uint32_t right_a = a.body.tree.nodes()[item.a].right,
                           right_b = b.body.tree.nodes()[item.b].right;
       const bool leaf_a = right_a == 0, leaf_b = right_b == 0;
       if (item.level >= level_ || (leaf_a && leaf_b)) {
         // On average, the midpoint between the points where the line of centres leaves one sphere and enters
         // the other.
-        const double length = way.norm();
+        const double length = direction.norm();
         const double at = length > 0 ? (p.radius + length - q.radius) / (2 * length) : 0;
-        answer.points.push_back(a.pose.apply(p.centre + at * way));
+        answer.points.push_back(a.pose.apply(p.centre + at * direction));
         if (mode == Mode::first_pair) break;
         continue;
       }

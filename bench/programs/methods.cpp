@@ -194,7 +194,7 @@ int run_worker(int argc, char** argv) {
   // Lines have a separate channel; libraries that print to stdout print to stderr instead.
   std::FILE* out = fdopen(dup(STDOUT_FILENO), "w");
   dup2(STDERR_FILENO, STDOUT_FILENO);
-  const auto say = [out](const ordered_json& value) {
+  const auto write_line = [out](const ordered_json& value) {
     const std::string line = value.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
     if (out == nullptr || std::fputs(line.c_str(), out) < 0 || std::fflush(out) != 0)
       std::_Exit(1);  // the reader has closed the channel
@@ -220,15 +220,15 @@ int run_worker(int argc, char** argv) {
     if (!requested) throw InputError("unknown quantity '" + quantity + "'");
     if (list) {
       for (const methods::MethodEntry& e : entries)
-        if (e.info.quantity == *requested) say(workers::to_json(e.info));
+        if (e.info.quantity == *requested) write_line(workers::to_json(e.info));
       return kOk;
     }
     Answers answers(method, *requested, entries);
     std::ifstream questions("/proc/self/fd/3");
-    for (std::string line; std::getline(questions, line);) say(answers(json::parse(line)));
+    for (std::string line; std::getline(questions, line);) write_line(answers(json::parse(line)));
     return kOk;
   } catch (const std::exception& e) {
-    say({{"error", e.what()}});
+    write_line({{"error", e.what()}});
     return kBadInput;
   }
 }

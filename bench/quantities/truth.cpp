@@ -61,9 +61,9 @@ methods::Question question_of(const cases::Case& c) {
   Vector3d direction = box_b.center() - box_a.center();
   direction = direction.norm() > 0 ? direction.normalized() : Vector3d(0, 0, 1);
   direction += Vector3d(0.0312, 0.0487, -0.0256);
-  const Vector3d way = rounded(-4 * out.size * direction);
-  out.from = -0.75 * way;
-  out.to = 0.25 * way;
+  const Vector3d towards = rounded(-4 * out.size * direction);
+  out.from = -0.75 * towards;
+  out.to = 0.25 * towards;
   const std::uint64_t choice = out.a.hash() ^ out.b.hash();
   const auto& p = out.a.vertices();
   const auto& q = out.b.vertices();
@@ -148,17 +148,17 @@ Rational distance_sq(const Question& q) {
 
 /// Returns a lower bound on the time t at which box b, translated by `from` + t * `way`, intersects box a;
 /// infinite: never.
-double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& from, const Vector3d& way) {
+double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& from, const Vector3d& towards) {
   double begin = 0, end = 1;
   for (int k = 0; k < 3; ++k) {
-    const double slack = 1e-9 * way.norm();
+    const double slack = 1e-9 * towards.norm();
     const double low = b.min()[k] + from[k] - a.max()[k] - slack,
                  high = b.max()[k] + from[k] - a.min()[k] + slack;
-    if (way[k] == 0) {
+    if (towards[k] == 0) {
       if (low > 0 || high < 0) return HUGE_VAL;
       continue;
     }
-    const double t = -low / way[k], u = -high / way[k];
+    const double t = -low / towards[k], u = -high / towards[k];
     begin = std::max(begin, std::min(t, u));
     end = std::min(end, std::max(t, u));
   }
@@ -167,14 +167,14 @@ double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& fr
 
 std::optional<Rational> first_time(const Question& q) {
   const Faces a(q.a), b(q.b);
-  const RationalPoint from = oracle::rational(q.from), way = oracle::minus(oracle::rational(q.to), from);
+  const RationalPoint from = oracle::rational(q.from), towards = oracle::minus(oracle::rational(q.to), from);
   return least_of_pairs(
       a, b,
       [&](const AlignedBox3d& s, const AlignedBox3d& t) { return box_time(s, t, q.from, q.to - q.from); },
       [&](std::size_t i, std::size_t j, const std::optional<Rational>& first) {
         RationalPoints there;
         for (const RationalPoint& x : b.exact[j]) there.push_back(oracle::moved(x, from, 1));
-        return oracle::first_time(a.exact[i], there, way, first.value_or(1));
+        return oracle::first_time(a.exact[i], there, towards, first.value_or(1));
       });
 }
 

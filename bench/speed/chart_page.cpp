@@ -271,12 +271,12 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
                        const std::vector<methods::MethodInfo>& methods,
                        const std::function<std::string(const Point&)>& scene_of) {
   const double slowest = slowest_of(points, set.name);
-  const std::vector<const Point*> here = panel(points, set.name, c);
+  const std::vector<const Point*> current = panel(points, set.name, c);
   const ChartText words = chart_text(set.quantity);
   report::Chart chart{set.name + ", " + info_of(c).title,
                       error_axis(set.quantity, words.error),
                       {"median, \u00b5s", true, 0.05, 6 * slowest}};
-  chart.note = left_out_text(here);
+  chart.note = left_out_text(current);
   const auto add = [&](report::Series& series, const Point& p, double error) {
     series.x.push_back(drawn_error(error, set.quantity));
     series.y.push_back(drawn_time(p, slowest));
@@ -286,7 +286,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
     series.targets.push_back(scene_of(p));
   };
   report::Series best{"Pareto frontier", {}, {}, {report::Line::steps, "#9fb4c2", "none"}};
-  for (const Point* p : frontier(here)) {
+  for (const Point* p : frontier(current)) {
     best.x.push_back(drawn_error(p->error(), set.quantity));
     best.y.push_back(p->median);
   }
@@ -297,7 +297,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   for (std::size_t i = 0; i < styles.size(); ++i) {
     const methods::MethodStyle& style = styles[i];
     std::string last;
-    for (const Point* p : here) {
+    for (const Point* p : current) {
       if (const auto it = series_of.find(p->method); it == series_of.end() || it->second != i) continue;
       if (p->always_wrong) continue;  // named, not drawn
       const report::Line line = p->setting ? report::Line::straight : report::Line::none;
@@ -310,7 +310,7 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
   }
   report::Series proved{words.proved, {}, {}, {report::Line::none, "#0072b2", "cross"}};
   report::Series failed{"crash, refusal or time-out", {}, {}, {report::Line::none, "#d00000", "crossRot"}};
-  for (const Point* p : here) {
+  for (const Point* p : current) {
     if (p->always_wrong) continue;
     if (p->failed() > 0) add(failed, *p, p->error());
     if (words.proved.empty() || p->proven_deviation.value_or(0) <= 0) continue;

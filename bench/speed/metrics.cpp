@@ -114,7 +114,7 @@ double BodyDistance::Side::distance(const Eigen::Vector3d& world) {
   return nearest.find(x / unit).distance * unit;
 }
 
-double BodyDistance::off(const std::vector<Eigen::Vector3d>& points) {
+double BodyDistance::offset(const std::vector<Eigen::Vector3d>& points) {
   double most = 0;
   for (const Eigen::Vector3d& p : points) most = std::max(most, a_.distance(p) + b_.distance(p));
   return most;
@@ -218,8 +218,8 @@ Errors errors_of_number(const DataSet& set, const Question& q, const Record& r) 
   const double x = *r.all.upper;
   const bool is_time = set.quantity == Quantity::first_contact;
   if (is_time && (x >= methods::kNever) != (q.number->least >= methods::kNever)) return e;
-  const double off = std::max({0.0, q.number->least - x, x - q.number->most}) / unit_of(set);
-  at(e, metric) = std::min(metric_info(metric).worst, off);
+  const double offset = std::max({0.0, q.number->least - x, x - q.number->most}) / unit_of(set);
+  at(e, metric) = std::min(metric_info(metric).worst, offset);
   return e;
 }
 
@@ -250,11 +250,11 @@ class Judge {
 
   void set_region(Errors& e, const methods::MethodInfo& info, const Region& found) const {
     set_region(e, info, region_error(maker().of_pairs(q_.expected), found, diagonal_),
-               std::min(1.0, BodyDistance(a_, q_.pose_a, b_, q_.pose_b).off(found.points) / diagonal_));
+               std::min(1.0, BodyDistance(a_, q_.pose_a, b_, q_.pose_b).offset(found.points) / diagonal_));
   }
 
-  static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r, double off) {
-    const std::pair<Metric, double> values[] = {{Metric::hausdorff, r.hausdorff}, {Metric::deviation, off},
+  static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r, double offset) {
+    const std::pair<Metric, double> values[] = {{Metric::hausdorff, r.hausdorff}, {Metric::deviation, offset},
                                                 {Metric::length, r.length},       {Metric::area, r.area},
                                                 {Metric::centroid, r.centroid},   {Metric::normal, r.normal},
                                                 {Metric::depth, r.depth}};

@@ -126,7 +126,7 @@ class BodyDistance {
   BodyDistance(const BodyDistance&) = delete;  // its members refer to each other
   BodyDistance& operator=(const BodyDistance&) = delete;
   /// Returns the maximum over the points of the sum of the distances from both surfaces, or 0 without points.
-  double off(const std::vector<Eigen::Vector3d>& points);
+  double deviation(const std::vector<Eigen::Vector3d>& points);
 
  private:
   struct Side {

@@ -63,7 +63,7 @@ inline std::optional<RationalClosest> closest_of_features(const RationalPoints& 
   const std::array<Rational, 3> between = minus(g[0], f[0]);
   std::vector<std::vector<Rational>> m(ways.size());
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    for (const auto& way : ways) m[i].push_back(dot(ways[i], way));
+    for (const auto& direction : ways) m[i].push_back(dot(ways[i], direction));
     m[i].push_back(dot(ways[i], between));
   }
   const auto share = unique_solution(m);
@@ -142,8 +142,8 @@ inline Rational square(double x) {
 inline RationalPoint cross(const RationalPoint& x, const RationalPoint& y) {
   return {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
 }
-inline RationalPoint moved(const RationalPoint& x, const RationalPoint& way, const Rational& t) {
-  return {x[0] + t * way[0], x[1] + t * way[1], x[2] + t * way[2]};
+inline RationalPoint moved(const RationalPoint& x, const RationalPoint& direction, const Rational& t) {
+  return {x[0] + t * direction[0], x[1] + t * direction[1], x[2] + t * direction[2]};
 }
 
 /// Returns true if two simplices intersect.
@@ -223,9 +223,9 @@ inline std::optional<Rational> first_time(const RationalPoints& of_a, const Rati
   return std::nullopt;
 }
 
-inline std::optional<Rational> first_time(const Corners& a, const Corners& b, const Eigen::Vector3d& way,
-                                          const Rational& before = 1) {
-  return first_time(rational(a), rational(b), rational(way), before);
+inline std::optional<Rational> first_time(const Corners& a, const Corners& b,
+                                          const Eigen::Vector3d& direction, const Rational& before = 1) {
+  return first_time(rational(a), rational(b), rational(direction), before);
 }
 
 }  // namespace lrb::oracle

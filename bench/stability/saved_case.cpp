@@ -72,11 +72,11 @@ Json pair_proof(const cases::Case& c, const SimplexPair& pair) {
     return out;
   }
   // The planes through the closest points, across the segment between them, separate convex sets.
-  const oracle::RationalPoint way = oracle::minus(closest.on_g, closest.on_f);
+  const oracle::RationalPoint direction = oracle::minus(closest.on_g, closest.on_f);
   out["closest_points"] = {point_json(closest.on_f), point_json(closest.on_g)};
-  out["direction"] = point_json(way);
-  out["largest_of_a"] = oracle::dot(way, closest.on_f).str();
-  out["least_of_b"] = oracle::dot(way, closest.on_g).str();
+  out["direction"] = point_json(direction);
+  out["largest_of_a"] = oracle::dot(direction, closest.on_f).str();
+  out["least_of_b"] = oracle::dot(direction, closest.on_g).str();
   // The square may be less than the least double.
   using Wide = boost::multiprecision::cpp_bin_float_100;
   const Wide distance_sq = Wide(boost::multiprecision::numerator(closest.distance_sq)) /

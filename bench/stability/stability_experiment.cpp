@@ -156,9 +156,9 @@ void judge_number(Record& record, const MethodInfo& info, const Answer& answer, 
   if (info.has(methods::Trait::proves)) {
     right = right && answer.lower <= most && answer.upper >= least;
   } else if (!special) {
-    const double off = std::max(least - answer.upper, answer.lower - most);
+    const double deviation = std::max(least - answer.upper, answer.lower - most);
     const bool is_time = info.quantity == Quantity::first_contact;
-    right = right && off <= (is_time ? kMaxOffOfMotion : kMaxOffOfSize * expected.size);
+    right = right && deviation <= (is_time ? kMaxOffOfMotion : kMaxOffOfSize * expected.size);
   }
   conclude(record, right);
 }

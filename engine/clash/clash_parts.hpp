@@ -131,7 +131,7 @@ class OverlapProof {
     Common near;  ///< of a nearby translation
   };
   void push(const Vector3d& centre, double half, const Common& near);
-  bool look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
+  bool evaluate(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
   bool is_in(Side side, const Vector3d& x, double radius, const Vector3d& known, double known_radius);
   std::vector<Common> seeds(const Cube& cube) const;
   bool find_room(const Cube& cube, double needed, const Common& seed, Common& best);

@@ -378,8 +378,8 @@ void DepthFinder::refine(double& best, Vector3d& best_n) {
     // Two axes normal to the direction; small rotations towards each, both ways.
     const Vector3d across = best_n.unitOrthogonal(), other = best_n.cross(across);
     bool shorter = false;
-    for (const Vector3d& way : {across, other, Vector3d(-across), Vector3d(-other)}) {
-      const Vector3d n = (best_n + step * way).normalized();
+    for (const Vector3d& towards : {across, other, Vector3d(-across), Vector3d(-other)}) {
+      const Vector3d n = (best_n + step * towards).normalized();
       // Require a gain proportional to the angle, so that a single query rejects a rotation without it.
       const double s = best * (1 - kTurnGain * step);
       ++tries;

@@ -198,7 +198,7 @@ class Inflation {
  private:
   struct Near {
     double distance;
-    Vector3d way;
+    Vector3d direction;
     std::uint32_t triangle;
   };
 
@@ -295,9 +295,9 @@ class Inflation {
     std::vector<Near> near;
     for (std::uint32_t i = 0; i < body_.triangles.size(); ++i) {
       const auto& t = body_.triangles[i];
-      const Vector3d way =
+      const Vector3d direction =
           nearest_point(seed_, body_.points[t[0]], body_.points[t[1]], body_.points[t[2]]) - seed_;
-      near.push_back({way.norm(), way, i});
+      near.push_back({direction.norm(), direction, i});
     }
     // Ties by index, for a deterministic order.
     std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) {
@@ -330,7 +330,7 @@ class Inflation {
       return true;
     }
     if (half_spaces_.size() >= kMaxHalfSpaces) return false;
-    const Vector3d normal = n.way / n.distance;
+    const Vector3d normal = n.direction / n.distance;
     // In front of the entire triangle: by rounding a corner may be nearer than the nearest point.
     const double offset = std::min(least(normal, n.triangle), n.distance);
     // The direction is inaccurate because of rounding.

@@ -84,7 +84,7 @@ bool OverlapProof::is_in(Side side, const Vector3d& x, double radius, const Vect
 
 /// Evaluates x for the translation v. Returns false unless x is in A and x - v in B. near: a nearby common
 /// point.
-bool OverlapProof::look(const Vector3d& x, const Vector3d& v, const Common& near, Common& out) {
+bool OverlapProof::evaluate(const Vector3d& x, const Vector3d& v, const Common& near, Common& out) {
   ++points_;
   out.x = x;
   out.shift = v;
@@ -107,7 +107,8 @@ void OverlapProof::climb(double needed, bool thorough, Common& best) {
     for (int k = 0; k < 3; ++k)
       for (const double sign : {1.0, -1.0}) {
         Common next;
-        if (!look(best.x + sign * step * Vector3d::Unit(k), best.shift, best, next) || !has_more(next, best))
+        if (!evaluate(best.x + sign * step * Vector3d::Unit(k), best.shift, best, next) ||
+            !has_more(next, best))
           continue;
         // Take the first gain on an axis.
         best = next;
@@ -149,7 +150,7 @@ bool OverlapProof::find_room(const Cube& cube, double needed, const Common& seed
   // From the seed's translation to the cube's, the point moves by half, stays with A, or follows B.
   for (const double share : {0.5, 0.0, 1.0}) {
     Common at;
-    if (!look(seed.x + share * moved, cube.centre, seed, at)) continue;
+    if (!evaluate(seed.x + share * moved, cube.centre, seed, at)) continue;
     if (!found || has_more(at, start)) start = at;
     found = true;
     // Good enough to climb from.

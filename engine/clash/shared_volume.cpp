@@ -88,7 +88,7 @@ struct Seen {
   }
 };
 
-Seen see(const UnitBody& body, const std::array<std::uint32_t, 3>& t) {
+Seen project_triangle(const UnitBody& body, const std::array<std::uint32_t, 3>& t) {
   Seen s;
   for (int k = 0; k < 3; ++k) {
     // Project to the plane of y and z; heights are measured from the base x = -1/2.
@@ -189,8 +189,8 @@ void add_pair(const Seen& a, const Seen& b, Sum& sum) {
   for (int k = 0; k < 3 && polygon.size > 0; ++k) {
     const Vector2d from = large.p[k], along = large.p[(k + 1) % 3] - from;
     polygon = clipped(polygon, [&](const Vector2d& x) {
-      const Vector2d way = x - from;
-      return along.x() * way.y() - along.y() * way.x();
+      const Vector2d direction = x - from;
+      return along.x() * direction.y() - along.y() * direction.x();
     });
   }
   double error = clip_error(small.diameter, large.diameter);
@@ -213,7 +213,7 @@ void add_pair(const Seen& a, const Seen& b, Sum& sum) {
 
 std::vector<Seen> seen_of(const UnitBody& body) {
   std::vector<Seen> out;
-  for (const auto& t : body.triangles) out.push_back(see(body, t));
+  for (const auto& t : body.triangles) out.push_back(project_triangle(body, t));
   return out;
 }
 

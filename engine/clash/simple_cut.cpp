@@ -15,11 +15,11 @@ namespace lrb::penetration {
 SimpleCut::End SimpleCut::End::on_border(int edge, const Eigen::Vector3d& x, const double* const corners[3],
                                          SimplexId by) {
   const Eigen::Map<const Eigen::Vector3d> from(corners[edge]), to(corners[(edge + 1) % 3]);
-  const Eigen::Vector3d way = to - from;
-  const double length = stable_norm3(way);
+  const Eigen::Vector3d direction = to - from;
+  const double length = stable_norm3(direction);
   End end{{by.value(), 0}, edge};
   // Divide before the product, so that squares cannot overflow.
-  end.share = (x - from).dot(way / length) / length;
+  end.share = (x - from).dot(direction / length) / length;
   // If coordinates are larger than the edge, their rounding dominates.
   const double size = std::max({from.cwiseAbs().maxCoeff(), to.cwiseAbs().maxCoeff(), 0x1p-1000});
   end.rounding = kShareRounding * (1 + size / length * 0x1p-8);

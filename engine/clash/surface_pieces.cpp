@@ -337,7 +337,7 @@ class CutSurface {
     std::map<std::uint32_t, std::uint32_t> outside;  // component of the surface -> its pieces outside
     std::vector<bool> seen(node_count_, false);
     is_inside_.assign(node_count_, false);
-    const auto see = [&](std::uint32_t node, SimplexId s, const auto& where) {
+    const auto locate_group = [&](std::uint32_t node, SimplexId s, const auto& where) {
       const std::uint32_t group = nodes_.leader(node);
       // One point decides for the entire piece, because no piece crosses the other surface.
       if (seen[group]) return;
@@ -355,12 +355,12 @@ class CutSurface {
         VertexId v[3];
         body_.rep().simplex(s, v);
         // An uncut triangle: any corner will do.
-        see(s.value(), s, [&] { return locate(holder_, body_.world(v[0])); });
+        locate_group(s.value(), s, [&] { return locate(holder_, body_.world(v[0])); });
         continue;
       }
       // A cut triangle: one point for each cell.
       for (std::uint32_t i = 0; i < face->second.cell_count(); ++i)
-        see(face->second.first_node + i, s, [&] { return locate_cell(s, face->second, i); });
+        locate_group(face->second.first_node + i, s, [&] { return locate_cell(s, face->second, i); });
     }
     return out;
   }

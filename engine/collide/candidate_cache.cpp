@@ -300,9 +300,9 @@ void CandidateCache::find_spans(const TreeKernel& k, const Sweep& sweep) {
   kernel.margin = k.margin;
   // Cached corners of B are relative to of_[1].origin(), so the constant term is the displacement of that
   // origin.
-  const Vector3d way = sweep.dm * of_[1].origin() + sweep.dt / unit_;
+  const Vector3d direction = sweep.dm * of_[1].origin() + sweep.dt / unit_;
   for (int i = 0; i < 3; ++i) {
-    kernel.sweep_t[i] = static_cast<float>(way[i]);
+    kernel.sweep_t[i] = static_cast<float>(direction[i]);
     for (int j = 0; j < 3; ++j) kernel.sweep[i][j] = static_cast<float>(sweep.dm(i, j));
   }
   run_pair_kernel(kernel);
@@ -329,7 +329,7 @@ float CandidateCache::length_of(double distance) const {
 
 /// Returns a position in the sweep in the units of the pairs' intervals.
 float CandidateCache::position_of(const SweepPoint& where) const {
-  return is_swept_ ? static_cast<float>(where.at) : length_of(where.off);
+  return is_swept_ ? static_cast<float>(where.at) : length_of(where.offset);
 }
 
 std::size_t CandidateCache::choose(const SweepPoint& where) {
@@ -348,8 +348,8 @@ std::size_t CandidateCache::choose(const SweepPoint& where) {
 
 /// If two maps of B are in the sweep, so is every linear interpolation between them. If no surfaces intersect
 /// on that path, none has passed through another.
-bool CandidateCache::none_between(const SweepPoint& here, const SweepPoint& there) const {
-  const float x = position_of(here), y = position_of(there), spare = span_rounding();
+bool CandidateCache::none_between(const SweepPoint& current, const SweepPoint& there) const {
+  const float x = position_of(current), y = position_of(there), spare = span_rounding();
   // Compare intervals, grown by their rounding: linear in the number of pairs, without any geometry.
   const float first = std::min(x, y) - spare, last = std::max(x, y) + spare;
   for (std::size_t i = 0; i < pairs_.size(); ++i)

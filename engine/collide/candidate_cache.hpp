@@ -136,7 +136,7 @@ class CandidateCache {
   std::size_t choose(const SweepPoint& where);
 
   /// Returns true if no pair can intersect on the path between two positions in the sweep.
-  bool none_between(const SweepPoint& here, const SweepPoint& there) const;
+  bool none_between(const SweepPoint& current, const SweepPoint& there) const;
 
   /// An observer of update() that ignores all events.
   struct Unseen {
@@ -145,8 +145,8 @@ class CandidateCache {
   /// Determines the Meet of each chosen pair at the pose of k; all other pairs are disjoint. Calls
   /// exact(pair) where floats do not decide, and see(pair, meet, is_certain) for each chosen pair, in order.
   /// Returns true if the set of intersecting pairs or a Meet changed since the last update.
-  template <class Exact, class See = Unseen>
-  bool update(const TreeKernel& k, Exact&& exact, See&& see = {});
+  template <class Exact, class Visit = Unseen>
+  bool update(const TreeKernel& k, Exact&& exact, Visit&& visit = {});
 
   /// Appends the intersecting pairs, ascending.
   void append_meeting(CollideResult& result) const;
@@ -185,9 +185,9 @@ class CandidateCache {
   std::vector<Meeting> meeting_, before_;  ///< ascending: at the last update, and at the one before
 };
 
-template <class Exact, class See>
-bool CandidateCache::update(const TreeKernel& k, Exact&& exact, See&& see) {
-  constexpr bool kIsSeen = !std::is_same_v<std::remove_cvref_t<See>, Unseen>;
+template <class Exact, class Visit>
+bool CandidateCache::update(const TreeKernel& k, Exact&& exact, Visit&& visit) {
+  constexpr bool kIsSeen = !std::is_same_v<std::remove_cvref_t<Visit>, Unseen>;
   PairKernel kernel = kernel_at(k, chosen_places_);
   kernel.block_count = static_cast<std::uint32_t>((chosen_count_ + 7) / 8);
   kernel.verdicts = verdicts_.data();
@@ -205,7 +205,7 @@ bool CandidateCache::update(const TreeKernel& k, Exact&& exact, See&& see) {
       const exact::Meet meet = crosses    ? exact::Meet::cross
                                : rejected ? exact::Meet::disjoint
                                           : exact(pairs_[pair]);
-      see(pairs_[pair], meet, crosses || rejected);
+      visit(pairs_[pair], meet, crosses || rejected);
       if (meet != exact::Meet::disjoint) meeting_.push_back({pair, meet});
     }
   }

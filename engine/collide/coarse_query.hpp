@@ -72,14 +72,14 @@ std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const Col
 /// Returns true if a piece of either wrapper's boundary is in the other wrapper, or nullopt if `in_time()`,
 /// which is called before each point location, returns false. For wrappers whose faces do not intersect.
 /// Calls see(side, vertex, where) for each point.
-template <class InTime, class See>
-std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, See&& see) {
+template <class InTime, class Visit>
+std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, Visit&& visit) {
   for (const Side side : {Side::a, Side::b}) {
     QueryBody &inner = ctx[side], &outer = ctx[other(side)];
     for (const VertexId v : inner.component_vertices()) {
       if (!in_time()) return std::nullopt;
       const Where where = locate(outer, inner.world(v));
-      see(side, v, where);
+      visit(side, v, where);
       if (where != Where::outside) return true;
     }
   }
@@ -354,8 +354,8 @@ class CoarseQuery {
     found.meets.reserve(kLikelyPairs);
     if (!walk(request_, found, rules)) return false;
     sort(found);
-    const double off = off_body(step.a, a.world.pose()) + off_body(step.b, b.world.pose());
-    found.error_bound = (off + rules.margin) * (1 + kKernelRounding);
+    const double offset = off_body(step.a, a.world.pose()) + off_body(step.b, b.world.pose());
+    found.error_bound = (offset + rules.margin) * (1 + kKernelRounding);
     return true;
   }
 
@@ -409,7 +409,8 @@ class CoarseQuery {
 
   std::optional<bool> locate_wrappers(LimitedRules<Clock>& rules) {
     std::optional<bool> nested;
-    locate_in_phase(probe_, [&](const auto& see) { nested = wrappers_nested(ctx_, in_time(rules), see); });
+    locate_in_phase(probe_,
+                    [&](const auto& visit) { nested = wrappers_nested(ctx_, in_time(rules), visit); });
     return nested;
   }
 

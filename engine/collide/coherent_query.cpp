@@ -153,7 +153,7 @@ void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b, Probe& 
     query_from_scratch(probe);
     return;
   }
-  if (!motion_.see(pose_a, pose_b)) {
+  if (!motion_.record(pose_a, pose_b)) {
     // Not nearly rigid, or a reflection: the bounds on the relative motion do not hold.
     query_from_scratch(probe);
     return;
@@ -166,7 +166,7 @@ void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b, Probe& 
     // The last queries of a pause: the motion is tracked again, but no cache is made.
     query_from_scratch(probe);
     policy_.scratch_took(seconds_since(began));
-  } else if (has_cache_ && where.off <= sweep_.width) {
+  } else if (has_cache_ && where.offset <= sweep_.width) {
     // B is within the sweep, for which the cache is complete.
     ++statistics_.from_cache;
     answer_from_cache(where, probe);
@@ -354,7 +354,7 @@ bool CoherentQuery::Work::make_cache(const CachePolicy::Plan& plan, Probe& probe
   sweep_ = is_swept ? motion_.ahead(plan.steps) : motion_.about(plan.steps * usual_step_);
   // The current pose must lie in its own sweep. It does not where lengths overflow.
   const SweepPoint where = motion_.along(sweep_);
-  if (!(where.off <= sweep_.width)) return false;
+  if (!(where.offset <= sweep_.width)) return false;
   const double rounding = 4 * motion_.rounding();
   for (QueryBody& body : context_.body) body.begin_at_pose(request_.wrapper);
   // Traverse on A's axes: A at the identity, B at the middle of the sweep.

@@ -45,7 +45,7 @@ void see_edges(const Vector3d& p, const Vector3d& q, const Vector3d& r, const Ve
   // Parallel lines: a corner is among the closest points.
   if (!(det > 0)) return;
   const double x = (de * ew - ee * dw) / det, y = (dd * ew - de * dw) / det;
-  if (x >= 0 && x <= 1 && y >= 0 && y <= 1) out.see(p + x * d, r + y * e);
+  if (x >= 0 && x <= 1 && y >= 0 && y <= 1) out.add(p + x * d, r + y * e);
 }
 
 }  // namespace
@@ -61,8 +61,8 @@ NearPoints nearest_points(int dim, const Corners& a, const Corners& b) {
   };
   // Closest points of disjoint simplices include a corner, or are on an edge of each.
   for (int i = 0; i < dim; ++i) {
-    out.see(point(a[i]), on(point(a[i]), b));
-    out.see(on(point(b[i]), a), point(b[i]));
+    out.add(point(a[i]), on(point(a[i]), b));
+    out.add(on(point(b[i]), a), point(b[i]));
   }
   if (dim == 3)
     for (int i = 0; i < 3; ++i)
@@ -166,15 +166,15 @@ class Way {
     // The roots have no parents: add their own boxes.
     add_nodes({kWhole, kWhole});
     for (;;) {
-      const std::array<std::uint32_t, 2> here = {node(0), node(1)};
+      const std::array<std::uint32_t, 2> current = {node(0), node(1)};
       // Run the query's kernel on this pair of nodes.
-      const Stepper::Outcome outcome = stepper_.step({here[0], here[1]});
+      const Stepper::Outcome outcome = stepper_.step({current[0], current[1]});
       if (outcome.parts_whole) {
         if (at_[0] + at_[1] > 0) add_nodes({kWhole, kWhole});  // the roots' own boxes were added before
         return end_at_nodes();
       }
       // Two leaves: the simplices themselves are next.
-      if (stepper_.is_leaf(Side::a, here[0]) && stepper_.is_leaf(Side::b, here[1]))
+      if (stepper_.is_leaf(Side::a, current[0]) && stepper_.is_leaf(Side::b, current[1]))
         return compare_faces(outcome);
       // Descend in the same tree or trees as the query.
       const std::array<bool, 2> moves = moves_to(outcome);

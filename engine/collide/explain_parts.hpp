@@ -70,7 +70,7 @@ struct NearPoints {
   Eigen::Vector3d a, b;
   double distance_sq = std::numeric_limits<double>::infinity();
 
-  void see(const Eigen::Vector3d& of_a, const Eigen::Vector3d& of_b) {
+  void add(const Eigen::Vector3d& of_a, const Eigen::Vector3d& of_b) {
     const double d = (of_a - of_b).squaredNorm();
     if (d < distance_sq) a = of_a, b = of_b, distance_sq = d;
   }

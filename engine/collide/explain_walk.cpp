@@ -22,7 +22,7 @@ class NearestPairs {
  public:
   explicit NearestPairs(QueryContext& ctx) : ctx_(ctx) {}
 
-  void see(const SimplexPair& pair) {
+  void add(const SimplexPair& pair) {
     Corners a{}, b{};
     ctx_[Side::a].world.corners(pair.a, a.data());
     ctx_[Side::b].world.corners(pair.b, b.data());
@@ -54,11 +54,11 @@ class NearestBoxes {
  public:
   NearestBoxes(QueryContext& ctx, const Stepper& stepper) : ctx_(ctx), stepper_(stepper) {}
 
-  void see(const NodePair& pair, const Stepper::Outcome& outcome) {
+  void add(const NodePair& pair, const Stepper::Outcome& outcome) {
     // The nodes' own boxes were disjoint: their contents were not compared.
     if (outcome.parts_whole) {
       const auto whole = [&](Side side, std::uint32_t node) { return boxes(side, node, false).front(); };
-      return see(whole(Side::a, pair.a), whole(Side::b, pair.b), false);
+      return add(whole(Side::a, pair.a), whole(Side::b, pair.b), false);
     }
     const bool leaf_a = stepper_.is_leaf(Side::a, pair.a), leaf_b = stepper_.is_leaf(Side::b, pair.b);
     // The returned pairs show which nodes were descended. If there are no pairs, assume every node that is
@@ -76,7 +76,7 @@ class NearestBoxes {
         // A pair of children that was not returned was rejected. Faces have no such list, so all are
         // considered.
         const auto met = [&](const NodePair& c) { return c.a == a.node && c.b == b.node; };
-        if (faces || std::none_of(outcome.children.begin(), outcome.children.end(), met)) see(a, b, faces);
+        if (faces || std::none_of(outcome.children.begin(), outcome.children.end(), met)) add(a, b, faces);
       }
   }
 
@@ -100,7 +100,7 @@ class NearestBoxes {
     return out;
   }
 
-  void see(const Box& a, const Box& b, bool faces) {
+  void add(const Box& a, const Box& b, bool faces) {
     BoxPair pair;
     pair.node = {a.node, b.node};
     compare_boxes(a.box, b.box, pair, ctx_[Side::a].rep().dim());
@@ -218,11 +218,11 @@ WalkExplanation explain_walk(const LrbRep& a, const Pose& pose_a, const LrbRep& 
           !outcome.parts_whole && stepper.is_leaf(Side::a, pair.a) && stepper.is_leaf(Side::b, pair.b);
       out.face_pairs += outcome.face_pairs;
       // Closest boxes and faces are collected only if the surfaces do not intersect.
-      if (out.result.pairs.empty()) nearest_boxes.see(pair, outcome);
+      if (out.result.pairs.empty()) nearest_boxes.add(pair, outcome);
       out.left += outcome.candidates.size();
       for (const Candidate& c : outcome.candidates) {
         out.certain += c.certainty == Certainty::cross || c.certainty == Certainty::disjoint;
-        if (out.result.pairs.empty()) nearest.see({c.a, c.b});
+        if (out.result.pairs.empty()) nearest.add({c.a, c.b});
       }
       then.insert(then.end(), outcome.children.begin(), outcome.children.end());
     }

@@ -256,8 +256,8 @@ class Decider {
     const auto centroid = exact::RationalPoint::combination(corners, std::vector<double>(corners.size(), 1));
     const Eigen::Vector3d normal = normal_of(face);
     for (const double side : {-1.0, 1.0}) {
-      const Eigen::Vector3d off = centroid.rounded() + side * box.sizes().maxCoeff() * normal;
-      const exact::RationalPoint ends[] = {centroid, exact::RationalPoint(off.data())};
+      const Eigen::Vector3d offset = centroid.rounded() + side * box.sizes().maxCoeff() * normal;
+      const exact::RationalPoint ends[] = {centroid, exact::RationalPoint(offset.data())};
       for (const double share : kInteriorProbes) {
         // Decreasing distances from the plane: the body may be arbitrarily thin there.
         const double weights[] = {1 - share, share};

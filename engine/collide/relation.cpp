@@ -35,7 +35,7 @@ struct Direction {
 
   /// Maps a point to the frame in which the ray points along +x. Exact: coordinates are only permuted and
   /// negated.
-  void see(const double* x, int dim, double* out) const {
+  void to_ray_frame(const double* x, int dim, double* out) const {
     for (int k = 0; k < dim; ++k) {
       const double value = x[(axis + k) % dim];
       out[k] = k == 0 && backward ? -value : value;
@@ -133,14 +133,14 @@ class RayWalk {
       centre += f.axes.col(i) * midpoint;
       half[i] = f.axes.col(i) * (scale * 0.5 * kQuantizedMost);
     }
-    const Vector3d way = p_ - centre;
+    const Vector3d towards = p_ - centre;
     const auto is_beyond = [&](const Vector3d& d) {
       constexpr double kFarFromUnderflow = 0x1p-960;
       const double errors = f.grow * d.cwiseAbs().sum();
       // This near to underflow, products have no relative error bound.
       if (!(errors > kFarFromUnderflow)) return false;
       // Separating axis: the centre is further away along d than the box reaches.
-      return std::abs(d.dot(way)) >
+      return std::abs(d.dot(towards)) >
              std::abs(d.dot(half[0])) + std::abs(d.dot(half[1])) + std::abs(d.dot(half[2])) + errors;
     };
     const Matrix3d axes = f.axes / tree_.unit();  // about as long as 1
@@ -162,7 +162,7 @@ class RayWalk {
         least = left;
         direction_ = {axis, backward};
       }
-    direction_.see(point_, dim_, seen_);
+    direction_.to_ray_frame(point_, dim_, seen_);
   }
 
   /// Returns a bit for each child or simplex of a node that the ray may meet: it is proven to miss the world
@@ -181,16 +181,16 @@ class RayWalk {
     std::fill(std::begin(beyond), std::end(beyond), -std::numeric_limits<double>::infinity());
     for (int axis = 0; axis < dim_; ++axis) {
       const double x = f.axes(axis, 0), y = f.axes(axis, 1), z = f.axes(axis, 2);
-      double off[kTreeWidth];  // > 0: the centre of the box lies ahead on this axis
+      double offset[kTreeWidth];  // > 0: the centre of the box lies ahead on this axis
       for (std::uint32_t k = 0; k < kTreeWidth; ++k)
-        off[k] = f.origin[axis] - p_[axis] + x * centre[0][k] + y * centre[1][k] + z * centre[2][k];
+        offset[k] = f.origin[axis] - p_[axis] + x * centre[0][k] + y * centre[1][k] + z * centre[2][k];
       // Across the ray, the point must lie within the box's interval; along it, the box must not lie behind.
       const double sign = direction_.backward ? 1 : -1;
       for (std::uint32_t k = 0; k < kTreeWidth; ++k)
-        off[k] = axis != direction_.axis ? std::abs(off[k]) : sign * off[k];
+        offset[k] = axis != direction_.axis ? std::abs(offset[k]) : sign * offset[k];
       for (std::uint32_t k = 0; k < kTreeWidth; ++k)
-        beyond[k] = std::max(beyond[k], off[k] - (std::abs(x) * half[0][k] + std::abs(y) * half[1][k] +
-                                                  std::abs(z) * half[2][k] + f.grow));
+        beyond[k] = std::max(beyond[k], offset[k] - (std::abs(x) * half[0][k] + std::abs(y) * half[1][k] +
+                                                     std::abs(z) * half[2][k] + f.grow));
     }
     std::uint32_t bits = 0;
     for (std::uint32_t k = 0; k < n.count; ++k) bits |= static_cast<std::uint32_t>(!(beyond[k] > 0)) << k;
@@ -216,7 +216,7 @@ class RayWalk {
     if constexpr (kMayTurn) {
       double seen[3][3];
       for (int k = 0; k < dim_; ++k) {
-        direction_.see(corners[k], dim_, seen[k]);
+        direction_.to_ray_frame(corners[k], dim_, seen[k]);
         corners[k] = seen[k];
       }
       hit = dim_ == 3 ? exact::ray_crosses(seen_, corners) : exact::ray_crosses_2d(seen_, corners);
@@ -238,17 +238,17 @@ class RayWalk {
   bool is_strictly_inside(const double* const corners[3]) {
     Vector3d x[3];
     for (int k = 0; k < 3; ++k) x[k] = Eigen::Map<const Vector3d>(corners[k]);
-    if (faces_here_ == 1) std::copy(std::begin(x), std::end(x), here_);
+    if (faces_here_ == 1) std::copy(std::begin(x), std::end(x), current_);
     for (const Vector3d& corner : x)
-      if (exact::orient3d(here_[0].data(), here_[1].data(), here_[2].data(), corner.data()) != 0)
+      if (exact::orient3d(current_[0].data(), current_[1].data(), current_[2].data(), corner.data()) != 0)
         return false;
     // A point beside the plane: along an axis that is not parallel to it.
     for (int axis = 0; axis < 3; ++axis) {
-      Vector3d off = x[0];
-      off[axis] += (x[1] - x[0]).cwiseAbs().maxCoeff() + (x[2] - x[0]).cwiseAbs().maxCoeff();
-      if (exact::orient3d(corners[0], corners[1], corners[2], off.data()) == 0) continue;
+      Vector3d offset = x[0];
+      offset[axis] += (x[1] - x[0]).cwiseAbs().maxCoeff() + (x[2] - x[0]).cwiseAbs().maxCoeff();
+      if (exact::orient3d(corners[0], corners[1], corners[2], offset.data()) == 0) continue;
       for (int k = 0; k < 3; ++k)
-        if (exact::orient3d(corners[k], corners[(k + 1) % 3], off.data(), point_) == 0) return false;
+        if (exact::orient3d(corners[k], corners[(k + 1) % 3], offset.data(), point_) == 0) return false;
       return true;
     }
     return false;
@@ -266,7 +266,7 @@ class RayWalk {
   bool on_surface_ = false;
   bool passes_surface_ = false;  ///< for beside()
   int faces_here_ = 0;           ///< that contain the point
-  Vector3d here_[3];             ///< corners of the first one
+  Vector3d current_[3];          ///< corners of the first one
 };
 
 }  // namespace

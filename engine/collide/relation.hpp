@@ -43,8 +43,8 @@ void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, Collide
 /// component. A body counts as inside the other even if only some of its components are enclosed, because the
 /// bodies are then not separate. `in_time()` is called before each point location; once it returns false,
 /// this returns false and sets no relation. Calls see(side, vertex, where) for each point.
-template <class InTime, class See>
-bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time, See&& see) {
+template <class InTime, class Visit>
+bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time, Visit&& visit) {
   if (decide_without_points(ctx, result)) return true;
   Enclosed in_other[2];
   for (const Side side : {Side::a, Side::b}) {
@@ -54,7 +54,7 @@ bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time,
       if (!in_time()) return false;
       ++count.components;
       const Where where = locate(outer, inner.world(v));
-      see(side, v, where);
+      visit(side, v, where);
       count.inside += where == Where::inside;
     }
   }
@@ -73,7 +73,7 @@ void decide_relation(QueryContext& ctx, CollideResult& result);
 template <class Probe, class InTime>
 bool decide_relation_watched(QueryContext& ctx, CollideResult& result, Probe& probe, InTime&& in_time) {
   bool decided = false;
-  locate_in_phase(probe, [&](const auto& see) { decided = decide_relation(ctx, result, in_time, see); });
+  locate_in_phase(probe, [&](const auto& visit) { decided = decide_relation(ctx, result, in_time, visit); });
   return decided;
 }
 

@@ -54,7 +54,7 @@ RelativeMotion::RelativeMotion(const LrbRep& a, const LrbRep& b) : a_(&a), b_(&b
   radius_ = static_cast<double>(root.radius) * b.tree().unit();
 }
 
-bool RelativeMotion::see(const Pose& pose_a, const Pose& pose_b) {
+bool RelativeMotion::record(const Pose& pose_a, const Pose& pose_b) {
   const double defect_a = rotation_defect(pose_a.r);
   earlier_ = last_;
   last_ = now_;
@@ -89,13 +89,13 @@ double RelativeMotion::step() const {
 
 /// Returns the sweep over the next 2 `steps` steps, extended a little at both ends.
 Sweep RelativeMotion::sweep_of(int steps) const {
-  const RelativePose way = motion_between(last_, now_);
+  const RelativePose direction = motion_between(last_, now_);
   Sweep s;
   // Repeat the last step: `steps` times to the mid_pose, and as often again to the end.
   RelativePose end = now_;
-  for (int i = 0; i < steps; ++i) end = after(way, end);
+  for (int i = 0; i < steps; ++i) end = after(direction, end);
   s.mid_pose = end;
-  for (int i = 0; i < steps; ++i) end = after(way, end);
+  for (int i = 0; i < steps; ++i) end = after(direction, end);
   // Half the chord from now to the end, extended by kBeyondEnd steps at either end.
   const double longer = 1 + kBeyondEnd / steps;
   s.dm = (end.m - now_.m) * (longer / 2);
@@ -132,15 +132,15 @@ Sweep RelativeMotion::ahead(double steps) const {
   // Extrapolation errors grow quadratically: n^2 / 2 deviations in n = 2 half steps.
   ahead.width = kMinWidth * motion(last_, now_) + 2 * half * half * deviation();
   // B deviates from the chord already, and will deviate about as much at the other end.
-  ahead.width = std::max(ahead.width, kSpareWidth * along(ahead).off);
+  ahead.width = std::max(ahead.width, kSpareWidth * along(ahead).offset);
   return ahead;
 }
 
 Sweep RelativeMotion::about(double width) const {
-  Sweep here;
-  here.mid_pose = now_;
-  here.width = width;
-  return here;
+  Sweep current;
+  current.mid_pose = now_;
+  current.width = width;
+  return current;
 }
 
 SweepPoint RelativeMotion::along(const Sweep& s) const {
@@ -149,10 +149,10 @@ SweepPoint RelativeMotion::along(const Sweep& s) const {
   const Matrix3d m = now_.m - s.mid_pose.m;
   const Vector3d t = now_.t - s.mid_pose.t;
   // Least squares over B's points, approximated by a ball.
-  const Vector3d way = (s.dm * centre_ + s.dt) / s.length, gone = (m * centre_ + t) / s.length;
+  const Vector3d direction = (s.dm * centre_ + s.dt) / s.length, gone = (m * centre_ + t) / s.length;
   const double spread = radius_ / s.length * (radius_ / s.length) / 2;
-  const double nearest = (gone.dot(way) + spread * m.cwiseProduct(s.dm).sum()) /
-                         (way.squaredNorm() + spread * s.dm.squaredNorm());
+  const double nearest = (gone.dot(direction) + spread * m.cwiseProduct(s.dm).sum()) /
+                         (direction.squaredNorm() + spread * s.dm.squaredNorm());
   const double at = nearest > -1 ? std::min(nearest, 1.0) : -1;  // also -1 if overflow made it NaN
   // Whatever the fit, the residual is a valid bound: a poor fit only costs a new cache.
   const Matrix3d off_m = m - at * s.dm;

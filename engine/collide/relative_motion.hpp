@@ -41,7 +41,7 @@ struct Sweep {
 /// Position of B in a sweep: displaced from the middle by `at` times (dm x + dt), with a deviation of at most
 /// `off` for any point of B.
 struct SweepPoint {
-  double at = 0, off = 0;
+  double at = 0, offset = 0;
 };
 
 class RelativeMotion {
@@ -52,7 +52,7 @@ class RelativeMotion {
 
   /// Records the bodies' current poses. Returns false, and forgets all poses, if the motion deviates from a
   /// rigid one by more than kRigid.
-  bool see(const Pose& pose_a, const Pose& pose_b);
+  bool record(const Pose& pose_a, const Pose& pose_b);
   /// Forgets the recorded poses, because they do not predict the next one.
   void forget() { seen_ = 0; }
 

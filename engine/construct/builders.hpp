@@ -25,8 +25,8 @@ LrbData build_by_chains(const Mesh& mesh, const std::vector<FaceId>& meeting, co
 
 /// Acceptance limits for the caps of a pass.
 struct CapGoal {
-  double worth;    ///< maximum ratio of a cap's faces to the faces it covers
-  double off = 0;  ///< maximum deviation of a cap from the body, mesh units; 0: unlimited
+  double worth;          ///< maximum ratio of a cap's faces to the faces it covers
+  double deviation = 0;  ///< maximum deviation of a cap from the body, mesh units; 0: unlimited
 };
 
 /// Deviation limits of the passes, relative to the body's largest side: the first, the last, and the factor
@@ -70,11 +70,11 @@ inline double fitting_worth(std::size_t front_faces, std::size_t real_faces, dou
 /// `gain` of the faces is the last at its deviation.
 template <class Faces, class Pass>
 void fit_fronts(double size, std::uint32_t least, double gain, Faces faces, Pass pass) {
-  for (double off = kFirstOff * size; off < kLastOff * size; off *= kOffStep) {
+  for (double deviation = kFirstOff * size; deviation < kLastOff * size; deviation *= kOffStep) {
     for (int i = 0; i < kPassesForOff; ++i) {
       const std::uint32_t before = faces();
       if (before <= least) return;
-      pass(before, off);
+      pass(before, deviation);
       if (faces() > gain * before) break;
     }
   }

@@ -94,8 +94,8 @@ class ChainBuilder : WholeFronts<FrontLoops> {
     constexpr double kGain = 0.8;
     fit_fronts(
         box.sizes().maxCoeff(), kFitDownTo, kGain, [&] { return front_.segment_count(); },
-        [&](std::uint32_t before, double off) {
-          pass(BuildStage::fit, {fitting_worth(before, frozen_.size()), off});
+        [&](std::uint32_t before, double deviation) {
+          pass(BuildStage::fit, {fitting_worth(before, frozen_.size()), deviation});
         });
   }
 
@@ -122,7 +122,7 @@ class ChainBuilder : WholeFronts<FrontLoops> {
     // Step 1: an AABB tree over the front, updated with the caps of this pass.
     const std::vector<Slot> slots = front_.alive_slots();
     AabbTree tree(slots, front_.slot_count(), [&](Slot s) { return box_of(front_, s); });
-    passes_.report_begin(stage, front_.segment_count(), goal.off);
+    passes_.report_begin(stage, front_.segment_count(), goal.deviation);
     PassEnd end;
     // Step 2: exclude frozen segments, and below all segments that this pass has covered or made.
     std::vector<bool> taken(front_.slot_count(), false);
@@ -136,7 +136,7 @@ class ChainBuilder : WholeFronts<FrontLoops> {
       // Prove against the current front, not the front at the time of the proposal.
       const CapVerdict verdict =
           chain.empty() ? CapVerdict::overlaps : judge_chain_cap(front_, tree, p.cap, component_boxes_);
-      report_cap(p, verdict, goal.off);
+      report_cap(p, verdict, goal.deviation);
       if (verdict != CapVerdict::accepted) continue;
       for (const Slot s : replace(p.cap, chain)) {
         // New segments are not covered again in this pass, so that a region and the one above it differ in
@@ -192,7 +192,8 @@ class ChainBuilder : WholeFronts<FrontLoops> {
     if (cap->segments() >= length || cap->segments() > goal.worth * length)
       return {0, *cap, CapVerdict::too_many_faces, start};
     // Fitting: the deviation must be within this pass's limit.
-    if (goal.off > 0 && !measure_cap(front_, *cap, goal.off)) return {0, *cap, CapVerdict::too_thick, start};
+    if (goal.deviation > 0 && !measure_cap(front_, *cap, goal.deviation))
+      return {0, *cap, CapVerdict::too_thick, start};
     // The price of a saved segment.
     return {cap->area / (length - cap->segments()), *cap, CapVerdict::accepted, start};
   }

@@ -88,8 +88,8 @@ double off_by_chain(const FrontLoops& front, const std::vector<Slot>& chain, con
   for (const Slot s : chain) {
     // Deviation at the foot: interpolated between the ends, plus the segment's own excess.
     const SimplexPoint near = nearest_on_segment(q, front.start(s), front.end(s));
-    least = std::min(least, std::sqrt(near.distance_sq) + near.weight[0] * front.off(front[s].a) +
-                                near.weight[1] * front.off(front[s].b) + front[s].excess_deviation);
+    least = std::min(least, std::sqrt(near.distance_sq) + near.weight[0] * front.deviation(front[s].a) +
+                                near.weight[1] * front.deviation(front[s].b) + front[s].excess_deviation);
   }
   return least;
 }
@@ -103,11 +103,11 @@ bool excess_of_segment(const FrontLoops& front, const std::vector<Slot>& chain, 
   excess_deviation = 0;
   for (int i = 1; i < kParts; ++i) {
     const double t = static_cast<double>(i) / kParts;
-    const double off = off_by_chain(front, chain, a + t * (b - a));
+    const double deviation = off_by_chain(front, chain, a + t * (b - a));
     // Written so that NaN is rejected.
-    if (!(off <= most)) return false;
+    if (!(deviation <= most)) return false;
     // Store only the excess over linear interpolation, because the ends have their own deviations.
-    excess_deviation = std::max(excess_deviation, off - (1 - t) * off_a - t * off_b);
+    excess_deviation = std::max(excess_deviation, deviation - (1 - t) * off_a - t * off_b);
   }
   return true;
 }
@@ -184,21 +184,21 @@ bool measure_cap(const FrontLoops& front, ChainCap& cap, double most) {
   const VertexId first = front[chain.front()].a, last = front[chain.back()].b;
   // The chord: one segment between two vertices of known deviation.
   if (!cap.apex)
-    return excess_of_segment(front, chain, front.x(first), front.off(first), front.x(last), front.off(last),
-                             most, cap.excess_deviation[0]);
+    return excess_of_segment(front, chain, front.x(first), front.deviation(first), front.x(last),
+                             front.deviation(last), most, cap.excess_deviation[0]);
   // The apex first, because its deviation is used for both segments.
   cap.apex_off = off_by_chain(front, chain, *cap.apex);
   return cap.apex_off <= most &&
-         excess_of_segment(front, chain, front.x(first), front.off(first), *cap.apex, cap.apex_off, most,
-                           cap.excess_deviation[0]) &&
-         excess_of_segment(front, chain, *cap.apex, cap.apex_off, front.x(last), front.off(last), most,
+         excess_of_segment(front, chain, front.x(first), front.deviation(first), *cap.apex, cap.apex_off,
+                           most, cap.excess_deviation[0]) &&
+         excess_of_segment(front, chain, *cap.apex, cap.apex_off, front.x(last), front.deviation(last), most,
                            cap.excess_deviation[1]);
 }
 
 double off_of(const FrontLoops& front, const ChainCap& cap) {
   const std::vector<Slot> chain = chain_of(front, cap.first, cap.length);
   // On each segment: the larger deviation of its ends, plus its excess.
-  const double first = front.off(front[chain.front()].a), last = front.off(front[chain.back()].b);
+  const double first = front.deviation(front[chain.front()].a), last = front.deviation(front[chain.back()].b);
   if (!cap.apex) return std::max(first, last) + cap.excess_deviation[0];
   return std::max(std::max(first, cap.apex_off) + cap.excess_deviation[0],
                   std::max(cap.apex_off, last) + cap.excess_deviation[1]);
@@ -245,7 +245,7 @@ CapVerdict judge_chain_cap(const FrontLoops& front, const AabbTree& tree, const 
   return verdict;
 }
 
-FrontLoops::FrontLoops(const Mesh& mesh) : points_(mesh.vertices), off_(mesh.vertices.size(), 0) {
+FrontLoops::FrontLoops(const Mesh& mesh) : points_(mesh.vertices), deviation_(mesh.vertices.size(), 0) {
   // Every vertex has exactly one outgoing segment, which follows the incoming one.
   std::vector<Slot> leaving(points_.size(), kNull);
   for (FaceId f = 0; f < mesh.face_count(); ++f) {
@@ -271,9 +271,9 @@ std::vector<FrontLoops::Slot> FrontLoops::alive_slots() const {
   return slots;
 }
 
-VertexId FrontLoops::add_point(const Eigen::Vector3d& x, double off) {
+VertexId FrontLoops::add_point(const Eigen::Vector3d& x, double deviation) {
   points_.push_back(x);
-  off_.push_back(off);
+  deviation_.push_back(deviation);
   return static_cast<VertexId>(points_.size() - 1);
 }
 

@@ -47,9 +47,9 @@ class FrontLoops {
   std::vector<Slot> alive_slots() const;
   /// Returns the deviation of a vertex from the body: 0 for the mesh's own vertices, else an estimate; mesh
   /// units.
-  double off(VertexId v) const { return off_[v]; }
+  double deviation(VertexId v) const { return deviation_[v]; }
 
-  VertexId add_point(const Eigen::Vector3d& x, double off = 0);
+  VertexId add_point(const Eigen::Vector3d& x, double deviation = 0);
   void set_excess_deviation(Slot s, double excess_deviation) {
     segments_[s].excess_deviation = excess_deviation;
   }
@@ -65,7 +65,7 @@ class FrontLoops {
 
  private:
   std::vector<Eigen::Vector3d> points_;
-  std::vector<double> off_;  ///< (|points|)
+  std::vector<double> deviation_;  ///< (|points|)
   std::vector<Segment> segments_;
   std::uint32_t alive_ = 0, components_ = 0;
 };

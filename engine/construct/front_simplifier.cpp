@@ -414,8 +414,8 @@ void FrontSimplifier::evaluate(const QueuedCollapse& c) {
     return queue_.push({cost, c.u, c.v, c.onto_v});
   // Step 4: the deviation, of fans that do not fold back over their neighbours.
   if (geometry_.folds(star_, w)) return refuse(CapVerdict::turns_inward, kNever);
-  if (const float off = body_ ? excess(star_, w) : 0; off > 0)
-    return refuse(CapVerdict::too_thick, std::max(off, kWake * limit_));
+  if (const float deviation = body_ ? excess(star_, w) : 0; deviation > 0)
+    return refuse(CapVerdict::too_thick, std::max(deviation, kWake * limit_));
   // Step 5: the exact tests.
   if (!geometry_.is_strictly_in_front(star_, w)) return refuse(CapVerdict::no_place, kNever);
   if (open_.was_restored()) {
@@ -555,13 +555,14 @@ void FrontSimplifier::notify(const OpenFront::Lid& lid, CapVerdict verdict) cons
   const VertexId first = vertices.empty() ? open_.id(inside.front()) : vertices.front();
   options_.probe->patch({first, static_cast<std::uint32_t>(floor.size()),
                          static_cast<std::uint32_t>(vertices.size()), vertices});
-  float off = 0;
-  for (const Index f : lid.faces) off = std::max(off, open_.state(f).off);
+  float deviation = 0;
+  for (const Index f : lid.faces) deviation = std::max(deviation, open_.state(f).deviation);
   // What holds back a lid of too many faces is why its last collapse was refused.
   if (verdict == CapVerdict::too_many_faces) verdict = open_.held_by(lid.component);
-  options_.probe->cap({static_cast<std::uint32_t>(lid.faces.size()), static_cast<std::uint32_t>(floor.size()),
-                       verdict, open_.is_careful(lid.component),
-                       verdict == CapVerdict::accepted && body_ ? std::min(off, limit_) * open_.unit() : -1});
+  options_.probe->cap(
+      {static_cast<std::uint32_t>(lid.faces.size()), static_cast<std::uint32_t>(floor.size()), verdict,
+       open_.is_careful(lid.component),
+       verdict == CapVerdict::accepted && body_ ? std::min(deviation, limit_) * open_.unit() : -1});
 }
 
 }  // namespace lrb::construct

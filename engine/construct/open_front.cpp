@@ -261,7 +261,7 @@ void OpenFront::set_across(Index f, Index a, Index b, Index to) {
 }
 
 Index OpenFront::collapse(const Star& star, const Union& united, const Vector3& at,
-                          std::span<const Slot> hints, float off) {
+                          std::span<const Slot> hints, float deviation) {
   ++time_;
   const Index c = merge(star, united);
   const std::size_t n = star.rim.size();
@@ -291,7 +291,7 @@ Index OpenFront::collapse(const Star& star, const Union& united, const Vector3& 
     State& state = states_[fresh_[k]];
     state = {};
     if (!hints.empty()) state.hint = hints[k];
-    state.off = off;
+    state.deviation = deviation;
     state.alive = true;
     set_across(r.across, r.b, r.a, fresh_[k]);
     face_of_[r.a] = fresh_[k];
@@ -357,9 +357,9 @@ bool OpenFront::flip_outward(Index component, Index f, int i, Index* flipped) {
   const Index h = new_face(), k = new_face();
   cover(f, component);
   cover(g, component);
-  const float off = std::max(states_[f].off, states_[g].off);
-  put(h, component, {b, c, w}, {beyond_bc, k, beyond_wb}, states_[f].hint, off);
-  put(k, component, {c, a, w}, {beyond_ca, beyond_aw, h}, states_[g].hint, off);
+  const float deviation = std::max(states_[f].deviation, states_[g].deviation);
+  put(h, component, {b, c, w}, {beyond_bc, k, beyond_wb}, states_[f].hint, deviation);
+  put(k, component, {c, a, w}, {beyond_ca, beyond_aw, h}, states_[g].hint, deviation);
   set_across(beyond_bc, c, b, h);
   set_across(beyond_wb, b, w, h);
   set_across(beyond_ca, a, c, k);
@@ -369,12 +369,12 @@ bool OpenFront::flip_outward(Index component, Index f, int i, Index* flipped) {
 }
 
 void OpenFront::put(Index n, Index component, const std::array<Index, 3>& v,
-                    const std::array<Index, 3>& across, Slot hint, float off) {
+                    const std::array<Index, 3>& across, Slot hint, float deviation) {
   faces_[n].v = v, faces_[n].across = across, faces_[n].component = component;
   set_plane(faces_[n]);
   states_[n] = {};
   states_[n].hint = hint;
-  states_[n].off = off;
+  states_[n].deviation = deviation;
   states_[n].alive = true;
   for (const Index corner : v) face_of_[corner] = n, changed_at_[corner] = time_;
 }
@@ -388,7 +388,7 @@ std::array<Index, 3> OpenFront::raise(Index component, Index f, const Vector3& a
   for (int i = 0; i < 3; ++i) {
     const Index a = own.v[i], b = own.v[(i + 1) % 3];
     put(fresh[i], component, {a, b, w}, {own.across[i], fresh[(i + 1) % 3], fresh[(i + 2) % 3]},
-        states_[f].hint, states_[f].off);
+        states_[f].hint, states_[f].deviation);
     set_across(own.across[i], b, a, fresh[i]);
   }
   return fresh;
@@ -398,7 +398,7 @@ Index OpenFront::keep(Index component, Index f) {
   const Index fresh = new_face();
   const Face own = faces_[f];
   cover(f, component);
-  put(fresh, component, own.v, own.across, states_[f].hint, states_[f].off);
+  put(fresh, component, own.v, own.across, states_[f].hint, states_[f].deviation);
   for (int i = 0; i < 3; ++i) set_across(own.across[i], own.v[(i + 1) % 3], own.v[i], fresh);
   return fresh;
 }

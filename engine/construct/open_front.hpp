@@ -67,7 +67,7 @@ class OpenFront {
   struct State {
     Slot slot = kNull;         ///< in the committed front; kNull: in a lid
     Slot hint = 0;             ///< a triangle of the mesh near it
-    float off = 0;             ///< estimate of the largest deviation from the mesh; unit()
+    float deviation = 0;       ///< estimate of the largest deviation from the mesh; unit()
     float excluded_below = 0;  ///< not to be covered while the deviation limit is below this
     bool alive = false;
     bool careful = false;                       ///< it was in a component that failed its proof
@@ -145,7 +145,7 @@ class OpenFront {
   /// Replaces the star by a fan from its vertex v, or from a new vertex at `w`. `united`: of all its faces.
   /// `hints` (rim, or empty), `off`: of the new faces. Returns the fan's vertex.
   Index collapse(const Star& star, const Union& united, const Vector3& w, std::span<const Slot> hints,
-                 float off);
+                 float deviation);
   /// A committed face is part of a polygon of the mesh, of which the component has covered other parts.
   /// Replaces its edge number i, which it shares with the lid, by the other diagonal of the two faces, if the
   /// surface then is in front of them and remains one. The face becomes part of the floor.
@@ -198,7 +198,7 @@ class OpenFront {
   void cover(Index f, Index component);
   void set_across(Index f, Index a, Index b, Index to);
   void put(Index n, Index component, const std::array<Index, 3>& v, const std::array<Index, 3>& across,
-           Slot hint, float off);
+           Slot hint, float deviation);
 
   const FrontMesh& front_;
   const std::size_t real_faces_;

@@ -63,8 +63,10 @@ bool SurfaceWalk::find_within(const Point& p, Slot& hint, float enough) const {
   while (top > 0) {
     const std::uint32_t n = stack[--top];
     const Node& node = nodes_[n];
-    const Point off = (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0f);
-    if (!((off[0] * off[0] + off[1] * off[1]) + off[2] * off[2] <= enough)) continue;
+    const Point deviation = (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0f);
+    if (!((deviation[0] * deviation[0] + deviation[1] * deviation[1]) + deviation[2] * deviation[2] <=
+          enough))
+      continue;
     if (node.right != 0) {
       stack[top++] = node.right;
       stack[top++] = n + 1;

@@ -71,7 +71,7 @@ class WorldWalk {
   void boxes_of(const Body& body, const TreeNode& node, std::vector<Box>& out) const;
   static double gap_between(const Box& a, const Box& b);
   void open(const Waiting& pair);
-  void see(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves);
+  void add_pair(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves);
 
   NearestPairs& found_;
   int exponent_;   ///< the unit of the traversal is 2^exponent_
@@ -290,11 +290,11 @@ double scaled_down(double x, int exponent) {
 }
 
 /// Returns axes whose first one points along `way`, or the world's axes if `way` has no direction.
-Matrix3d axes_along(const Vector3d& way) {
-  const double length = stable_norm3(way);
+Matrix3d axes_along(const Vector3d& towards) {
+  const double length = stable_norm3(towards);
   if (!(length > 0) || !std::isfinite(length)) return Matrix3d::Identity();
   // Householder reflection that maps the x axis to `way`. It is symmetric, so its first row is `way`.
-  const Vector3d mirror = Vector3d::UnitX() - way / length;
+  const Vector3d mirror = Vector3d::UnitX() - towards / length;
   constexpr double kNearlyX = 1e-6;
   // Almost along x: the mirror's normal would consist of rounding errors, and the world's axes serve as well.
   if (mirror.squaredNorm() < kNearlyX) return Matrix3d::Identity();
@@ -365,7 +365,7 @@ double WorldWalk::gap_between(const Box& a, const Box& b) {
   return sum > 0 ? std::sqrt(sum) * kRootDown : 0;
 }
 
-void WorldWalk::see(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves) {
+void WorldWalk::add_pair(const Waiting& parent, std::uint32_t a, std::uint32_t b, double bound, bool leaves) {
   // Children are inside their parents, so the parents' bound is valid for them.
   bound = std::max(bound, parent.bound);
   if (bound > 0 && bound >= std::ldexp(found_.dropped_from(), -exponent_)) {
@@ -410,9 +410,9 @@ void WorldWalk::open(const Waiting& pair) {
     for (std::uint32_t j = 0; j < boxes_[1].size(); ++j) {
       const double bound = gap_between(boxes_[0][i], boxes_[1][j]);
       if (leaves)
-        see(pair, i, j, bound, true);
+        add_pair(pair, i, j, bound, true);
       else
-        see(pair, open_a ? a.first + i : pair.a, open_b ? b.first + j : pair.b, bound, false);
+        add_pair(pair, open_a ? a.first + i : pair.a, open_b ? b.first + j : pair.b, bound, false);
     }
 }
 

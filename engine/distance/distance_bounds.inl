@@ -15,13 +15,14 @@ inline float dot3(const float* x, const float* y) {
 
 /// Normalises `way`, which is on a node's axes, and writes it on the axes of its body. Returns false if it is
 /// too short.
-inline bool direction_of(const TreeNode& n, const float* way, float* direction) {
+inline bool direction_of(const TreeNode& n, const float* towards, float* direction) {
   // Above this length the sum of squares, 2^-120, is a normal float.
   constexpr float kLeast = 0x1p-60F;
-  const float length = __builtin_sqrtf(dot3(way, way));
+  const float length = __builtin_sqrtf(dot3(towards, towards));
   if (!(length > kLeast)) return false;
   for (int i = 0; i < 3; ++i)
-    direction[i] = (n.frame[0][i] * way[0] + n.frame[1][i] * way[1] + n.frame[2][i] * way[2]) / length;
+    direction[i] =
+        (n.frame[0][i] * towards[0] + n.frame[1][i] * towards[1] + n.frame[2][i] * towards[2]) / length;
   return true;
 }
 
@@ -30,7 +31,7 @@ inline bool direction_of(const TreeNode& n, const float* way, float* direction) 
 struct BoxGaps {
   Float8 square{}, most = splat(-__builtin_inff());
 
-  void see(const Float8* centre, const Float8* half, const float* other_centre, const float* other_half) {
+  void add(const Float8* centre, const Float8* half, const float* other_centre, const float* other_half) {
     Float8 sum{};
     for (int i = 0; i < 3; ++i) {
       // Signed gap of the projections on axis i; negative if they overlap.
@@ -55,8 +56,8 @@ struct BoxGaps {
 inline Float8 bounds_of(const Row& row, const Boxes& own_b, const Turned& bt, Float8 other) {
   BoxGaps gaps;
   // On A's axes, then on B's: the six face normals of the separating axis test (Gottschalk et al. 1996).
-  gaps.see(bt.centre, bt.half, row.own_centre, row.own_half);
-  gaps.see(own_b.centre, own_b.half, row.turned_centre, row.turned_half);
+  gaps.add(bt.centre, bt.half, row.own_centre, row.own_half);
+  gaps.add(own_b.centre, own_b.half, row.turned_centre, row.turned_half);
   return gaps.bound(other);
 }
 

@@ -21,7 +21,7 @@ struct WaitingNodes {
   std::uint32_t next;  ///< the next entry of the same list; kNoEntry: none
   /// Of a pair whose bound was raised: the direction of the slab between them, on A's axes: unit length, or
   /// 0.
-  float way[3];
+  float towards[3];
 };
 inline constexpr std::uint32_t kNoEntry = ~0U;
 

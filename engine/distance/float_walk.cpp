@@ -64,8 +64,8 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 Eigen::Vector3d direction_of(const DistanceContext& context, const NearestPairs& found,
                              const TreeKernel& tree) {
   // If a pair was measured, the direction between its closest points, mapped to A's axes by the transpose.
-  const Eigen::Vector3d way = context.query.body[0].world.pose().r.transpose() * found.way();
-  if (way.squaredNorm() > 0) return way.normalized();
+  const Eigen::Vector3d towards = context.query.body[0].world.pose().r.transpose() * found.towards();
+  if (towards.squaredNorm() > 0) return towards.normalized();
   // Otherwise the direction between the origins of the roots.
   Eigen::Vector3d between_centres;
   for (int i = 0; i < 3; ++i) {

@@ -58,9 +58,9 @@ using Edges = EdgesOf<Float8>;
 /// along the edges from its first corner to the others; the other triangle's point is then a corner.
 template <class V>
 struct FeaturePoints {
-  V way[3], square;  ///< from A to B, and its squared length
-  int on[2];         ///< on A and B: the number of the edge or corner; kOnFace
-  V share[2];        ///< on A's edge and on B's, or both on a face
+  V towards[3], square;  ///< from A to B, and its squared length
+  int on[2];             ///< on A and B: the number of the edge or corner; kOnFace
+  V share[2];            ///< on A's edge and on B's, or both on a face
 };
 constexpr int kOnFace = 3;
 
@@ -81,8 +81,8 @@ inline void edge_to_edge(const CornersOf<V>& a, const EdgesOf<V>& of_a, int i, c
   // segments.
   const V t = clamp_share((uv * s - vw) * of_b.per_square[j]);
   s = clamp_share((uv * t + uw) * of_a.per_square[i]);
-  for (int x = 0; x < 3; ++x) p.way[x] = between[x] + t * v[x] - s * u[x];
-  p.square = dot(p.way, p.way);
+  for (int x = 0; x < 3; ++x) p.towards[x] = between[x] + t * v[x] - s * u[x];
+  p.square = dot(p.towards, p.towards);
   p.on[0] = i, p.on[1] = j, p.share[0] = s, p.share[1] = t;
   keep(p);
 }
@@ -108,9 +108,9 @@ inline void corners_to_face(const CornersOf<V>& t, const EdgesOf<V>& of, const C
     const auto inside = both(both(greater(s, V{}), greater(rest, V{})), greater(splat_as(V{}, 1), s + rest));
     for (int x = 0; x < 3; ++x) {
       const V d = w[x] - s * u[x] - rest * v[x];
-      p.way[x] = kFace == 0 ? d : -d;
+      p.towards[x] = kFace == 0 ? d : -d;
     }
-    p.square = select(inside, dot(p.way, p.way), splat_as(V{}, __builtin_inff()));
+    p.square = select(inside, dot(p.towards, p.towards), splat_as(V{}, __builtin_inff()));
     p.on[kFace] = kOnFace, p.on[1 - kFace] = corner, p.share[0] = s, p.share[1] = rest;
     keep(p);
   }
@@ -164,7 +164,7 @@ inline Float8 slab(const Float8* direction, const Corners& a, const Corners& b, 
 /// Float bounds on the distances of eight pairs, query units.
 struct Distances {
   Float8 lower, upper;  ///< lower: 0 if nothing is proven
-  Float8 way[3];        ///< vector between the points that gave `upper`
+  Float8 towards[3];    ///< vector between the points that gave `upper`
 
   /// Error of the upper bound: each coordinate of the difference of two points has an error of at most 2
   /// error, as in Normal, so that 4 error covers its length.
@@ -172,17 +172,17 @@ struct Distances {
     // Upper bound: the distance of the closest points found.
     const Edges of_a(a), of_b(b);
     Float8 square = splat(__builtin_inff());
-    for (Float8& x : way) x = Float8{};
+    for (Float8& x : towards) x = Float8{};
     for_close_points(a, of_a, b, of_b, [&](const FeaturePoints<Float8>& p) {
       // Lane-wise minimum. NaN compares false and is never kept.
       const Lanes nearer = greater(square, p.square);
       square = select(nearer, p.square, square);
-      for (int x = 0; x < 3; ++x) way[x] = select(nearer, p.way[x], way[x]);
+      for (int x = 0; x < 3; ++x) towards[x] = select(nearer, p.towards[x], towards[x]);
     });
     upper = (root8(square) + splat(4 * w.error)) * splat(1 + kDistanceRounding);
     // Lower bound: first the slab normal to the line between these points. For disjoint triangles it is as
     // wide as the distance, up to rounding.
-    lower = larger(slab(way, a, b, w), Float8{});
+    lower = larger(slab(towards, a, b, w), Float8{});
     // Then the normals of both faces, which are accurate if the points are too close to define a direction.
     const Edges* const of[2] = {&of_a, &of_b};
     for (const Edges* t : of) {

@@ -65,11 +65,11 @@ inline Lanes far_along_normal(const Corners& t, const Corners& a, const Corners&
 /// 1. p: the difference of the centroids.
 /// 2. v: the corner of B - A that is least along p. The slab normal to p is p . v / |p| wide.
 /// 3. Replace p by the point of least length between p and v, and continue with 2.
-inline Lanes proven_far(const Corners& a, const Corners& b, std::uint32_t here, const NearBetween& w) {
+inline Lanes proven_far(const Corners& a, const Corners& b, std::uint32_t current, const NearBetween& w) {
   Lanes far = far_along_normal(a, a, b, w);
-  if ((~bits(far) & here) == 0) return far;
+  if ((~bits(far) & current) == 0) return far;
   far = either(far, far_along_normal(b, a, b, w));
-  if ((~bits(far) & here) == 0) return far;
+  if ((~bits(far) & current) == 0) return far;
   Float8 p[3];
   for (int x = 0; x < 3; ++x)
     p[x] = ((b.x[0][x] + b.x[1][x] + b.x[2][x]) - (a.x[0][x] + a.x[1][x] + a.x[2][x])) * splat(1.0F / 3);
@@ -89,12 +89,12 @@ inline Lanes proven_far(const Corners& a, const Corners& b, std::uint32_t here, 
       for (int x = 0; x < 3; ++x) v[x] = side == 0 ? corner[x] : corner[x] - v[x];
     }
     far = either(far, is_too_wide(ends[1] - ends[0], p, w));
-    if (i == kSlabs - 1 || (~bits(far) & here) == 0) return far;
+    if (i == kSlabs - 1 || (~bits(far) & current) == 0) return far;
     // The point of least length between p and v.
-    Float8 way[3];
-    subtract(v, p, way);
-    const Float8 share = clamp_share(-dot(p, way) / dot(way, way));
-    for (int x = 0; x < 3; ++x) p[x] += share * way[x];
+    Float8 towards[3];
+    subtract(v, p, towards);
+    const Float8 share = clamp_share(-dot(p, towards) / dot(towards, towards));
+    for (int x = 0; x < 3; ++x) p[x] += share * towards[x];
   }
 }
 
@@ -214,9 +214,9 @@ struct NearWalk {
     // Pass 2: triangles, eight pairs at a time.
     const LeafBlock &block_a = k.blocks_a[na.first], &block_b = k.blocks_b[nb.first];
     for (std::uint32_t begin = 0; begin < list.size; begin += 8) {
-      const std::uint32_t here = list.size - begin < 8 ? (1U << (list.size - begin)) - 1 : 255U;
-      const Lanes far = proven_far(pick(a, list.a + begin), pick(b, list.b + begin), here, w);
-      for (std::uint32_t c = ~bits(far) & here; c != 0; c &= c - 1) {
+      const std::uint32_t current = list.size - begin < 8 ? (1U << (list.size - begin)) - 1 : 255U;
+      const Lanes far = proven_far(pick(a, list.a + begin), pick(b, list.b + begin), current, w);
+      for (std::uint32_t c = ~bits(far) & current; c != 0; c &= c - 1) {
         const std::uint32_t pair = begin + static_cast<std::uint32_t>(__builtin_ctz(c));
         k.out[k.out_size++] = {block_a.simplex[list.a[pair]], block_b.simplex[list.b[pair]], Certainty::none,
                                Side::a, 0};

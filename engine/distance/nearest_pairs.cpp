@@ -44,7 +44,7 @@ NearestPairs::NearestPairs(QueryContext& ctx, const DistanceRequest& request,
   size_ = std::max(world_radius(ctx[Side::a]), world_radius(ctx[Side::b]));
 }
 
-Eigen::Vector3d NearestPairs::way() const {
+Eigen::Vector3d NearestPairs::towards() const {
   return best_simplex_[0] == kNull ? Eigen::Vector3d(0, 0, 0)
                                    : Eigen::Vector3d(best_.point[1] - best_.point[0]);
 }
@@ -73,7 +73,7 @@ void NearestPairs::corners(SimplexId a, SimplexId b, const double** of_a, const 
 }
 
 /// Adopts a pair's upper bound if it is the least so far.
-void NearestPairs::see(const MeasuredPair& pair, const PairBounds& bounds) {
+void NearestPairs::adopt(const MeasuredPair& pair, const PairBounds& bounds) {
   // Only a smaller bound replaces the best pair: the first of equally close ones remains.
   if (best_simplex_[0] != kNull && !(bounds.upper < best_.upper)) return;
   best_ = bounds;
@@ -110,7 +110,7 @@ bool NearestPairs::measure(SimplexId a, SimplexId b, double lower) {
   }
   // Both lower bounds are valid; rounding must not raise them above the upper one.
   pairs_.push_back({a, b, std::min(std::max(bounds.lower, lower), bounds.upper)});
-  see(pairs_.back(), bounds);
+  adopt(pairs_.back(), bounds);
   // A lower bound of 0 does not exclude contact.
   return pairs_.back().lower > 0;
 }
@@ -178,7 +178,7 @@ void NearestPairs::narrow(double rest) {
     corners(pair.a, pair.b, of_a, of_b);
     const PairBounds exact = measured_exactly(of_a, of_b);
     pair.lower = exact.lower;
-    see(pair, exact);
+    adopt(pair, exact);
   }
 }
 

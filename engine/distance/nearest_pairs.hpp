@@ -32,7 +32,7 @@ class NearestPairs {
   /// Returns the number of measured pairs.
   std::uint64_t measured() const { return counters_.pairs_in_doubles + counters_.pairs_exact; }
   /// Returns the vector between the points that gave upper(), from A to B, or 0 if no pair was measured.
-  Eigen::Vector3d way() const;
+  Eigen::Vector3d towards() const;
   /// Returns an upper bound on the radius of the larger body in the world.
   double size() const { return size_; }
 
@@ -66,7 +66,7 @@ class NearestPairs {
   void narrow(double rest);
   void decide_within(double rest, bool finished, DistanceResult& result);
   PairBounds measured_exactly(const double* const* of_a, const double* const* of_b);
-  void see(const MeasuredPair& pair, const PairBounds& bounds);
+  void adopt(const MeasuredPair& pair, const PairBounds& bounds);
   void corners(SimplexId a, SimplexId b, const double** of_a, const double** of_b);
   void write_witness(int side, DistanceResult& result) const;
   void take_contact(SimplexId a, SimplexId b, exact::Meet meet);

@@ -41,7 +41,7 @@ double clamp_share(double x) {
 /// Two points, by the features that contain them and their parameters along these features' edges.
 struct Nearest {
   double square = kInfinity;
-  Vector3d way{0, 0, 0};  ///< from the point of A to the point of B
+  Vector3d towards{0, 0, 0};  ///< from the point of A to the point of B
   exact::Feature on[2];
   double share[2][2] = {};
 };
@@ -91,20 +91,20 @@ class Pair {
   /// Returns the lower bound, and writes the direction that gave it.
   double lower(Vector3d& direction) const {
     double most = 0;
-    const auto see = [&](const Vector3d& n) {
+    const auto try_direction = [&](const Vector3d& n) {
       const double wide = width(n);
       if (!(wide > most)) return;
       most = wide;
       direction = n;
     };
     // Candidates, the most promising first. The vector between the closest points: best if it is long.
-    see(nearest_.way);
+    try_direction(nearest_.towards);
     // The normal of the closest features: accurate even if the points nearly coincide.
-    see(across_features());
+    try_direction(across_features());
     // Last, the faces' normals, if the interval is wider than rounding explains.
     if (n_ == 3)
       for (const auto& edge : edge_)
-        if (most < upper() - 2 * kPairRounding * reach_) see(edge[0].cross(edge[1]));
+        if (most < upper() - 2 * kPairRounding * reach_) try_direction(edge[0].cross(edge[1]));
     return most;
   }
 
@@ -114,8 +114,9 @@ class Pair {
   /// Closest points of two edges (Ericson 5.1.9).
   void edge_to_edge(int i, int j) {
     const Vector3d &u = edge_[0][i], &v = edge_[1][j];
-    const Vector3d way = x_[1][j] - x_[0][i];
-    const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(way), vw = v.dot(way);
+    const Vector3d towards = x_[1][j] - x_[0][i];
+    const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(towards),
+                 vw = v.dot(towards);
     // Minimise over both lines and clamp. Parallel edges yield NaN or any value: every s is equally good
     // then.
     double s = clamp_share((vv * uw - uv * vw) / (uu * vv - uv * uv));
@@ -123,7 +124,7 @@ class Pair {
     // point.
     const double t = clamp_share((uv * s - vw) / vv);
     s = clamp_share((uv * t + uw) / uu);
-    const Vector3d d = way + t * v - s * u;
+    const Vector3d d = towards + t * v - s * u;
     const double square = d.squaredNorm();
     if (!(square < nearest_.square)) return;
     nearest_ = {square, d, {on_edge(i, s), on_edge(j, t)}, {{s, 0}, {t, 0}}};
@@ -143,18 +144,18 @@ class Pair {
     // The squared doubled area. A face without area is covered by its edges.
     if (!(area > 0)) return;
     for (int k = 0; k < 3; ++k) {
-      const Vector3d way = x_[1 - side][k] - first;
-      const double uw = u.dot(way), vw = v.dot(way);
+      const Vector3d towards = x_[1 - side][k] - first;
+      const double uw = u.dot(towards), vw = v.dot(towards);
       // Barycentric coordinates of the projection (normal equations, Cramer's rule).
       const double s = (vv * uw - uv * vw) / area, t = (uu * vw - uv * uw) / area;
       // Outside the face, or NaN: an edge is closer.
       if (!(s > 0 && t > 0 && s + t < 1)) continue;
-      const Vector3d d = way - s * u - t * v;
+      const Vector3d d = towards - s * u - t * v;
       const double square = d.squaredNorm();
       if (!(square < nearest_.square)) continue;
       nearest_.square = square;
       // The vector runs from A to B, whichever has the face.
-      nearest_.way = side == 0 ? d : Vector3d(-d);
+      nearest_.towards = side == 0 ? d : Vector3d(-d);
       nearest_.on[side] = {2, 0};
       nearest_.on[1 - side] = {0, static_cast<std::uint8_t>(k)};
       nearest_.share[side][0] = s;
@@ -175,10 +176,10 @@ class Pair {
     }
     // A vertex and an edge, or parallel edges. For two vertices there is only their difference.
     const Vector3d* along = a.dim == 1 ? &edge_[0][a.index] : b.dim == 1 ? &edge_[1][b.index] : nullptr;
-    if (along == nullptr) return nearest_.way;
+    if (along == nullptr) return nearest_.towards;
     // 2D: the normal of the edge. 3D: the difference without its component along the edge (Gram-Schmidt).
     if (n_ == 2) return {-along->y(), along->x(), 0};
-    return nearest_.way - nearest_.way.dot(*along) / along->squaredNorm() * *along;
+    return nearest_.towards - nearest_.towards.dot(*along) / along->squaredNorm() * *along;
   }
 
   /// Returns the width of the slab between the simplices along a direction of any length, rounded down; at

@@ -24,7 +24,7 @@ struct Closest {
   Doubles square = splat_as(Doubles{}, __builtin_inf());
   Doubles on[2] = {}, share[2] = {};  ///< as FeaturePoints, with numbers as doubles
 
-  void see(const FeaturePoints<Doubles>& p) {
+  void add(const FeaturePoints<Doubles>& p) {
     // NaN compares false and is never kept.
     const DoubleLanes nearer = greater(square, p.square);
     square = select(nearer, p.square, square);
@@ -68,7 +68,8 @@ struct OnFeature {
 
 /// Writes a normal of the closest features that stays accurate if they nearly touch. way: from A's point to
 /// B's.
-inline void normal_of_features(const OnFeature& a, const OnFeature& b, const Doubles* way, Doubles* normal) {
+inline void normal_of_features(const OnFeature& a, const OnFeature& b, const Doubles* towards,
+                               Doubles* normal) {
   Doubles u[3], v[3], across[3];
   // A face: its own normal. Two edges: their common normal, unless they are parallel.
   for (int x = 0; x < 3; ++x) {
@@ -82,8 +83,8 @@ inline void normal_of_features(const OnFeature& a, const OnFeature& b, const Dou
   // (Gram-Schmidt). Two vertices: only their difference.
   Doubles along[3];
   for (int x = 0; x < 3; ++x) along[x] = select(a.inner, a.edge[x], b.edge[x]);
-  const Doubles share = select(either(a.inner, b.inner), dot(way, along) / dot(along, along), Doubles{});
-  for (int x = 0; x < 3; ++x) normal[x] = select(spanned, across[x], way[x] - share * along[x]);
+  const Doubles share = select(either(a.inner, b.inner), dot(towards, along) / dot(along, along), Doubles{});
+  for (int x = 0; x < 3; ++x) normal[x] = select(spanned, across[x], towards[x] - share * along[x]);
 }
 
 /// Measures the pairs of lanes `lane` to `lane` + kDoubles - 1.
@@ -113,7 +114,7 @@ inline void measure(const PairBoundsKernel& k, EightPairsMeasured& pairs, int la
   const EdgesOf<Doubles> of_a(relative[0]), of_b(relative[1]);
   Closest closest;
   for_close_points(relative[0], of_a, relative[1], of_b,
-                   [&](const FeaturePoints<Doubles>& p) { closest.see(p); });
+                   [&](const FeaturePoints<Doubles>& p) { closest.add(p); });
   const Doubles rounding = splat_as(Doubles{}, kPairRounding) * reach;
   Doubles upper = (root8(closest.square) + rounding) * splat_as(Doubles{}, kPairUp);
   // Outside this range, squares of lengths, or their products, would overflow or underflow.
@@ -122,8 +123,8 @@ inline void measure(const PairBoundsKernel& k, EightPairsMeasured& pairs, int la
   upper = select(in_range, upper, splat_as(Doubles{}, __builtin_inf()));
   // Step 3. The error of the difference of two products is at most a quarter of kPairRounding: 16 u.
   const OnFeature on_a(world[0], closest, 0, origin), on_b(world[1], closest, 1, origin);
-  Doubles way[3], lower{};
-  subtract(on_b.relative, on_a.relative, way);
+  Doubles towards[3], lower{};
+  subtract(on_b.relative, on_a.relative, towards);
   const auto width = [&](const Doubles* direction) {
     return slab(direction, relative[0], relative[1], splat_as(Doubles{}, 0.25) * rounding, Doubles{},
                 splat_as(Doubles{}, kPairDown));
@@ -134,18 +135,18 @@ inline void measure(const PairBoundsKernel& k, EightPairsMeasured& pairs, int la
     return both(greater(upper - (rounding + rounding), lower),
                 static_cast<DoubleLanes>(~greater(lower, splat_as(Doubles{}, k.within))));
   };
-  const auto see = [&](const Doubles* direction, DoubleLanes lanes) {
+  const auto raise_lower = [&](const Doubles* direction, DoubleLanes lanes) {
     lower = select(lanes, larger(width(direction), lower), lower);
   };
-  lower = larger(width(way), lower);
+  lower = larger(width(towards), lower);
   if (DoubleLanes lanes = wide(); bits(lanes) != 0) {
     Doubles normal[3];
-    normal_of_features(on_a, on_b, way, normal);
-    see(normal, lanes);
+    normal_of_features(on_a, on_b, towards, normal);
+    raise_lower(normal, lanes);
     if (lanes = wide(); bits(lanes) != 0)
       for (const EdgesOf<Doubles>* t : {&of_a, &of_b}) {
         cross(t->along[0], t->along[1], normal);
-        see(normal, lanes);
+        raise_lower(normal, lanes);
       }
   }
   // Only rounding can raise the lower bound above the upper one.

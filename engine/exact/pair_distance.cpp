@@ -63,7 +63,7 @@ struct LastBit {
   int exponent = std::numeric_limits<int>::max();
   static constexpr int kMantissaBits = 53;
 
-  void see(double x) {
+  void add(double x) {
     if (x == 0) return;
     int e = 0;
     std::frexp(x, &e);
@@ -83,10 +83,10 @@ class Pair {
   /// `also`: another number that must be an integer after scaling.
   Pair(const double* const* a, const double* const* b, int n, double also = 0) : n_(n) {
     const double* const* const given[2] = {a, b};
-    last_.see(also);
+    last_.add(also);
     for (const auto* simplex : given)
       for (int k = 0; k < n; ++k)
-        for (int axis = 0; axis < n; ++axis) last_.see(simplex[k][axis]);
+        for (int axis = 0; axis < n; ++axis) last_.add(simplex[k][axis]);
     // All coordinates are 0: any power of two is valid.
     if (last_.exponent == std::numeric_limits<int>::max()) last_.exponent = 0;
     for (int side = 0; side < 2; ++side)
@@ -120,7 +120,7 @@ class Pair {
   }
 
   /// `spot`: on the simplex of `side`; `other`: on the other one.
-  void see(Fraction square, int side, ClosestFeature spot, ClosestFeature other) {
+  void consider(Fraction square, int side, ClosestFeature spot, ClosestFeature other) {
     // Keeps the first of equal distances, so that the result is reproducible.
     if (found_ && !less(square, nearest_.square)) return;
     found_ = true;
@@ -134,52 +134,55 @@ class Pair {
   }
 
   void corner_to_edge(int side, int k, int j) {
-    const Whole3 way = minus(corner(side, k), corner(1 - side, j)), along = edge(1 - side, j);
+    const Whole3 direction = minus(corner(side, k), corner(1 - side, j)), along = edge(1 - side, j);
     // The foot of the perpendicular is at at / length along the edge. An edge of length 0 takes the first
     // branch.
-    const cpp_int at = dot(way, along), length = dot(along, along);
-    const ClosestFeature here{feature(0, k), {}};
+    const cpp_int at = dot(direction, along), length = dot(along, along);
+    const ClosestFeature current{feature(0, k), {}};
     // Voronoi regions of the edge (Ericson 2005, 5.1.2): first end, second end, interior.
     if (at <= 0) {
-      see({dot(way, way), 1}, side, here, {feature(0, j), {}});
+      consider({dot(direction, direction), 1}, side, current, {feature(0, j), {}});
     } else if (at >= length) {
       const Whole3 from_end = minus(corner(side, k), corner(1 - side, j + 1));
-      see({dot(from_end, from_end), 1}, side, here, {feature(0, (j + 1) % n_), {}});
+      consider({dot(from_end, from_end), 1}, side, current, {feature(0, (j + 1) % n_), {}});
     } else {
       // Pythagoras: the squared distance is |way|^2 - at^2 / length.
-      see({length * dot(way, way) - at * at, length}, side, here, {feature(1, j), {{at, length}, {}}});
+      consider({length * dot(direction, direction) - at * at, length}, side, current,
+               {feature(1, j), {{at, length}, {}}});
     }
   }
 
   void corner_to_face(int side, int k) {
     const Whole3 u = edge(1 - side, 0), v = minus(corner(1 - side, 2), corner(1 - side, 0));
-    const Whole3 way = minus(corner(side, k), corner(1 - side, 0)), normal = cross(u, v);
+    const Whole3 direction = minus(corner(side, k), corner(1 - side, 0)), normal = cross(u, v);
     const cpp_int area = dot(normal, normal);
     // `area` is the squared length of the normal. If it is 0, the edges cover the triangle.
     if (area == 0) return;
-    const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, way), vw = dot(v, way);
+    const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, direction),
+                  vw = dot(v, direction);
     // Cramer's rule for the normal equations. Their determinant uu vv - uv^2 is |u x v|^2 (Lagrange's
     // identity).
     const cpp_int s = vv * uw - uv * vw, t = uu * vw - uv * uw;
     if (s <= 0 || t <= 0 || s + t >= area) return;
     // The distance to the plane is height / |normal|.
-    const cpp_int height = dot(normal, way);
-    see({height * height, area}, side, {feature(0, k), {}}, {feature(2, 0), {{s, area}, {t, area}}});
+    const cpp_int height = dot(normal, direction);
+    consider({height * height, area}, side, {feature(0, k), {}}, {feature(2, 0), {{s, area}, {t, area}}});
   }
 
   void edge_to_edge(int i, int j) {
-    const Whole3 u = edge(0, i), v = edge(1, j), way = minus(corner(0, i), corner(1, j)),
+    const Whole3 u = edge(0, i), v = edge(1, j), direction = minus(corner(0, i), corner(1, j)),
                  normal = cross(u, v);
     const cpp_int sine = dot(normal, normal);
     // Parallel edges: the distance is also attained at an end of one of them.
     if (sine == 0) return;
-    const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, way), vw = dot(v, way);
+    const cpp_int uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, direction),
+                  vw = dot(v, direction);
     // The closest points of the two lines. They are valid only strictly inside both edges; ends are handled
     // above.
     const cpp_int s = uv * vw - vv * uw, t = uu * vw - uv * uw;
     if (s <= 0 || t <= 0 || s >= sine || t >= sine) return;
-    const cpp_int height = dot(normal, way);
-    see({height * height, sine}, 0, {feature(1, i), {{s, sine}, {}}}, {feature(1, j), {{t, sine}, {}}});
+    const cpp_int height = dot(normal, direction);
+    consider({height * height, sine}, 0, {feature(1, i), {{s, sine}, {}}}, {feature(1, j), {{t, sine}, {}}});
   }
 
   int n_;

@@ -217,7 +217,7 @@ using Simplex = std::array<Vector3d, 3>;
 /// A part of a lid.
 struct Piece {
   Simplex x;
-  std::array<double, 3> off;                              ///< distance of each corner to the face
+  std::array<double, 3> deviation;                        ///< distance of each corner to the face
   SimplexId face = kNull;                                 ///< a real simplex
   double most = std::numeric_limits<double>::infinity();  ///< the maximum of `off`
   std::uint32_t cuts = 0;
@@ -335,16 +335,16 @@ class RegionMeter {
   /// Assigns this face to the piece if it bounds the piece better than the current one.
   void try_face(Piece& piece, SimplexId s) const {
     if (s == piece.face) return;
-    std::array<double, 3> off{};
+    std::array<double, 3> deviation{};
     double most = 0;
     for (int k = 0; k < corners_; ++k) {
       // A face is better if all its corner distances are below the current bound: stop at the first that is
       // not.
-      off[k] = nearest_.distance(piece.x[k], s);
-      if (!(off[k] < piece.most)) return;  // also on overflow
-      most = std::max(most, off[k]);
+      deviation[k] = nearest_.distance(piece.x[k], s);
+      if (!(deviation[k] < piece.most)) return;  // also on overflow
+      most = std::max(most, deviation[k]);
     }
-    piece.face = s, piece.off = off, piece.most = most;
+    piece.face = s, piece.deviation = deviation, piece.most = most;
   }
 
   Vector3d centroid_of(const Piece& piece) const {
@@ -406,18 +406,18 @@ class RegionMeter {
     // The distance to one face is convex, so the new corner is no further from it than the worse end of the
     // cut edge: neither part has a larger bound than the whole.
     const Vector3d between = piece.x[cut.from] + cut.share * (piece.x[cut.to] - piece.x[cut.from]);
-    const double off = nearest_.distance(between, piece.face);
+    const double deviation = nearest_.distance(between, piece.face);
     ++piece.cuts;
     Piece other = piece;
-    move_corner(piece, cut.from, between, off);
-    move_corner(other, cut.to, between, off);
+    move_corner(piece, cut.from, between, deviation);
+    move_corner(other, cut.to, between, deviation);
     return other;
   }
 
-  void move_corner(Piece& piece, int k, const Vector3d& to, double off) const {
+  void move_corner(Piece& piece, int k, const Vector3d& to, double deviation) const {
     piece.x[k] = to;
-    piece.off[k] = off;
-    piece.most = *std::max_element(piece.off.begin(), piece.off.begin() + corners_);
+    piece.deviation[k] = deviation;
+    piece.most = *std::max_element(piece.deviation.begin(), piece.deviation.begin() + corners_);
   }
 
   Cut choose_cut(const Piece& piece) const {
@@ -428,7 +428,8 @@ class RegionMeter {
     const auto [longest, length_sq] = longest_edge(piece.x, corners_);
     if (length_sq > kMuchLonger * kMuchLonger * longest_edge(face, corners_).second) return longest;
     // Otherwise separate the worst corner along the border of the face; bisect if there is no such cut.
-    const auto worst = std::max_element(piece.off.begin(), piece.off.begin() + corners_) - piece.off.begin();
+    const auto worst = std::max_element(piece.deviation.begin(), piece.deviation.begin() + corners_) -
+                       piece.deviation.begin();
     const Cut at_border = cut_at_border(piece.x, static_cast<int>(worst), face, corners_);
     return at_border.share > 0 ? at_border : longest;
   }

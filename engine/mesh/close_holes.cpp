@@ -38,8 +38,8 @@ Edge edge_of(VertexId v, VertexId w) {
 struct Attempt {
   std::vector<std::size_t> holes;  ///< the first one encloses the others
   std::vector<std::optional<HoleFill>> ways;
-  std::size_t way = 0;
-  const HoleFill& lid() const { return *ways[way]; }
+  std::size_t fill_choice = 0;
+  const HoleFill& lid() const { return *ways[fill_choice]; }
 };
 
 class HoleCloser {
@@ -157,8 +157,9 @@ class HoleCloser {
       // Skip candidates that do not exist or whose inner edges are no longer free. Every round advances each
       // attempt, so the loop terminates.
       for (Attempt& a : attempts)
-        while (a.way < a.ways.size() && !(a.ways[a.way] && edges_are_free(a.lid()))) ++a.way;
-      std::erase_if(attempts, [](const Attempt& a) { return a.way == a.ways.size(); });
+        while (a.fill_choice < a.ways.size() && !(a.ways[a.fill_choice] && edges_are_free(a.lid())))
+          ++a.fill_choice;
+      std::erase_if(attempts, [](const Attempt& a) { return a.fill_choice == a.ways.size(); });
       if (!attempts.empty()) try_round(attempts);
     }
   }
@@ -223,7 +224,7 @@ class HoleCloser {
         accepted[i] = true;
         keep(attempts[i]);
       }
-      attempts[i].way = accepted[i] ? attempts[i].ways.size() : attempts[i].way + 1;
+      attempts[i].fill_choice = accepted[i] ? attempts[i].ways.size() : attempts[i].fill_choice + 1;
     }
   }
 

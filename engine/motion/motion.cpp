@@ -114,14 +114,14 @@ Motion Motion::screw(const Pose& start, const Pose& end) {
 }
 
 Motion Motion::turning(const Pose& start, const Eigen::Vector3d& turn, const Eigen::Vector3d& centre,
-                       const Eigen::Vector3d& way) {
+                       const Eigen::Vector3d& direction) {
   const FloatMode float_mode;
   Piece piece;
   // Move the centre to the origin, rotate there, and move the centre along the path.
   piece.first = {start.r, start.t - centre};
   piece.turn = turn;
   piece.from = centre;
-  piece.to = centre + way;
+  piece.to = centre + direction;
   return Motion(std::vector<Piece>{piece});
 }
 
@@ -177,12 +177,12 @@ using Eigen::Vector3d;
 
 /// Calls see(origin, radius), in mesh units, for balls that together enclose the body: those of the nodes two
 /// levels below the root. Tighter than the root's ball, at constant cost.
-template <class See>
-void for_each_ball(const ObbTree& tree, See&& see) {
+template <class Visit>
+void for_each_ball(const ObbTree& tree, Visit&& visit) {
   const auto nodes = tree.nodes().data();
   const auto show = [&](const TreeNode& n) {
-    see(Vector3d(n.origin[0], n.origin[1], n.origin[2]) * tree.unit(),
-        static_cast<double>(n.radius) * tree.unit());
+    visit(Vector3d(n.origin[0], n.origin[1], n.origin[2]) * tree.unit(),
+          static_cast<double>(n.radius) * tree.unit());
   };
   const TreeNode& root = nodes[0];
   if (root.is_leaf) return show(root);

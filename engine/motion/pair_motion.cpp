@@ -52,7 +52,7 @@ double cross(const Difference& x, const Difference& y) {
 }
 
 /// Returns true if a 2D triangle contains the origin, even if each of its corners moves by up to `way`.
-bool holds_origin(const Difference* k, double way) {
+bool holds_origin(const Difference* k, double direction) {
   double sign = 0;
   for (int i = 0; i < 3; ++i) {
     const Difference &x = k[i], &y = k[(i + 1) % 3];
@@ -60,7 +60,7 @@ bool holds_origin(const Difference* k, double way) {
     const double turn = cross(x, y);
     const double most = std::abs(x.u) + std::abs(x.v) + std::abs(y.u) + std::abs(y.v);
     // Moving both ends by `way` changes this by less than the first term; the second covers rounding.
-    if (!(std::abs(turn) > 2 * way * (most + way) + kPairRounding * most * most)) return false;
+    if (!(std::abs(turn) > 2 * direction * (most + direction) + kPairRounding * most * most)) return false;
     // The origin is inside if it is on the same side of all three edges.
     if (i > 0 && (turn > 0) != (sign > 0)) return false;
     sign = turn;
@@ -164,15 +164,15 @@ Vector3d PairMotion::velocity_at(int side, const exact::Feature& on, const Vecto
   const Corner* const corner = corner_[side];
   const int first = on.dim == 2 ? 0 : on.index;
   const Corner &from = corner[first], &to = corner[(first + 1) % n_];
-  const Vector3d along = to.x - from.x, way = point - from.x;
+  const Vector3d along = to.x - from.x, direction = point - from.x;
   // A vertex, or a degenerate edge.
   if (on.dim == 0 || !(along.squaredNorm() > 0)) return from.v;
   // Linear interpolation along the edge.
-  if (on.dim == 1) return from.v + way.dot(along) / along.squaredNorm() * (to.v - from.v);
+  if (on.dim == 1) return from.v + direction.dot(along) / along.squaredNorm() * (to.v - from.v);
   const Vector3d other = corner[2].x - from.x;
   // Barycentric coordinates by Cramer's rule (Ericson 2005, section 3.4).
   const double uu = along.squaredNorm(), vv = other.squaredNorm(), uv = along.dot(other);
-  const double area = uu * vv - uv * uv, uw = along.dot(way), vw = other.dot(way);
+  const double area = uu * vv - uv * uv, uw = along.dot(direction), vw = other.dot(direction);
   if (!(area > 0)) return from.v;
   return from.v + (vv * uw - uv * vw) / area * (to.v - from.v) +
          (uu * vw - uv * uw) / area * (corner[2].v - from.v);
@@ -186,8 +186,9 @@ double PairMotion::approach_speed(const PairBounds& at, const Vector3d& n) const
 /// motion perpendicular to it, or n if the motion is nearly parallel to the slab.
 Vector3d PairMotion::look_along(const Vector3d& n) const {
   constexpr double kMinCosine = 1e-3;
-  const Vector3d way = body_[1]->travel() - body_[0]->travel();
-  return std::abs(way.dot(n)) > kMinCosine * way.norm() * n.norm() ? way.normalized() : n.normalized();
+  const Vector3d direction = body_[1]->travel() - body_[0]->travel();
+  return std::abs(direction.dot(n)) > kMinCosine * direction.norm() * n.norm() ? direction.normalized()
+                                                                               : n.normalized();
 }
 
 /// Proves by continuity that the simplices have intersected. They intersect if the origin is in their

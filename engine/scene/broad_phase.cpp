@@ -247,15 +247,16 @@ void SweepAndPrune::sweep_moved(Boxes boxes, std::uint32_t i) {
     if (a.min()[axis_] <= b.max()[axis_] && b.min()[axis_] <= a.max()[axis_] && overlap(a, b, u, v))
       found_.push_back({std::min(i, j), std::max(i, j)});
   };
-  const auto here = static_cast<std::size_t>(
+  const auto current = static_cast<std::size_t>(
       std::lower_bound(order_.begin(), order_.end(), i,
                        [&](std::uint32_t x, std::uint32_t y) { return before(boxes, x, y); }) -
       order_.begin());
-  for (std::size_t k = here + 1; k < order_.size() && !(boxes[order_[k]].min()[axis_] > a.max()[axis_]); ++k)
+  for (std::size_t k = current + 1; k < order_.size() && !(boxes[order_[k]].min()[axis_] > a.max()[axis_]);
+       ++k)
     compare(order_[k]);
   // Rounding is monotonic: the rounded distance of the lower ends of overlapping boxes is at most the rounded
   // length of the first one.
-  for (std::size_t k = here; k-- > 0 && !(a.min()[axis_] - boxes[order_[k]].min()[axis_] > longest_);)
+  for (std::size_t k = current; k-- > 0 && !(a.min()[axis_] - boxes[order_[k]].min()[axis_] > longest_);)
     compare(order_[k]);
 }
 

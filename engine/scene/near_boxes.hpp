@@ -91,20 +91,20 @@ inline int longest_axis(std::span<const Box> a, std::span<const Box> b) {
 }
 
 /// Calls see(a, b, gap) for each pair of boxes at most `limit` apart; see() may lower the limit.
-template <class See>
-void each_near_pair(std::span<const Box> boxes, const double& limit, const See& see) {
+template <class Visit>
+void each_near_pair(std::span<const Box> boxes, const double& limit, const Visit& visit) {
   const SortedBoxes sorted(boxes, longest_axis(boxes, {}));
   for (std::size_t k = 0; k < sorted.order().size(); ++k)
     for (std::size_t l = k + 1; l < sorted.order().size(); ++l) {
       const std::uint32_t i = sorted.order()[k], j = sorted.order()[l];
       if (sorted.is_beyond(sorted.low(j), i, limit)) break;
-      if (const double g = gap(boxes[i], boxes[j]); g <= limit) see(i, j, g);
+      if (const double g = gap(boxes[i], boxes[j]); g <= limit) visit(i, j, g);
     }
 }
 
 /// The same for pairs of a box of `a` and a box of `b`.
-template <class See>
-void each_near_pair(std::span<const Box> a, std::span<const Box> b, const double& limit, const See& see) {
+template <class Visit>
+void each_near_pair(std::span<const Box> a, std::span<const Box> b, const double& limit, const Visit& visit) {
   const int axis = longest_axis(a, b);
   const SortedBoxes sorted_a(a, axis), sorted_b(b, axis);
   // Each pair once: if two boxes begin at the same coordinate, the one of A counts as the first.
@@ -117,8 +117,8 @@ void each_near_pair(std::span<const Box> a, std::span<const Box> b, const double
         if (const double g = gap(firsts.boxes()[i], seconds.boxes()[j]); g <= limit) found(i, j, g);
       }
   };
-  sweep(sorted_a, sorted_b, false, see);
-  sweep(sorted_b, sorted_a, true, [&](std::uint32_t j, std::uint32_t i, double g) { see(i, j, g); });
+  sweep(sorted_a, sorted_b, false, visit);
+  sweep(sorted_b, sorted_a, true, [&](std::uint32_t j, std::uint32_t i, double g) { visit(i, j, g); });
 }
 
 }  // namespace lrb::scene

@@ -76,9 +76,9 @@ struct Participants {
   }
 
   /// Calls see(near) for the pairs whose AABBs are at most `limit` apart. see() may lower the limit.
-  template <class See>
-  void each_near(const double& limit, const See& see) const {
-    const auto found = [&](std::uint32_t i, std::uint32_t j, double gap) { see(pair(i, j, gap)); };
+  template <class Visit>
+  void each_near(const double& limit, const Visit& visit) const {
+    const auto found = [&](std::uint32_t i, std::uint32_t j, double gap) { visit(pair(i, j, gap)); };
     is_one ? each_near_pair(a.boxes, limit, found) : each_near_pair(a.boxes, b.boxes, limit, found);
   }
 

@@ -51,8 +51,8 @@ struct Between {
   // Only with a margin:
   /// Enlargement of boxes on A's and on B's axes: the error, the margin, and the swept displacement.
   alignas(16) float grow[2][4];
-  float way[4];  ///< displacement by which B's node is swept, on A's axes
-  float margin;  ///< maximum additional displacement of any of its points
+  float direction[4];  ///< displacement by which B's node is swept, on A's axes
+  float margin;        ///< maximum additional displacement of any of its points
 };
 
 /// Sets the error bounds. radius_a, radius_b: radius of a ball that contains the transformed points of each
@@ -100,10 +100,10 @@ inline float sweep(const TreeKernel& k, const TreeNode& b, const Columns& a_colu
       ((m[0] * splat4d(b.origin[0]) + m[1] * splat4d(b.origin[1])) + m[2] * splat4d(b.origin[2])) *
           splat4d(k.ratio_b) +
       *reinterpret_cast<const Double4*>(k.sweep_t);
-  const Float4 way = __builtin_convertvector(swept, Float4);
-  const float parts[3] = {way[0], way[1], way[2]};
+  const Float4 direction = __builtin_convertvector(swept, Float4);
+  const float parts[3] = {direction[0], direction[1], direction[2]};
   const Float4 on_a = combine(parts, a_columns.c);
-  __builtin_memcpy(w.way, &on_a, sizeof on_a);
+  __builtin_memcpy(w.direction, &on_a, sizeof on_a);
   return __builtin_fabsf(parts[0]) + __builtin_fabsf(parts[1]) + __builtin_fabsf(parts[2]);
 }
 
@@ -160,7 +160,7 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   set_errors(w, k.slack, k.m_size, radius_a, radius_b, reach, whole);
   if constexpr (kMargin) {
     // The sweep widens boxes by its extent on each axis, in both directions.
-    const Float4 on_a{w.way[0], w.way[1], w.way[2], 0}, on_b = combine(w.way, r);
+    const Float4 on_a{w.direction[0], w.direction[1], w.direction[2], 0}, on_b = combine(w.direction, r);
     const Float4 grow[2] = {splat4(w.error + w.margin) + abs4(on_a), splat4(w.error + w.margin) + abs4(on_b)};
     __builtin_memcpy(w.grow, grow, sizeof grow);
   }

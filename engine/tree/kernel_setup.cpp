@@ -163,8 +163,8 @@ TreeKernel set_up_affine_kernel(const ObbTree& a, const Pose& pose_a, const ObbT
     axes.flat = self.flat;
     put(self.own, self.flat ? norm_of(self.own) : 1, axes.own);
     // Deviation of the own map from the identity, plus the rounding of the world scaled by G.
-    const double off = self.defect * kMaxUnits * ratios[side];
-    axes.slack = rounded_up(kPoseSafety * (off + self.back_size * rounding));
+    const double deviation = self.defect * kMaxUnits * ratios[side];
+    axes.slack = rounded_up(kPoseSafety * (deviation + self.back_size * rounding));
     put(self.r, self.size, terms.world[side]);
     // Only used to choose the node to descend, so rounding does not matter.
     terms.span[side] = static_cast<float>(self.size) * ratios[side];

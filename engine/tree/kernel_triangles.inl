@@ -82,8 +82,8 @@ inline SideLanes sides_of_planes(const Corners& planes, const Corners& points, c
   Float8 bound = n.bound;
   // The plane must separate by more than the margin and by more than the sweep's extent along the normal.
   if constexpr (kMargin)  // the size is at least the normal's length
-    bound += splat(w.margin) * n.size +
-             abs8(n.n[0] * splat(w.way[0]) + n.n[1] * splat(w.way[1]) + n.n[2] * splat(w.way[2]));
+    bound += splat(w.margin) * n.size + abs8(n.n[0] * splat(w.direction[0]) + n.n[1] * splat(w.direction[1]) +
+                                             n.n[2] * splat(w.direction[2]));
   SideLanes sides;
   Lanes above = kAllLanes, below = kAllLanes;
   sides.certain = kAllLanes;

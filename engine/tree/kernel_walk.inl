@@ -261,11 +261,11 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
     const SideLanes b_sides = sides_of_planes<kMargin>(some_a, some_b, errors, errors.edge_error[0]);
     const SideLanes a_sides = sides_of_planes<kMargin>(some_b, some_a, errors, errors.edge_error[1]);
     // `here` masks the lanes in use; only the last batch may have fewer than eight.
-    const std::uint32_t here = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
-    const std::uint32_t left = ~bits(either(a_sides.rejected, b_sides.rejected)) & here;
-    if (k.rejected != nullptr && left != here) [[unlikely]]
-      note_rejected(k, block_a, block_b, list, begin, bits(b_sides.rejected) & here,
-                    bits(a_sides.rejected) & here);
+    const std::uint32_t current = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
+    const std::uint32_t left = ~bits(either(a_sides.rejected, b_sides.rejected)) & current;
+    if (k.rejected != nullptr && left != current) [[unlikely]]
+      note_rejected(k, block_a, block_b, list, begin, bits(b_sides.rejected) & current,
+                    bits(a_sides.rejected) & current);
     // Pass 4: decide the remaining pairs as far as float arithmetic can. Exact tests get the undecided ones.
     if (left == 0) continue;
     EightCertainties certainties;

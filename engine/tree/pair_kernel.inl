@@ -50,8 +50,8 @@ struct EightPairs {
     edge_b = largest_of(of_b.longest);
     Float8 between{};  // at least the distance of the first corners
     for (int x = 0; x < 3; ++x) {
-      const auto turned = [&](const Float8* way) {
-        return splat(k.r[x][0]) * way[0] + splat(k.r[x][1]) * way[1] + splat(k.r[x][2]) * way[2];
+      const auto turned = [&](const Float8* towards) {
+        return splat(k.r[x][0]) * towards[0] + splat(k.r[x][1]) * towards[1] + splat(k.r[x][2]) * towards[2];
       };
       a.x[0][x] = Float8{};
       corner_b[x] = of_b.corner[x];
@@ -116,8 +116,8 @@ struct Across {
 
 /// Calls see() with directions that may separate the pairs: both normals, the coordinate axes, and the line
 /// between the centroids.
-template <class See>
-inline void for_directions(const EightPairs& p, See&& see) {
+template <class Visit>
+inline void for_directions(const EightPairs& p, Visit&& visit) {
   Float8 d[3];
   const Corners* const of[2] = {&p.a, &p.b};
   for (const Corners* t : of) {
@@ -125,13 +125,13 @@ inline void for_directions(const EightPairs& p, See&& see) {
     subtract(t->x[1], t->x[0], u);
     subtract(t->x[2], t->x[0], v);
     for (int x = 0; x < 3; ++x) d[x] = u[(x + 1) % 3] * v[(x + 2) % 3] - u[(x + 2) % 3] * v[(x + 1) % 3];
-    see(Across(d, p));
+    visit(Across(d, p));
   }
   for (int x = 0; x < 3; ++x) {
-    see(Across(x, p));
+    visit(Across(x, p));
     d[x] = (p.b.x[0][x] + p.b.x[1][x] + p.b.x[2][x]) - (p.a.x[1][x] + p.a.x[2][x]);
   }
-  see(Across(d, p));
+  visit(Across(d, p));
 }
 
 struct Span {
@@ -163,14 +163,14 @@ inline Span span_of_sweep(const PairKernel& k, const EightPairs& p) {
   const float longest = k.sweep_turn * k.radius_b + __builtin_fabsf(k.sweep_t[0]) +
                         __builtin_fabsf(k.sweep_t[1]) + __builtin_fabsf(k.sweep_t[2]);
   const Float8 spared = splat(k.margin + k.sweep_turn * p.edge_b + kSweepRounding * longest);
-  Float8 way[3];
+  Float8 towards[3];
   for (int x = 0; x < 3; ++x)
-    way[x] = splat(k.sweep_t[x]) + splat(k.sweep[x][0]) * p.corner_b[0] +
-             splat(k.sweep[x][1]) * p.corner_b[1] + splat(k.sweep[x][2]) * p.corner_b[2];
+    towards[x] = splat(k.sweep_t[x]) + splat(k.sweep[x][0]) * p.corner_b[0] +
+                 splat(k.sweep[x][1]) * p.corner_b[1] + splat(k.sweep[x][2]) * p.corner_b[2];
   for_directions(p, [&](const Across& x) {
     // As in the slab test of rays (Kay and Kajiya 1986): B enters A's slab at one time and leaves it at
     // another.
-    const Float8 rate = x.d[0] * way[0] + x.d[1] * way[1] + x.d[2] * way[2];
+    const Float8 rate = x.d[0] * towards[0] + x.d[1] * towards[1] + x.d[2] * towards[2];
     const Lanes rises = greater(rate, Float8{});
     // A rate of 0 gives infinity, or NaN, which Span ignores.
     const Float8 per_rate = splat(1) / abs8(rate), spare = spared * x.size;

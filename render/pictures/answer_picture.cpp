@@ -31,9 +31,10 @@ Scene scene_of(const PosedBodies& bodies, std::span<const ContactRegion> contact
 
 /// Makes faces translucent, and drops their edges: all, or those that look in a direction. The others are
 /// then seen from inside, and show the shape.
-void make_translucent(DrawList& list, std::uint8_t alpha, const Vector3d& way = Vector3d::Zero()) {
+void make_translucent(DrawList& list, std::uint8_t alpha, const Vector3d& towards = Vector3d::Zero()) {
   for (DrawTriangle& t : list.triangles) {
-    if (!way.isZero() && (t.layer != Layer::opaque || (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]).dot(way) <= 0))
+    if (!towards.isZero() &&
+        (t.layer != Layer::opaque || (t.x[1] - t.x[0]).cross(t.x[2] - t.x[0]).dot(towards) <= 0))
       continue;
     t.layer = Layer::translucent;
     t.colour.a = alpha;
@@ -496,7 +497,7 @@ CameraFit camera_along(const WalkExplanation& walk, const Square& square, int di
   const Vector3d centre = bounds(points).center();
   if (dim == 2) {
     const double room = kLeast * whole.diagonal().norm();
-    for (const double way : {-room, room}) points.emplace_back(centre + Vector3d(way, way, 0));
+    for (const double towards : {-room, room}) points.emplace_back(centre + Vector3d(towards, towards, 0));
     return [points](double width, double height) { return fit_top(points, width, height, 0.2); };
   }
   FitOptions fit;

@@ -98,13 +98,13 @@ void write_at(render::DrawList& list, const Vector3d& x, const std::string& text
 }
 
 /// Draws the barbs of an arrowhead in the plane of the arrow and `across`.
-void add_barbs(render::DrawList& list, const MarkedSegment& way, const Vector3d& across, render::Rgba colour,
-               float width = kSegmentWidth) {
+void add_barbs(render::DrawList& list, const MarkedSegment& direction, const Vector3d& across,
+               render::Rgba colour, float width = kSegmentWidth) {
   constexpr double kHeadLength = 0.24, kHeadWidth = 0.11;
-  const Vector3d along = way.to - way.from;
-  const Vector3d back = way.to - kHeadLength * along, aside = kHeadWidth * along.norm() * across;
+  const Vector3d along = direction.to - direction.from;
+  const Vector3d back = direction.to - kHeadLength * along, aside = kHeadWidth * along.norm() * across;
   for (const Vector3d& end : {Vector3d(back + aside), Vector3d(back - aside)})
-    outline(list, {end, way.to}, colour, width);
+    outline(list, {end, direction.to}, colour, width);
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ render::DrawList with_leaders(render::DrawList list, const render::Projection& p
     const Vector2d half(size.width / 2.0 + kOff, size.height / 2.0 + kOff);
     // Step 2: the nearest place beside the point, or beside everything. One that has to be moved into the
     // picture, or that covers points, counts as farther away.
-    Vector2d way = Vector2d::Zero();
+    Vector2d direction = Vector2d::Zero();
     double least = INFINITY;
     for (const int axis : {1, 0})
       for (const double end :
@@ -151,14 +151,14 @@ render::DrawList with_leaders(render::DrawList list, const render::Projection& p
         double far = (inside - *at).norm() + kOutside * (inside - place).norm();
         for (std::size_t i = 0; i < taken.size(); ++i)
           if (box.contains(taken[i])) far += i < corners ? 1 : kOfLine;
-        if (far < least) least = far, way = inside - *at;
+        if (far < least) least = far, direction = inside - *at;
       }
-    label.dx = static_cast<float>(way.x());
-    label.dy = static_cast<float>(way.y());
+    label.dx = static_cast<float>(direction.x());
+    label.dy = static_cast<float>(direction.y());
     // Step 3: a line to the border of the text, unless it is beside the point.
-    const double end = 1 - (half.array() / way.array().abs().max(1e-9)).minCoeff();
-    const Vector3d shift = projection.axes().transpose() * Vector3d(way.x(), -way.y(), 0);
-    if (end * way.norm() > kBeside + kOff)
+    const double end = 1 - (half.array() / direction.array().abs().max(1e-9)).minCoeff();
+    const Vector3d shift = projection.axes().transpose() * Vector3d(direction.x(), -direction.y(), 0);
+    if (end * direction.norm() > kBeside + kOff)
       outline(list, {label.x, label.x + end * projection.unit_per_pixel(label.x) * shift}, label.colour, 1,
               label.halo);
   }
@@ -384,14 +384,14 @@ void add_contact_points(render::Scene& scene, std::span<const ContactMark> conta
                          "normals, from A to B, longer where deeper"});
 }
 
-void add_separation_vector(render::Scene& scene, const MarkedSegment& way, int dim,
+void add_separation_vector(render::Scene& scene, const MarkedSegment& direction, int dim,
                            const render::Style& style) {
-  outline(scene.list, {way.from, way.to}, kSeparationColour, kSegmentWidth);
-  const Vector3d along = (way.to - way.from).normalized();
+  outline(scene.list, {direction.from, direction.to}, kSeparationColour, kSegmentWidth);
+  const Vector3d along = (direction.to - direction.from).normalized();
   const Vector3d across = dim == 2 ? Vector3d::UnitZ().cross(along) : along.unitOrthogonal();
-  add_barbs(scene.list, way, across, kSeparationColour);
-  if (dim == 3) add_barbs(scene.list, way, along.cross(across), kSeparationColour);
-  write_at(scene.list, (way.from + way.to) / 2, way.text, style);
+  add_barbs(scene.list, direction, across, kSeparationColour);
+  if (dim == 3) add_barbs(scene.list, direction, along.cross(across), kSeparationColour);
+  write_at(scene.list, (direction.from + direction.to) / 2, direction.text, style);
   scene.key.push_back({render::LegendItem::Mark::arrow, kSeparationColour, "B leaves A this way"});
 }
 

@@ -224,8 +224,8 @@ class Carver {
     double sum = 0;
     for (const Kind& k : kKinds) {
       if (!fits(lids_left_ - k.lids(), gain_left_ - k.gain(m))) continue;
-      const double off = static_cast<double>(k.gain(m)) / k.lids() - wanted;
-      sum += deterministic::exp(-off * off / 2) + 1e-3;
+      const double deviation = static_cast<double>(k.gain(m)) / k.lids() - wanted;
+      sum += deterministic::exp(-deviation * deviation / 2) + 1e-3;
       choice.emplace_back(sum, &k);
     }
     if (choice.empty()) return false;

@@ -294,8 +294,8 @@ class StarSurface {
       for (int j = 0; i + j < n_; ++j) {
         // In separate statements, because id() numbers new vertices and compilers evaluate arguments in
         // different orders.
-        const VertexId up = id(i, j + 1), along = id(i + 1, j), here = id(i, j);
-        add_triangle(mesh_, here, along, up);
+        const VertexId up = id(i, j + 1), along = id(i + 1, j), current = id(i, j);
+        add_triangle(mesh_, current, along, up);
         if (i + j + 1 >= n_) continue;
         const VertexId across = id(i + 1, j + 1);
         add_triangle(mesh_, along, across, up);

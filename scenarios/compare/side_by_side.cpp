@@ -134,9 +134,9 @@ render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport
                                  framing, progress));
   };
   for (std::size_t i = 0; i < 2; ++i) add(i, runs.names[i], larger, "");
-  const FaceValues off = difference(runs, values);
-  if (largest(off) > 0)
-    add(0, "Difference", off,
+  const FaceValues deviation = difference(runs, values);
+  if (largest(deviation) > 0)
+    add(0, "Difference", deviation,
         by == ColourBy::box_tests ? "difference of box tests" : "difference of face tests");
   return in_a_row(panels);
 }

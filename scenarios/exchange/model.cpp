@@ -288,15 +288,16 @@ Wrapper wrapper_of_layers(const LrbRep& rep, std::uint32_t layers) {
 }
 
 Wrapper wrapper_of_faces(const LrbRep& rep, std::uint32_t most) {
-  std::vector<double> off(rep.region_count());
+  std::vector<double> deviation(rep.region_count());
   if (rep.region_count() > 0) {
     const std::span<const double> needed = rep.levels(0).needed();
-    for (RegionId r = 0; r < rep.region_count(); ++r) off[r] = needed.empty() ? rep.layer(r) : needed[r];
+    for (RegionId r = 0; r < rep.region_count(); ++r)
+      deviation[r] = needed.empty() ? rep.layer(r) : needed[r];
   }
   std::vector<RegionId> order(rep.region_count());
   std::iota(order.begin(), order.end(), RegionId{0});
   std::stable_sort(order.begin(), order.end(), [&](RegionId x, RegionId y) {
-    return off[x] != off[y] ? off[x] > off[y] : rep.depth(x) < rep.depth(y);
+    return deviation[x] != deviation[y] ? deviation[x] > deviation[y] : rep.depth(x) < rep.depth(y);
   });
   std::vector<std::uint8_t> on_boundary(rep.face_count());
   for (const FaceId f : rep.outermost_faces()) on_boundary[f] = 1;

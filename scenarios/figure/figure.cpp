@@ -439,8 +439,8 @@ class FigureJob {
     const double width = std::max(kHairline, figure_.line_width);
     for (std::size_t i = 0; i < places.size(); ++i) {
       // From the text to the rim of the point, which is a disc, or a ring if it is hidden.
-      const Vector2d way = anchors[i] - places[i].leader;
-      const Vector2d end = anchors[i] - std::min(callout_radius(), way.norm()) * way.normalized();
+      const Vector2d direction = anchors[i] - places[i].leader;
+      const Vector2d end = anchors[i] - std::min(callout_radius(), direction.norm()) * direction.normalized();
       canvas.stroke({places[i].leader, end}, false, {style().paper, 3 * width, 0});
       canvas.stroke({places[i].leader, end}, false, {style().ink, width, 0});
     }

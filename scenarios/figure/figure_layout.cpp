@@ -201,9 +201,9 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
     Arranged arranged = layouter.arrange();
     const std::size_t rows = (n + columns - 1) / columns;
     const double gaps = static_cast<double>(rows * columns - n) / static_cast<double>(n);
-    const double off =
+    const double deviation =
         std::abs(std::log(options.width / (arranged.height - arranged.spaces) / kShape)) + kGapCost * gaps;
-    if (off < least) least = off, best = std::move(arranged);
+    if (deviation < least) least = deviation, best = std::move(arranged);
   }
   return std::move(*best);
 }

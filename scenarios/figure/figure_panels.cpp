@@ -65,9 +65,9 @@ std::vector<EventId> by_time(const run::RecordedRun& recorded, const States& all
       steps.begin(), steps.end(), [](const trace::Step& s) { return s.finished && s.result.pair_count > 0; });
   const auto first = static_cast<std::size_t>(contact - steps.begin());
   if (first < all.events.size() && chosen.size() > 2) {
-    const auto off = [&](std::size_t i) { return i > first ? i - first : first - i; };
+    const auto deviation = [&](std::size_t i) { return i > first ? i - first : first - i; };
     *std::min_element(chosen.begin() + 1, chosen.end() - 1,
-                      [&](std::size_t x, std::size_t y) { return off(x) < off(y); }) = first;
+                      [&](std::size_t x, std::size_t y) { return deviation(x) < deviation(y); }) = first;
   }
   std::vector<EventId> out;
   for (const std::size_t i : chosen) out.push_back(all.events[i]);
@@ -191,11 +191,12 @@ Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera&
 render::Camera part_of(const render::Camera& camera, const Eigen::AlignedBox2d& part) {
   render::Camera out = camera;
   const double share = part.sizes().y() / kViewSide, tangent = std::tan(0.5 * camera.fov_y);
-  const Eigen::Vector2d off =
+  const Eigen::Vector2d deviation =
       (2 * part.center() - Eigen::Vector2d::Constant(kViewSide)) / kViewSide;  // in half sides, y down
   out.half_height *= share;
   out.fov_y = 2 * std::atan(tangent * share);
-  out.shift += (camera.orthographic ? camera.half_height : tangent) * Eigen::Vector2d(off.x(), -off.y());
+  out.shift +=
+      (camera.orthographic ? camera.half_height : tangent) * Eigen::Vector2d(deviation.x(), -deviation.y());
   return out;
 }
 

@@ -49,7 +49,7 @@ std::string cap_text(const trace::Event& e) {
                                             : "cap of " + render::counted(cap.faces, "face", "faces") +
                                                   " over " + render::group_digits(cap.covered);
   std::string out = size + ": " + std::string(trace::text_of(cap.verdict));
-  if (std::isfinite(cap.off)) out += ", deviation " + render::short_number(cap.off);
+  if (std::isfinite(cap.deviation)) out += ", deviation " + render::short_number(cap.deviation);
   return out;
 }
 
@@ -328,7 +328,7 @@ std::string FrameState::construction_caption() const {
   text += ". " + std::string(name_of(pass->stage));
   if (pass->max_deviation > 0)
     text += " with caps of deviation at most " + render::short_number(pass->max_deviation) +
-            " (largest: " + render::short_number(pass->off) + ")";
+            " (largest: " + render::short_number(pass->deviation) + ")";
   if (pass->covered > 0)
     text += "; " + render::counted(pass->accepted(), "cap", "caps") + " of " +
             render::counted(pass->lids, "face", "faces") + " over " + render::group_digits(pass->covered);

@@ -70,8 +70,8 @@ std::vector<Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId
   }
   out = render::body_points(rep, Pose{});
   for (RegionId r = 0; spec.explode > 0 && r < rep.region_count(); ++r) {
-    const Vector3d way = render::exploded_way(rep, Pose{}, r, spec.explode);
-    for (const Vector3d& x : region_corners(rep, r)) out.push_back(x + way);
+    const Vector3d direction = render::exploded_way(rep, Pose{}, r, spec.explode);
+    for (const Vector3d& x : region_corners(rep, r)) out.push_back(x + direction);
   }
   return out;
 }

@@ -141,9 +141,9 @@ std::size_t empty_cell(std::string_view line) {
 }
 
 /// Calls see(numbers, line) for each line of `count` numbers; `meaning` describes them for messages.
-template <class See>
+template <class Visit>
 void read_lines(const std::string& text, const std::string& name, std::size_t count, const char* meaning,
-                See&& see) {
+                Visit&& visit) {
   const std::string numbers = std::to_string(count) + " numbers";
   std::vector<double> x(count);
   std::size_t line_number = 0;
@@ -159,7 +159,7 @@ void read_lines(const std::string& text, const std::string& name, std::size_t co
     if (words.size() != count)
       throw InputError(where + "expected " + numbers + " (" + meaning + "), found " +
                        std::to_string(words.size()));
-    see(std::span<const double>(x), line_number);
+    visit(std::span<const double>(x), line_number);
   }
 }
 

@@ -47,9 +47,9 @@ Eigen::AlignedBox3d whole_box(const LrbRep& rep, const Pose& pose) {
 /// Returns the direction from the other body, at an angle, towards the faces that it intersects.
 render::ViewDirection view_of(const PaperPair& pair, const PanelView& view) {
   const ContactStep& last = view.collision->steps.back();
-  const Eigen::Vector3d way =
+  const Eigen::Vector3d direction =
       whole_box(pair.x.rep, last.pose_x).center() - whole_box(pair.a.rep, last.pose_a).center();
-  const Eigen::Vector3d from = (view.side == Side::a ? way : -way).normalized();
+  const Eigen::Vector3d from = (view.side == Side::a ? direction : -direction).normalized();
   int flat = 0;  // the axis that is most nearly perpendicular to the direction
   from.cwiseAbs().minCoeff(&flat);
   const Eigen::Vector3d up = Eigen::Vector3d::Unit(flat), aside = from.cross(up).normalized();

@@ -351,8 +351,8 @@ report::Table incremental_table(std::span<const PaperObject> objects, PaperProto
     for (std::uint32_t i = 0; i < protocol.collisions; ++i)
       for (const ContactStep& start : run_collision(a, x.rep, x.name, i, protocol, workspace, true)) {
         CoherentQuery query(a, x.rep, request);
-        const Eigen::Vector3d way = start.pose_a.apply(shapes::box_of(a).center()) -
-                                    start.pose_x.apply(shapes::box_of(x.rep).center());
+        const Eigen::Vector3d direction = start.pose_a.apply(shapes::box_of(a).center()) -
+                                          start.pose_x.apply(shapes::box_of(x.rep).center());
         Pose pose = start.pose_x;
         for (int step = 0; step < kSteps; ++step, ++steps) {
           const CollideResult& found = query.collide(start.pose_a, pose);
@@ -362,7 +362,7 @@ report::Table incremental_table(std::span<const PaperObject> objects, PaperProto
           kept += static_cast<double>(found.counters.face_tests);
           scratch += static_cast<double>(expected.counters.face_tests);
           refined += static_cast<double>(found.counters.refinements);
-          pose.t += kStep * diagonal(a) * way.normalized();
+          pose.t += kStep * diagonal(a) * direction.normalized();
         }
         coarsened += static_cast<double>(query.statistics().coarsened);
       }

@@ -220,14 +220,14 @@ std::optional<Epo> sample_epo(const Volumes& volumes, const capture::Mesh& mesh,
     double s = random.in(0, 1), t = random.in(0, 1);
     if (s + t > 1) s = 1 - s, t = 1 - t;
     const Vector3d p = x + s * (y - x) + t * (z - x);
-    double here = 0;
+    double current = 0;
     tests += surface.visit(triangle, AlignedBox3d(p, p), [&](std::uint32_t n) {
       if (volumes.outside(n, p) > surface.slack) return;
-      here += surface.cost[n];
+      current += surface.cost[n];
       out.by_node[n] += surface.cost[n];
     });
-    sum += here;
-    sum_of_squares += here * here;
+    sum += current;
+    sum_of_squares += current * current;
   }
   const auto count = static_cast<double>(out.samples);
   out.value = sum / count;

@@ -61,9 +61,10 @@ std::vector<EventId> listed(const render::FrameSpec& spec, const trace::Trace& t
 }  // namespace
 
 std::size_t nearest_by_ratio(std::span<const double> sizes, double size) {
-  const auto off = [&](double s) { return std::abs(std::log(std::max(s, 1.0) / size)); };
+  const auto deviation = [&](double s) { return std::abs(std::log(std::max(s, 1.0) / size)); };
   return static_cast<std::size_t>(
-      std::min_element(sizes.begin(), sizes.end(), [&](double x, double y) { return off(x) < off(y); }) -
+      std::min_element(sizes.begin(), sizes.end(),
+                       [&](double x, double y) { return deviation(x) < deviation(y); }) -
       sizes.begin());
 }
 

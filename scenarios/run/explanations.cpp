@@ -485,8 +485,8 @@ json explanations_json(const RecordedRun& p, const Explained& what, const SceneF
     const trace::Step& step = p.trace->steps[compared.step];
     if (placed != compared.step) explainer.place(step.pose_a, step.pose_b);
     placed = compared.step;
-    const auto here = std::lower_bound(what.steps.begin(), what.steps.end(), compared.step);
-    columns.add(static_cast<std::uint32_t>(here - what.steps.begin()), explainer.explain(compared.pair));
+    const auto current = std::lower_bound(what.steps.begin(), what.steps.end(), compared.step);
+    columns.add(static_cast<std::uint32_t>(current - what.steps.begin()), explainer.explain(compared.pair));
   }
   json by = json::array(), meets = json::array(), axes = json::array();
   for (const auto& entry : kEnumNames<DecidedBy>) by.push_back(to_text(entry.value, p.reps[0]->dim()));

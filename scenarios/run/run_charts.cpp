@@ -48,7 +48,7 @@ std::vector<std::string> pass_row(const trace::PassSummary& p) {
   return {made ? std::to_string(p.number()) : "",
           std::string(name_of(p.stage)),
           p.max_deviation > 0 ? short_number(p.max_deviation) : "",
-          p.off > 0 ? short_number(p.off) : "",
+          p.deviation > 0 ? short_number(p.deviation) : "",
           group_digits(p.faces_before),
           group_digits(p.faces_after),
           group_digits(p.regions),

@@ -67,7 +67,7 @@ Pose pose_in(RandomEngine& random, const Sweep& s, const SweepPoint& where) {
   Eigen::Matrix3d dm = random_matrix(random);
   if (random() % 2 == 0) dm.setZero();  // then all points are off by as much
   const Eigen::Vector3d dt = shapes::random_direction(random);
-  const double scale = where.off * (1 - 1e-9) / size_of(dm, dt);
+  const double scale = where.offset * (1 - 1e-9) / size_of(dm, dt);
   return {s.mid_pose.m + where.at * s.dm + scale * dm, s.mid_pose.t + where.at * s.dt + scale * dt};
 }
 

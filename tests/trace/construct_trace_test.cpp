@@ -81,7 +81,7 @@ void check_passes(const Built& built) {
     std::uint32_t caps = 0;
     for (const std::uint32_t n : p.caps) caps += n;
     CHECK(caps == p.patches);
-    CHECK(p.off <= p.max_deviation);
+    CHECK(p.deviation <= p.max_deviation);
     regions += p.regions;
     lids += p.lids;
   }

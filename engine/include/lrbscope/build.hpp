@@ -130,7 +130,7 @@ struct TriedCap {
   bool careful = false;  ///< made with a proof for each collapse, after an attempt without them failed at the
                          ///< end
   /// Measured deviation from the body, an estimate, mesh units; negative: not measured.
-  double off = -1;
+  double deviation = -1;
 
   /// Returns the number of new faces for each face by which the front shrinks; best near 0.
   double cost() const {

@@ -108,7 +108,7 @@ struct PassSummary {
   BuildStage stage = BuildStage::fit;
   std::uint32_t layer = 0;  ///< of the regions it made
   float max_deviation = 0;  ///< maximum deviation allowed for caps, mesh units; 0: unlimited
-  float off = 0;            ///< maximum measured deviation of its caps; 0: not measured
+  float deviation = 0;      ///< maximum measured deviation of its caps; 0: not measured
   std::uint32_t faces_before = 0, faces_after = 0;
   std::uint32_t regions = 0;  ///< number of regions made
   std::uint32_t merged = 0;   ///< pieces merged into them

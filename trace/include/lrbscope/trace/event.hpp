@@ -111,7 +111,7 @@ struct Cap {
   std::uint32_t faces = 0, covered = 0;
   CapVerdict verdict{};
   bool careful = false;
-  float off = std::numeric_limits<float>::quiet_NaN();  ///< mesh units; not finite: not measured
+  float deviation = std::numeric_limits<float>::quiet_NaN();  ///< mesh units; not finite: not measured
 };
 struct Merged {
   RegionId into{};
@@ -220,7 +220,8 @@ struct Event {
     return {.a = p.faces,
             .b = p.covered,
             .cause = cause,
-            .boundary = std::isnan(p.off) ? std::uint32_t{kNull} : std::bit_cast<std::uint32_t>(p.off),
+            .boundary =
+                std::isnan(p.deviation) ? std::uint32_t{kNull} : std::bit_cast<std::uint32_t>(p.deviation),
             .depth_a = p.careful,
             .kind = EventKind::cap,
             .detail = static_cast<std::uint8_t>(p.verdict)};
@@ -259,9 +260,9 @@ struct Event {
   payload::Point point() const { return {VertexId(a), side, where()}; }
   payload::PhaseBegin phase_begin() const { return {phase(), depth_a, depth_b}; }
   payload::PhaseEnd phase_end() const { return {phase(), b}; }
-  payload::Pass pass() const { return {stage(), a, b, off()}; }
+  payload::Pass pass() const { return {stage(), a, b, deviation()}; }
   payload::Patch patch() const { return {VertexId(a), b, depth_a, boundary}; }
-  payload::Cap cap() const { return {a, b, verdict(), depth_a != 0, off()}; }
+  payload::Cap cap() const { return {a, b, verdict(), depth_a != 0, deviation()}; }
   payload::Merged merged() const { return {RegionId(a), b}; }
   payload::PassEnd pass_end() const { return {a, b, depth_a != 0, boundary}; }
   payload::Closed closed() const { return {a, b}; }
@@ -278,7 +279,7 @@ struct Event {
   CapVerdict verdict() const { return static_cast<CapVerdict>(detail); }  ///< cap
   /// Pass: maximum deviation allowed for caps (0: unlimited). Cap: its deviation (not finite: not measured).
   /// Mesh units.
-  float off() const { return std::bit_cast<float>(boundary); }
+  float deviation() const { return std::bit_cast<float>(boundary); }
   /// Returns true if the event changes a wrapper, that is, if it has a wrapper_change().
   bool changes_wrapper() const {
     return kind == EventKind::refine || kind == EventKind::coarsen || kind == EventKind::region;
