@@ -2,6 +2,7 @@
 # docs.sh TREE [LRBSCOPE]: checks all .md files of the tree.
 # - Every relative link and anchor has a target.
 # - docs/modules.svg shows the dependencies in tests/layers/modules.txt.
+# - The recipes for vcpkg, Conan and conda parse, and name this version, options that there are, and files that are installed.
 # - Every code block is run by a test (see runner()); a block below the line <!-- examples/FILE --> is a copy of that file.
 # - With the program: every `lrbscope` line of a shell block, or of a template in examples/ci, has a command and options of its --help.
 set -euo pipefail
@@ -33,6 +34,19 @@ done
 [ "$links" -gt 20 ] || complain "docs.sh: found only $links links"
 
 grep -qxF -- "<!-- $(bash docs/modules.sh --sum) -->" docs/modules.svg || complain "docs/modules.svg differs from tests/layers/modules.txt; run docs/modules.sh >docs/modules.svg"
+
+python3 - <<'END' || complain "cmake/recipes disagree with the tree"
+import ast, glob, json, re
+cmake, conan, port, manifest, conda = (open(f).read() for f in ["CMakeLists.txt"] + ["cmake/recipes/" + f for f in ("conanfile.py", "lrbscope/portfile.cmake", "lrbscope/vcpkg.json", "recipe.yaml")])
+version = re.search(r"project\(lrbscope VERSION ([0-9.]+)", cmake)[1]
+assert json.loads(manifest)["version-semver"] == version and 'version = "%s"' % version in conan and 'version: "%s"' % version in conda
+for text in conan, port, conda:
+    options = re.findall("LRB_[A-Z_]+", text)
+    assert len(options) == 3 and all("set(%s " % option in cmake for option in options), options
+copied = [ast.literal_eval(node.iter) for node in ast.walk(ast.parse(conan)) if isinstance(node, ast.For)]
+for file in [*copied[0], "engine/" + re.search("include/[a-z/.]+", conda)[0]]:
+    assert glob.glob(file), file
+END
 
 # Every block is run by a test that names its page, or that covers all pages.
 runner() { # LANGUAGE: prints the file of the test
