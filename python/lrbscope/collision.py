@@ -15,7 +15,7 @@ surfaces have contacts, not an object inside another. Distances refer to the sol
 
 from __future__ import annotations
 
-import functools
+import hashlib
 import math
 import reprlib
 from typing import TYPE_CHECKING, Any
@@ -104,10 +104,7 @@ class DistanceData(_OfPair):
         return self._points[name]
 
 
-@functools.lru_cache(maxsize=16)
-def _body_of_bytes(*arrays: tuple[str, tuple[int, ...], bytes]) -> Body:
-    vertices, faces = (np.frombuffer(data, kind).reshape(shape) for kind, shape, data in arrays)
-    return _core.Body(vertices, faces, regions=False, name="mesh")
+_recent: dict[bytes, Body] = {}  # of the last 4 different meshes, by hashes of their arrays
 
 
 def body_of(mesh: _Mesh) -> Body:
@@ -122,7 +119,16 @@ def body_of(mesh: _Mesh) -> Body:
         raise TypeError(f"mesh: expected something with vertices and faces, got {type(mesh).__name__}")
     arrays: list[Any] = [a if isinstance(a, (list, tuple)) else np.asanyarray(a) for a in (vertices, faces)]
     if all(isinstance(a, np.ndarray) and a.dtype.kind in "fiu" and not np.ma.isMA(a) for a in arrays):
-        return _body_of_bytes(*((a.dtype.str, a.shape, a.tobytes()) for a in arrays))
+        content = hashlib.sha256()
+        for a in arrays:
+            content.update(f"{a.dtype.str} {a.shape} ".encode())
+            content.update(np.ascontiguousarray(a))
+        key = content.digest()
+        body = _recent.pop(key, None) or _core.Body(*arrays, regions=False, name="mesh")
+        _recent[key] = body
+        if len(_recent) > 4:
+            _recent.pop(next(iter(_recent)), None)
+        return body
     return _core.Body(vertices, faces, regions=False, name="mesh")  # lists and masked arrays
 
 

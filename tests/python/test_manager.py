@@ -44,6 +44,13 @@ def test_signatures_are_those_of_trimesh():
         assert ", ".join(found) == parameters
 
 
+def test_the_bodies_of_the_last_meshes_are_kept(box):
+    body_of = lrbscope.collision.body_of
+    kept = [body_of(Mesh(*cube_arrays(side))) for side in range(1, 6)]
+    assert body_of(Mesh(*cube_arrays(2))) is kept[1] and body_of(box) is not kept[0]
+    assert len(lrbscope.collision._recent) == 4
+
+
 def test_collisions(three, box):
     assert three.in_collision_single(box, shifted(9.5, 0.1, 0.1)) is True
     assert three.in_collision_single(box, shifted(50, 0, 0)) is False
