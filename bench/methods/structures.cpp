@@ -378,11 +378,12 @@ struct BspBody : SizedBody {
       const double side = plane.signedDistance(x);
       d.push_back(std::abs(side) < kUsualEpsilon ? 0 : side);
     }
-    const double least = *std::min_element(d.begin(), d.end()), most = *std::max_element(d.begin(), d.end());
+    const auto [least, most] = std::minmax_element(d.begin(), d.end());
     std::array<Polygon, 2> parts;
-    if (least >= 0 && most > 0) parts[0] = p;
-    if (most <= 0 && least < 0) parts[1] = p;
-    if (least >= 0 || most <= 0) return parts;
+    if (*least >= 0 || *most <= 0) {
+      if (*least < 0 || *most > 0) parts[*least < 0] = p;
+      return parts;
+    }
     for (std::size_t i = 0; i < p.size(); ++i) {
       const std::size_t next = (i + 1) % p.size();
       if (d[i] >= 0) parts[0].push_back(p[i]);
@@ -400,18 +401,37 @@ struct BspBody : SizedBody {
   std::uint32_t root;
 
  private:
-  using Halves = std::array<std::vector<Face>, 2>;
-
   /// Adds the subtree of the faces in a cell; returns `leaf` if there are none.
   std::uint32_t add(std::vector<Face> some, std::uint32_t leaf) {
     if (some.empty()) return leaf;
     Plane plane;
-    Halves halves;
-    if (!halve(some, plane, halves)) {
-      const std::size_t median = some.size() / 2;
-      plane = some[median].plane;
-      some.erase(some.begin() + static_cast<std::ptrdiff_t>(median));
-      halves = distributed(some, plane);  // without the faces in the plane
+    std::array<std::vector<Face>, 2> halves;
+    const auto distribute = [&] {
+      halves = {};
+      for (const Face& f : some) {
+        const auto parts = cut(plane, f.corners);
+        for (int k = 0; k < 2; ++k)
+          if (!parts[k].empty()) halves[k].push_back({parts[k], f.plane});
+      }
+    };
+    // Many faces are halved across an axis first, which keeps the tree low.
+    constexpr std::size_t kMany = 32;
+    bool are_halved = false;
+    for (int axis = 0; axis < 3 && !are_halved && some.size() >= kMany; ++axis) {
+      std::vector<double> at;
+      for (const Face& f : some) at.push_back(f.corners[0][axis]);
+      std::sort(at.begin(), at.end());
+      const auto above = std::upper_bound(at.begin(), at.end(), at[at.size() / 2]);
+      if (above == at.end() || *above - *(above - 1) < 4 * kUsualEpsilon) continue;
+      plane = Plane(Eigen::Vector3d::Unit(axis), -(*(above - 1) + *above) / 2);
+      distribute();
+      are_halved = 4 * std::max(halves[0].size(), halves[1].size()) < 3 * some.size();
+    }
+    if (!are_halved) {
+      const auto median = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
+      plane = median->plane;
+      some.erase(median);
+      distribute();  // without the faces in the plane
     }
     some = {};
     const auto n = static_cast<std::uint32_t>(nodes.size());
@@ -420,34 +440,6 @@ struct BspBody : SizedBody {
     nodes[n].front = front;
     nodes[n].back = back;
     return n;
-  }
-
-  static Halves distributed(const std::vector<Face>& some, const Plane& plane) {
-    Halves halves;
-    for (const Face& f : some) {
-      const auto parts = cut(plane, f.corners);
-      for (int k = 0; k < 2; ++k)
-        if (!parts[k].empty()) halves[k].push_back({parts[k], f.plane});
-    }
-    return halves;
-  }
-
-  /// Many faces are halved across an axis first, which keeps the tree low. Returns false if there are few, or
-  /// if no such plane separates them.
-  static bool halve(const std::vector<Face>& some, Plane& plane, Halves& halves) {
-    constexpr std::size_t kMany = 32;
-    if (some.size() < kMany) return false;
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<double> at;
-      for (const Face& f : some) at.push_back(f.corners[0][axis]);
-      std::sort(at.begin(), at.end());
-      const auto above = std::upper_bound(at.begin(), at.end(), at[at.size() / 2]);
-      if (above == at.end() || *above - *(above - 1) < 4 * kUsualEpsilon) continue;
-      plane = Plane(Eigen::Vector3d::Unit(axis), -(*(above - 1) + *above) / 2);
-      halves = distributed(some, plane);
-      if (4 * std::max(halves[0].size(), halves[1].size()) < 3 * some.size()) return true;
-    }
-    return false;
   }
 };
 
