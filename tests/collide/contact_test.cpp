@@ -166,11 +166,12 @@ void check_half_edges(const LrbRep& a, const LrbRep& b, const CollideResult& r) 
           VertexId now[3], then[3];
           rep->simplex(r.pairs[e.pair].*side, now);
           rep->simplex(r.pairs[before.pair].*side, then);
-          const auto has = [&](VertexId v) { return std::count(then, then + 3, v) > 0; };
+          const int size = rep->simplex_size();
+          const auto has = [&](VertexId v) { return std::count(then, then + size, v) > 0; };
           // Inside a simplex it is the same one; across an edge and at a corner they have these in common.
-          if (start_on.dim == 2) CHECK(r.pairs[e.pair].*side == r.pairs[before.pair].*side);
-          if (start_on.dim < 2) CHECK(has(now[start_on.index]));
-          if (start_on.dim == 1) CHECK(has(now[(start_on.index + 1) % 3]));
+          if (start_on.dim == size - 1) CHECK(r.pairs[e.pair].*side == r.pairs[before.pair].*side);
+          for (int k = 0; start_on.dim < size - 1 && k <= start_on.dim; ++k)
+            CHECK(has(now[(start_on.index + k) % size]));
         }
       }
     }
@@ -198,6 +199,11 @@ TEST_CASE("2D: segments cross in points and touch along lengths") {
   CHECK(across.regions.size() == 2);
   const CollideResult same = contact(square, square, Pose{});
   CHECK(same.interiors_overlap == Answer::yes);
+  for (const auto& [answer, half_edges] : {std::pair(&beside, 1U), std::pair(&same, 4U)}) {
+    REQUIRE(answer->regions[0].loops.size() == 1);
+    CHECK(answer->regions[0].loops[0].half_edges.size() == half_edges);
+    check_half_edges(square, square, *answer);
+  }
 }
 
 namespace {

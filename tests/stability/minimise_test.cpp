@@ -138,11 +138,12 @@ TEST_CASE("the kind of a failure is kept, and calls are bounded") {
 TEST_CASE("a minimised case fails again when it is loaded") {
   const WorkerPrograms workers;
   const workers::WorkerMethod plain = worker_method("plain");
-  int minimised = 0, flat = 0;
+  int flat = 0;
   for (const char* family :
-       {"plane", "touch", "identical", "hub", "sliver", "zero-area", "far", "scale", "matrix", "mixture"}) {
+       {"plane", "touch", "identical", "hub", "sliver", "zero-area", "scale", "matrix", "mixture"}) {
     CAPTURE(family);
-    for (std::uint64_t i = 0; i < 8; ++i) {
+    bool minimised = false;
+    for (std::uint64_t i = 0; i < 8 && !minimised; ++i) {
       const cases::Case c = cases::make_case(*cases::find_family(family), 1, 8, i);
       CaseWorker worker(plain, 20);
       Replay first;
@@ -165,11 +166,10 @@ TEST_CASE("a minimised case fails again when it is loaded") {
       CHECK(again.record.outcome == Outcome::wrong);
       CHECK(failure_of(case_of(saved.meshes), again) == m.kind);
       CHECK(size_of(saved.meshes) == m.after);
-      ++minimised;
+      minimised = true;
       flat += saved.meshes.a.dim == 2;
-      break;
     }
+    CHECK(minimised);
   }
-  CHECK(minimised > 5);
   CHECK(flat > 0);
 }
