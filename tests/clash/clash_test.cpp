@@ -111,6 +111,25 @@ TEST_CASE("clash: a limit of steps widens the depth's interval, which stays prov
   CHECK(last == whole.depth->upper - whole.depth->lower);
 }
 
+TEST_CASE("clash: far from the origin, translations separate bodies although positions are rounded") {
+  RandomEngine random(27);
+  const Vector3d far = Vector3d::Constant(0x1p38);
+  for (int i = 0; i < 12 * share(); ++i) {
+    CAPTURE(i);
+    Mesh bodies[2] = {shapes::l_shape(), shapes::l_shape()};
+    for (Mesh& mesh : bodies) {
+      const Eigen::Matrix3d turn = shapes::random_rotation(random);
+      // On the grid of doubles near 2^38, so that the bodies can be moved to the origin exactly.
+      for (Vector3d& x : mesh.vertices)
+        x = (0x1p14 * (turn * (x - Vector3d::Constant(0.5)))).array().round() * 0x1p-14;
+    }
+    const ClashResult r = ask(shapes::translated(bodies[0], far), shapes::translated(bodies[1], far));
+    REQUIRE(r.depth->lower > 0);
+    const Pose moved = Pose::translation(r.translation);
+    CHECK(collide(closed(bodies[0]), {}, closed(bodies[1]), moved).relation == Relation::separate);
+  }
+}
+
 TEST_CASE("clash: touching, separate, and within a clearance") {
   const Mesh a = shapes::box();
   const auto kind = [&](const Vector3d& at, double clearance = 0) {
