@@ -59,6 +59,7 @@ void members(auto& io, Is<MeasuredClash> auto& m) {
   io.member("depth", m.depth, Values::or_infinite);
   if (m.depth) io.member("translation", m.translation, Values::any);
   io.member("volume", m.volume, Values::or_infinite);
+  io.member_unless(true, "finished", m.finished);
   history(io, m.history);
 }
 

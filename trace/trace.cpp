@@ -49,7 +49,8 @@ MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history) {
           ends_of(result.depth),
           ends_of(result.volume),
           array_of(result.translation),
-          std::move(history)};
+          std::move(history),
+          result.finished};
 }
 
 MeasuredNearPairs measured(const NearPairsResult& result, double within) {

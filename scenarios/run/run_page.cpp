@@ -62,7 +62,8 @@ void add_measured(const trace::StepResult& r, std::vector<report::Number>& out) 
   out.push_back({"Contact kind", kind_text(r.clash->kind), std::string(name_of(r.clash->reason))});
   if (r.clash->depth)
     out.push_back({"Penetration depth", interval_text((*r.clash->depth)[0], (*r.clash->depth)[1]),
-                   "length of B's separation vector, proven"});
+                   std::string("length of B's separation vector, proven") +
+                       (r.clash->finished ? "" : ". The limit of steps was reached")});
   if (r.clash->volume)
     out.push_back({"Shared volume", interval_text((*r.clash->volume)[0], (*r.clash->volume)[1]), ""});
 }

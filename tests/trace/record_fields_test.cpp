@@ -95,7 +95,8 @@ void change(Value& value) {
                           {{0.25, std::numeric_limits<double>::infinity()}},
                           {{0.125, 0.126}},
                           {0, -1, 2},
-                          {{1, 0.1, 0.5}}};
+                          {{1, 0.1, 0.5}},
+                          false};
   else if constexpr (std::is_same_v<Value, std::optional<MeasuredNearPairs>>)
     value = MeasuredNearPairs{0.5, 3, {{7, 8, 0.25, 0.375, {{{1, -2, 3}, {4, 5, 6}}}}}};
   else if constexpr (std::is_same_v<Value, std::optional<MeasuredManifolds>>)

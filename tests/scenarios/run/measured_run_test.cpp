@@ -62,6 +62,11 @@ TEST_CASE("measured runs: each step has its distance and clash, and the contact 
   }
   CHECK(r.trace.steps.back().result.clash->kind == ClashKind::protrudes);
   CHECK(r.trace.steps.back().result.clash->depth->at(0) > 0.1);
+  CHECK(r.trace.steps.back().result.clash->finished);
+  std::string rocks = balls(R"({"clash": 1})");  // not convex: the search for their depth has steps
+  for (std::size_t at; (at = rocks.find("ball\"")) != std::string::npos;) rocks.replace(at, 4, "rock");
+  const run::Recording limited = run::record(spec::parse_scenario(rocks, "gap.json"), run::kSilent);
+  CHECK_FALSE(limited.trace.steps.back().result.clash->finished);
   REQUIRE(r.trace.header.first_contact.has_value());
   CHECK(r.trace.header.first_contact->history.size() > 2);
   const run::Recording plain = recorded("{}");

@@ -42,6 +42,7 @@ struct MeasuredClash {
   std::optional<std::array<double, 2>> depth, volume;  ///< intervals; nullopt: not known
   std::array<double, 3> translation{};                 ///< of B, that separates the solids
   std::vector<Bounds> history;                         ///< of the depth
+  bool finished = true;  ///< false: ClashRequest::max_steps ended the search for the depth
 
   friend bool operator==(const MeasuredClash&, const MeasuredClash&) = default;
 };
