@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -70,6 +72,20 @@ std::string choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBod
   return {};
 }
 
+/// Returns some of the poses; steps: "FROM:TO" or "FROM:TO:EVERY".
+std::vector<Pose> some_of(const std::vector<Pose>& poses, const std::string& steps) {
+  std::size_t from = 0, to = 0, every = 1;
+  char rest = 0;
+  const int found = std::sscanf(steps.c_str(), "%9zu:%9zu:%9zu%c", &from, &to, &every, &rest);
+  if (found != std::count(steps.begin(), steps.end(), ':') + 1 || found < 2 || every == 0 || from > to ||
+      to >= poses.size())
+    throw InputError("--steps " + steps + ": expected FROM:TO or FROM:TO:EVERY with numbers of poses up to " +
+                     std::to_string(poses.size() - 1));
+  std::vector<Pose> out;
+  for (std::size_t i = from; i <= to; i += every) out.push_back(poses[i]);
+  return out;
+}
+
 spec::Scenario make_scenario(const TwoMeshes& o, const std::vector<bodies::LoadedBody>& bodies,
                              std::vector<Pose> poses, const PictureOptions& picture) {
   spec::Scenario s;
@@ -82,6 +98,7 @@ spec::Scenario make_scenario(const TwoMeshes& o, const std::vector<bodies::Loade
   s.more = o.more;
   if (o.events) s.events = *o.events;
   if (o.clock) s.clock = *o.clock;
+  s.gzip = o.gzip;
   s.frames.montage = 6;
   s.frames.views = run::whole_and_contact();
   if (!o.poses.empty()) {
@@ -135,8 +152,10 @@ void add_motion_options(App& app, TwoMeshes& meshes) {
 std::pair<spec::Scenario, run::Recording> record_meshes(const TwoMeshes& meshes, const PictureOptions& given,
                                                         const Globals& globals) {
   // Check everything before an expensive build. Pipes are read once, because they are empty the second time.
+  check_view(given, run::whole_and_contact().size());
   std::vector<Pose> poses;
   if (!meshes.poses.empty()) poses = io::open_poses(meshes.poses).poses;
+  if (!meshes.steps.empty()) poses = some_of(poses, meshes.steps);
   const spec::StepQuestions& more = meshes.more;
   if (more.near) check_request(NearPairsRequest{.within = *more.near});
   if (!more.points.empty() && !std::filesystem::is_fifo(more.points)) io::read_points(more.points);
@@ -179,6 +198,10 @@ Command add_collide(App& root, const Globals& globals) {
   app->add_option("--points", meshes.more.points, "FILE",
                   "Also compute the signed distances of points to A at each step: lines of 3 numbers, x y z, "
                   "in B's frame");
+  app->add_option("--steps", meshes.steps, "FROM:TO[:EVERY]",
+                  "Only these poses of the file, from 0, and of them each EVERY-th")
+      ->needs(app->get_option("--poses"));
+  app->add_flag("--gzip", meshes.gzip, "Compress the trace: trace.json.gz");
   add_events_option(*app, meshes.events);
   add_clock_option(*app, meshes.clock);
   add_picture_options(*app, o->picture, UpOption::auto_by_default);

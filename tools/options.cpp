@@ -186,6 +186,12 @@ void add_colour_options(App& app, PictureOptions& options) {
       ->in_range(0U, spec::kMaxDepth);
 }
 
+void check_view(const PictureOptions& options, std::size_t views) {
+  if (options.view && *options.view > views)
+    throw InputError("--view: expected at most " + std::to_string(views) + ", the number of views, found " +
+                     std::to_string(*options.view));
+}
+
 void apply(const PictureOptions& options, render::FrameSpec& spec) {
   if (!options.animation.empty()) run::check_animation(options.animation);
   apply_size(options.size, spec);
@@ -205,10 +211,7 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
   if (options.colour_per) spec.colour_per = *options.colour_per;
   if (options.node_boxes) spec.node_boxes = options.node_boxes;
   run::check_frame_size(spec);
-  const std::size_t views = std::max<std::size_t>(1, spec.views.size());  // none named: one by default
-  if (options.view && *options.view > views)
-    throw InputError("--view: expected at most " + std::to_string(views) + ", the number of views, found " +
-                     std::to_string(*options.view));
+  check_view(options, std::max<std::size_t>(1, spec.views.size()));  // none named: one by default
   if (options.view && !spec.views.empty()) spec.views = {spec.views[*options.view - 1]};
   apply(options.camera, spec.views);
 }

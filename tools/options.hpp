@@ -111,6 +111,8 @@ void add_style_option(App& app, PictureOptions& options, const std::string& usua
 /// Adds --colour-by and --node-boxes alone.
 void add_colour_options(App& app, PictureOptions& options);
 void apply(const PictureOptions& options, render::FrameSpec& spec);
+/// Throws InputError if --view is none of the `views` views.
+void check_view(const PictureOptions& options, std::size_t views);
 
 /// Adds --view and --animate, for commands that call animate_frames().
 void add_animation_option(App& app, PictureOptions& options);
@@ -131,7 +133,8 @@ void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Rec
 /// The run of two meshes: B at poses, or moved towards A past the first contact.
 struct TwoMeshes {
   bodies::Corners corners = bodies::Corners::joined;
-  std::string a, b, poses, approach;
+  std::string a, b, poses, steps, approach;
+  bool gzip = false;  ///< of the trace
   CollideRequest request;
   spec::StepQuestions more;
   std::optional<EventLevel> events;

@@ -78,7 +78,7 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
   if (const auto size = std::filesystem::file_size(folder + "/" + trace_file, error); !error && size > kLarge)
     out.notes.push_back(
         folder + "/" + trace_file + " has " + std::to_string(size / kMegabyte) +
-        " MB, more than most viewers load; ask for fewer poses or, by --events, fewer events");
+        " MB, more than most viewers load; ask for fewer poses (--steps of collide) or events (--events)");
   out.mismatches = mismatches(scenario, recording);
   out.summary = trace::summary_json(recording.trace, summary_bodies(recorded));
   io::write_text(folder + "/summary.json", out.summary);
