@@ -374,6 +374,7 @@ int run_paper(PaperOptions o, const Globals& globals) {
 #ifdef LRB_BUILD_BENCH
   if (experiment.reports(paper::PaperPart::structures)) more.push_back(structures_table(objects, protocol));
 #endif
+  if (!meshes.empty()) more.push_back(paper::accelerator_table(meshes, protocol));
   const paper::SeriesReport series_report{a, series, steps.series, sweep.jobs};
   note(globals, write(meshes.empty() ? nullptr : &series_report));
   work.finish(false);

@@ -10,11 +10,6 @@
 namespace lrb::paper {
 namespace {
 
-constexpr std::array<PaperPart, 9> kAllParts = {
-    PaperPart::table1,      PaperPart::table2,    PaperPart::figure_3_1,
-    PaperPart::figure_3_2,  PaperPart::settings,  PaperPart::structures,
-    PaperPart::incremental, PaperPart::heat_maps, PaperPart::refinement_tree};
-
 PaperProtocol read_protocol(const io::JsonNode& node) {
   node.object({"collisions", "steps_after", "step", "seed", "seeds"});
   PaperProtocol p;
@@ -93,8 +88,10 @@ PaperExperiment parse_experiment(const std::string& text, const std::string& fil
   if (const auto n = root.get("$schema")) n->string();
   e.name = spec::read_name(root.at("name"));
   e.purpose = root.at("purpose").string();
-  e.report.assign(kAllParts.begin(), kAllParts.end());
-  if (const auto n = root.get("report")) e.report = read_report(*n);
+  if (const auto n = root.get("report"))
+    e.report = read_report(*n);
+  else
+    for (const EnumName<PaperPart>& part : kEnumNames<PaperPart>) e.report.push_back(part.value);
   if (const auto n = root.get("protocol")) e.protocol = read_protocol(*n);
   e.objects = read_objects(root.at("objects"), std::filesystem::path(file).parent_path());
   e.close_up = read_close_up(root, e.objects);

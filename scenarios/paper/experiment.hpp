@@ -87,8 +87,10 @@ static_assert(covers_all_fields<paper::PaperProtocol>);
 template <>
 inline constexpr auto kFields<paper::RecursionCount> =
     std::tuple{field("comparisons", &paper::RecursionCount::comparisons),
+               field("triangles", &paper::RecursionCount::triangles, Kept::if_set),
                field("refinements", &paper::RecursionCount::refinements),
-               field("pairs", &paper::RecursionCount::pairs), field("missed", &paper::RecursionCount::missed),
+               field("pairs", &paper::RecursionCount::pairs),
+               field("missed", &paper::RecursionCount::missed),
                field("bound_tests", &paper::RecursionCount::bound_tests)};
 
 /// Without `min_faces`, which experiments do not set.

@@ -22,7 +22,7 @@ struct PaperReport {
   std::vector<report::Table> more = {};  ///< tables that are shown after the counters
 };
 
-/// Writes records.jsonl, table1.csv, table2.csv, ratios.csv, tables.json, report.md, index.html, with gnuplot
+/// Writes records.jsonl, table1.csv, table2.csv, tables.json, report.md, index.html, with gnuplot
 /// figure3-1 and figure3-2 as SVG and PNG, settings.csv and settings.jsonl, heat_maps.png and
 /// refinement_tree.svg, each if the experiment reports it; for a series, the output of add_series(). Returns
 /// notes on pictures that could not be drawn. Throws EnvironmentError.

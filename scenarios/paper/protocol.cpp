@@ -7,6 +7,7 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/core/hash.hpp>
+#include <lrbscope/observe.hpp>
 
 namespace lrb::paper {
 namespace {
@@ -23,10 +24,24 @@ RecursionCount count_of(const CollideResult& result, const std::vector<SimplexPa
   return n;
 }
 
+/// Counts the pairs of triangles of the faces that are compared.
+struct TrianglePairs : CollideProbe {
+  const LrbRep &a, &x;
+  std::uint64_t count = 0;
+
+  TrianglePairs(const LrbRep& of_a, const LrbRep& of_x) : a(of_a), x(of_x) {}
+  static std::uint64_t triangles_of(const LrbRep& rep, SimplexId s) {
+    return Mesh::simplices_of(rep.face(rep.face_of_simplex(s)).size(), rep.dim());
+  }
+  void face_test(SimplexId of_a, SimplexId of_x, exact::Meet, std::uint32_t, std::uint32_t) override {
+    count += triangles_of(a, of_a) * triangles_of(x, of_x);
+  }
+};
+
 /// Returns the answer to a query with a fresh workspace.
 CollideResult ask(const LrbRep& a, const Pose& pose_a, const LrbRep& x, const Pose& pose_x,
-                  const CollideRequest& request, Workspace& workspace) {
-  return std::move(collide(a, pose_a, x, pose_x, request, workspace).value());
+                  const CollideRequest& request, Workspace& workspace, CollideProbe* probe = nullptr) {
+  return std::move(collide(a, pose_a, x, pose_x, request, workspace, probe).value());
 }
 
 template <class Query>
@@ -50,8 +65,12 @@ ContactStep count_step(const LrbRep& a, const Pose& pose_a, const LrbRep& x, con
       continue;
     if (kRecursions[i] != Recursion::complete) {
       std::uint64_t taken = 0;
-      const CollideResult found = timed([&] { return ask(a, pose_a, x, pose_x, request, workspace); }, taken);
+      TrianglePairs triangles(a, x);
+      CollideProbe* const probe = i == kPaper ? &triangles : nullptr;
+      const CollideResult found =
+          timed([&] { return ask(a, pose_a, x, pose_x, request, workspace, probe); }, taken);
       step.counts[i] = count_of(found, complete.pairs);
+      step.counts[i].triangles = triangles.count;
       step.counts[i].nanoseconds = taken;
     } else {
       step.counts[i] = count_of(complete, complete.pairs);

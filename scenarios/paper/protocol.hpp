@@ -34,7 +34,7 @@ inline constexpr std::array kRecursions = {Recursion::paper, Recursion::paper_st
 /// A value for each recursion, in the order of kRecursions.
 template <class T>
 using PerRecursion = std::array<T, kRecursions.size()>;
-inline constexpr std::size_t kPaper = 0;  ///< the paper's own; index into kRecursions
+inline constexpr std::size_t kPaper = 0, kWrapper = 2;  ///< indices of paper and paper_wrapper
 /// Indices of the recursions whose cost allows large bodies: not paper_wrapper, which compares each new face
 /// with a whole wrapper.
 inline constexpr std::size_t kScalable[] = {0, 1, 3};
@@ -43,6 +43,7 @@ inline constexpr std::size_t kScalable[] = {0, 1, 3};
 struct RecursionCount {
   std::uint64_t comparisons = 0;  ///< number of faces compared (paper: polygons; complete: the triangles that
                                   ///< they are fans of)
+  std::uint64_t triangles = 0;    ///< pairs of triangles of the compared faces (Recursion::paper only)
   std::uint64_t refinements = 0;
   std::uint64_t pairs = 0;        ///< number of pairs of real triangles found to intersect
   std::uint64_t missed = 0;       ///< number of intersecting pairs that were not found

@@ -141,16 +141,6 @@ std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObjec
   return sorted(std::move(steps));
 }
 
-std::string times_to_json_lines(std::span<const ContactStep> steps) {
-  std::string out;
-  for (const ContactStep& s : steps) {
-    nlohmann::ordered_json line = {{"object", s.object}, {"collision", s.collision}, {"step", s.step}};
-    for (const RecursionCount& count : s.counts) line["nanoseconds"].push_back(count.nanoseconds);
-    out += line.dump() + "\n";
-  }
-  return out;
-}
-
 std::vector<SeriesRow> series_rows(const LrbRep& a, std::span<const SeriesObject> objects,
                                    std::span<const ContactStep> steps) {
   std::vector<SeriesRow> rows;
@@ -268,14 +258,13 @@ report::Table table(std::span<const SeriesRow> rows, SeriesPartner partner, std:
   for (const SeriesRow& row : rows) {
     if (row.partner != partner) continue;
     const RecursionRow& x = row.counts.recursions[recursion];
-    const auto all = static_cast<double>(x.pairs + x.missed);
     t.rows.push_back({row.body, render::group_digits(row.counts.real_faces),
                       render::group_digits(row.counts.total_faces), render::group_digits(row.outer_faces),
                       render::group_digits(row.counts.steps), whole(x.comparisons.min),
                       whole(x.comparisons.average), whole(x.comparisons.max),
                       fixed(x.refinements.average, 1)});
     if (complete) t.rows.back().push_back(whole(x.bound_tests));
-    t.rows.back().push_back(all > 0 ? fixed(100 * static_cast<double>(x.missed) / all, 2) + " %" : "–");
+    t.rows.back().push_back(fixed(missed_percent(x), 2) + " %");
     t.rows.back().push_back(fixed(row.microseconds[recursion], 0));
   }
   return t;
@@ -368,30 +357,6 @@ std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows) {
   return fits;
 }
 
-std::string growth_text(const SeriesReport& report) {
-  const std::vector<SeriesRow> rows = series_rows(report.a, report.objects, report.steps);
-  std::string out;
-  for (const SeriesFit& f : series_fits(rows)) {
-    if (f.partner != SeriesPartner::itself || !f.comparisons ||
-        kRecursions[f.recursion] == Recursion::paper_strict)
-      continue;
-    // Rows begin with the finest resolution.
-    const auto finest = std::find_if(rows.begin(), rows.end(), [&](const SeriesRow& row) {
-      return row.partner == f.partner && row.body == f.body;
-    });
-    const std::string text = power_text(*f.comparisons) + ", to " +
-                             whole(finest->counts.recursions[f.recursion].comparisons.average);
-    out += f.recursion == kPaper ? (out.empty() ? "" : "; ") + f.body + " " + text +
-                                       " at n = " + whole(finest->counts.total_faces)
-                                 : " (complete: " + text + ")";
-  }
-  return out.empty()
-             ? out
-             : "Meshes of n faces against themselves: the average number of comparisons by the paper's recursion "
-               "grows as " +
-                   out + ".";
-}
-
 std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc) {
   const std::vector<SeriesRow> rows = series_rows(report.a, report.objects, report.steps);
   const std::vector<SeriesFit> fits = series_fits(rows);
@@ -406,12 +371,64 @@ std::vector<report::Table> add_series(const SeriesReport& report, report::Docume
                 panels(charts));
   }
   doc.file("series.jsonl", to_json_lines(report.steps), "time steps of the resolutions");
-  doc.file("series_times.jsonl", times_to_json_lines(report.steps), "times of the queries");
+  doc.file("series_times.jsonl", to_json_lines(report.steps, true), "the same with times of the queries");
   doc.file("series.json", series_json(rows, fits), "tables and fitted exponents as data");
   std::vector<report::Table> tables = {fit_table(fits, report.jobs)};
   for (const SeriesPartner partner : kSeriesPartners)
     for (const std::size_t i : kScalable) tables.push_back(table(rows, partner, i));
   return tables;
+}
+
+report::Table accelerator_table(std::span<const Mesh> bodies, PaperProtocol protocol) {
+  constexpr std::uint32_t kLids = 12;
+  protocol.steps_after = 0;
+  protocol.collisions = std::min(protocol.collisions, 10U);
+  const std::string small = ", " + std::to_string(kLids) + " lids";
+  report::Table t{
+      "LRB-reps as an accelerator, at first contact",
+      {"body", "real faces", "total over real", "total over real" + small, "tests by default", "paper",
+       "paper_boxes", "paper_boxes" + small, "paper_wrapper_boxes" + small, "pairs missed" + small}};
+  t.note =
+      "Each body with itself, averages over " + std::to_string(protocol.collisions) +
+      " approaches. Tests are those of boxes and faces; those of recursions are multiples of the default's. \"" +
+      std::to_string(kLids) + " lids\": built with --max-lids " + std::to_string(kLids) + ".";
+  Workspace workspace;
+  for (const Mesh& body : bodies) {
+    BuildOptions options;
+    const LrbRep usual = build_lrb(body, options);
+    options.max_lids = kLids;
+    const LrbRep few_lids = build_lrb(body, options);
+    struct Query {
+      const LrbRep& rep;
+      Recursion recursion;
+      double tests = 0;
+    } queries[] = {{usual, Recursion::complete},
+                   {usual, Recursion::paper},
+                   {usual, Recursion::paper_boxes},
+                   {few_lids, Recursion::paper_boxes},
+                   {few_lids, Recursion::paper_wrapper_boxes}};
+    std::uint64_t pairs = 0, missed = 0;
+    for (std::uint32_t i = 0; i < protocol.collisions; ++i)
+      for (const ContactStep& s : run_collision(usual, usual, body.name, i, protocol, workspace, true))
+        for (Query& q : queries) {
+          CollideRequest request;
+          request.recursion = q.recursion;
+          const CollideResult& found = collide(q.rep, s.pose_a, q.rep, s.pose_x, request, workspace).value();
+          q.tests += static_cast<double>(found.counters.face_tests + found.counters.box_tests);
+          if (&q.rep != &few_lids) continue;
+          pairs += s.counts.back().pairs;
+          missed += s.counts.back().pairs - found.pairs.size();
+        }
+    const auto total_over_real = [](const LrbRep& rep) {
+      return fixed(static_cast<double>(rep.face_count()) / rep.real_face_count(), 2);
+    };
+    t.rows.push_back({body.name, render::group_digits(usual.real_face_count()), total_over_real(usual),
+                      total_over_real(few_lids), whole(queries[0].tests / protocol.collisions)});
+    for (std::size_t i = 1; i < std::size(queries); ++i)
+      t.rows.back().push_back(fixed(queries[i].tests / queries[0].tests, 1));
+    t.rows.back().push_back(render::group_digits(missed) + " of " + render::group_digits(pairs));
+  }
+  return t;
 }
 
 }  // namespace lrb::paper

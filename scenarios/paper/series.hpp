@@ -66,9 +66,6 @@ std::vector<SeriesObject> make_series(std::span<const Mesh> bodies,
 std::vector<ContactStep> run_series(const LrbRep& a, std::span<const SeriesObject> objects,
                                     const SweepOptions& options);
 
-/// Returns the times of the steps, which are not in their records: one JSON object on a line for each step.
-std::string times_to_json_lines(std::span<const ContactStep> steps);
-
 /// One resolution against one partner.
 struct SeriesRow {
   std::string body;
@@ -98,12 +95,12 @@ struct SeriesFit {
 };
 std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows);
 
-/// Returns a sentence on the growth of comparisons for bodies that collide with themselves.
-std::string growth_text(const SeriesReport& report);
-
 /// Adds charts, on the page and for print (series-comparisons, series-time), series.jsonl (records),
 /// series_times.jsonl and series.json (rows and fits, without times). Returns the tables.
 std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc);
+
+/// Returns the tests of queries on LRB-reps, and of the default, at first contact of each body with itself.
+report::Table accelerator_table(std::span<const Mesh> bodies, PaperProtocol protocol);
 
 /// Returns a fitted power as text, such as "n^0.52 ± 0.01".
 std::string power_text(const resolutions::PowerFit& fit);

@@ -33,17 +33,19 @@ class SpreadOf {
 
 RecursionRow count(std::span<const ContactStep> steps, const std::string& object, std::size_t recursion) {
   RecursionRow row;
-  SpreadOf comparisons, refinements, bound_tests;
+  SpreadOf comparisons, triangles, refinements, bound_tests;
   for (const ContactStep& s : steps) {
     if (s.object != object) continue;
     const RecursionCount& n = s.counts[recursion];
     comparisons.add(n.comparisons);
+    triangles.add(n.triangles);
     refinements.add(n.refinements);
     bound_tests.add(n.bound_tests);
     row.pairs += n.pairs;
     row.missed += n.missed;
   }
   row.comparisons = comparisons.spread();
+  row.triangles = triangles.spread();
   row.refinements = refinements.spread();
   row.bound_tests = bound_tests.average();
   return row;
@@ -134,10 +136,6 @@ Band band_of(std::vector<double> values) {
 
 namespace {
 
-constexpr std::array<double PublishedRow::*, 3> kPublished = {&PublishedRow::min, &PublishedRow::average,
-                                                              &PublishedRow::max};
-constexpr std::array<double Spread::*, 3> kMeasured = {&Spread::min, &Spread::average, &Spread::max};
-
 RatioBands bands_of(std::span<const ObjectRow* const> rows) {
   RatioBands bands;
   for (std::size_t i = 0; i < bands.size(); ++i) {
@@ -193,17 +191,6 @@ std::string table2_csv(std::span<const Run> runs) {
         const PublishedRow* p = i == kPaper ? published(row.object) : nullptr;
         for (const auto member : kPublished) cells.push_back(p ? text_of(p->*member) : "");
       }
-  return report::csv(t);
-}
-
-std::string ratios_csv(std::span<const Run> runs) {
-  report::Table t{"", {"object", "number", "seeds", "median", "lowest", "highest"}};
-  for (const ObjectRow& row : runs.front().rows) {
-    const RatioBands bands = ratios(runs, row.object);
-    for (std::size_t i = 0; i < bands.size(); ++i)
-      t.rows.push_back({row.object, kRatioNames[i], std::to_string(runs.size()), text_of(bands[i].median),
-                        text_of(bands[i].low), text_of(bands[i].high)});
-  }
   return report::csv(t);
 }
 

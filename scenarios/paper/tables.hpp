@@ -40,10 +40,16 @@ struct Spread {
 
 /// The cost of one recursion against one object, over all counted time steps.
 struct RecursionRow {
-  Spread comparisons, refinements;
+  Spread comparisons, triangles, refinements;
   double bound_tests = 0;  ///< average number
   std::uint64_t pairs = 0, missed = 0;
 };
+
+/// Returns the share of pairs of real triangles that were not found, in percent.
+inline double missed_percent(const RecursionRow& x) {
+  const std::uint64_t all = x.pairs + x.missed;
+  return all > 0 ? 100 * static_cast<double>(x.missed) / static_cast<double>(all) : 0;
+}
 
 struct ObjectRow {
   std::string object;
@@ -62,6 +68,8 @@ struct PublishedRow {
   double min, average, max;
 };
 std::span<const PublishedRow> published_table2();
+inline constexpr std::array kPublished = {&PublishedRow::min, &PublishedRow::average, &PublishedRow::max};
+inline constexpr std::array kMeasured = {&Spread::min, &Spread::average, &Spread::max};
 /// Returns the row of an object; null if the paper does not have it.
 const PublishedRow* published(const std::string& object);
 
@@ -99,8 +107,6 @@ RatioBands ratios(const Run& run);
 std::string table1_csv(std::span<const PaperObject> objects);
 /// A line for each run, object and recursion.
 std::string table2_csv(std::span<const Run> runs);
-/// A line for each object and each of kRatioNames.
-std::string ratios_csv(std::span<const Run> runs);
 
 /// Returns both tables as JSON: "table1_object_sizes", and "table2_face_comparisons_of_object_A_with" by the
 /// paper's recursion with the first seed; for the other recursions the same with their names as suffixes;
