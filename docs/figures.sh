@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # docs/figures.sh [LRBSCOPE]: makes the pictures of bodies in README and docs: figure2.png, construction.png,
-# collision.png, proof_map.png, figure.png, inset.png, distance.png, near.png, points.png, manifold.png,
+# collision.png, proof_map.png, accelerator.png, figure.png, inset.png, distance.png, near.png, points.png, manifold.png,
 # first_contact.png and clash.png.
 # docs/figures.sh chart [LRBSCOPE [OPTION...]]: measures and makes only chart.png, with these options of lrbscope chart.
 set -euo pipefail
@@ -21,6 +21,8 @@ run run collision --size 1000x562 -o "$work/collision"
 run figure construction --panels 6 --title --width 160mm --dpi 140 -o "$work/construction.png"
 run figure figure2_mesh --width 85mm --dpi 300 -o "$work/figure.png"
 run figure collision --proof-map --width 85mm --dpi 220 -o "$work/proof_map.png"
+run run collision --recursion paper_boxes --frames none -o "$work/boxes"
+run figure "$work/boxes" --steps 0,12,16 --wrappers --columns 3 --width 160mm --dpi 140 -o "$work/accelerator.png"
 run figure figure2_mesh --panels 3 --inset b:region:40 --inset c:face:2197:6 --dpi 300 -o "$work/inset.png"
 answer() { # NAME COMMAND POSES-OPTION NUMBERS SIZE OPTION...: a picture of one answer, for the bodies of `collision`
   echo "$4" >"$work/poses.txt"
@@ -39,4 +41,5 @@ mv "$work/rest/a.obj" "$work/rest/peg.obj" && mv "$work/rest/b.obj" "$work/rest/
 run manifold "$work/rest/peg.obj" "$work/rest/ring.obj" --poses "$work/poses.txt" --margin 0.02 --draw "$docs/manifold.png" --size 760x475
 frames=("$work"/collision/frames/*.png)
 cp "${frames[-1]}" "$docs/collision.png"
-cp "$work/figure2.png" "$work/construction.png" "$work/figure.png" "$work/inset.png" "$work/proof_map.png" "$docs/"
+cp "$work/figure2.png" "$work/construction.png" "$work/figure.png" "$work/inset.png" "$work/proof_map.png" "$work/accelerator.png" \
+  "$docs/"
