@@ -135,7 +135,21 @@
     check(/^Pseudo face/.test(text("picked-title")), "a click on it fills the panel", text("picked-title"));
     for (const word of ["layer", "lids", "floor", "tests", "hits", "misses"])
       check(text("picked-facts").includes(word), `with ${word}`);
+    const { side, goal } = selection.picked, sizes = wrappers.sizes.join();
+    press("m");
+    view.draw();
+    check(wrappers.onBoundary(side, goal), "m refines the wrapper down to the face under it");
+    check(view.marks.shown.get("resolved").parts.length > 0, "shows the faces on the way");
+    check(text("picked-facts").includes("way in"), "and lists them");
     press("Escape");
+    equal(wrappers.sizes.join(), sizes, "Esc undoes it");
+    view.draw();
+    const { array } = view.glass.mesh.geometry.attributes.position,
+      ahead = view.camera.camera.getWorldDirection(new THREE.Vector3()),
+      far = (i) => ahead.dot(new THREE.Vector3(...array.subarray(i, i + 3))),
+      depths = Array.from({ length: array.length / 9 }, (_, t) => far(9 * t) + far(9 * t + 3) + far(9 * t + 6));
+    check(depths.length > 0 && depths.every((d, t) => t === 0 || d <= depths[t - 1] + 1e-3),
+        "lids of both bodies are drawn from back to front");
     const depth = () => view.nearest(...at, view.views.flatMap((v) => [v.lids, v.real])), front = depth();
     view.look({ slice: 1 });
     view.draw();

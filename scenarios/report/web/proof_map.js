@@ -125,7 +125,8 @@ function separation(boxes) {
 export class ProofMap {
   /** `view`: null without a 3D view. */
   constructor(scene, events, selection, view) {
-    Object.assign(this, { scene, events, selection, view, key: "", window: [0, 0, 1] });
+    // Listeners are notified of the part of the map that is shown, and of the painted picture.
+    Object.assign(this, { scene, events, selection, view, key: "", window: [0, 0, 1], listeners: [] });
     const label = "Proof map: all pairs of faces, by the test that decided them",
       whole = textButton("whole", () => this.zoom([0, 0], [0, 0], 1), "Show all pairs; the wheel enlarges");
     const look = "flex:none;cursor:crosshair";
@@ -151,15 +152,23 @@ export class ProofMap {
 
   /** Shows a part of the map of a given size, with a point of it at a place of the canvas. */
   zoom(point, place, size) {
-    this.window = [...point.map((x, i) => Math.max(0, Math.min(1 - size, x - place[i] * size))), size];
+    this.show([...point.map((x, i) => Math.max(0, Math.min(1 - size, x - place[i] * size))), size]);
+    this.tell({ window: this.window });
+  }
+  show(window) {
+    this.window = window;
     this.painted = null;
     this.redraw();
+  }
+  tell(what) {
+    for (const listener of this.listeners) listener(what);
   }
 
   draw() {
     if (!this.box.offsetParent) return; // another tab is shown
     const room = this.box.closest(".tab-body"),
-      most = Math.min(room ? room.clientHeight - 32 : 400, 0.55 * this.box.clientWidth),
+      wide = this.box.clientWidth,
+      most = room ? Math.min(room.clientHeight - 32, 0.55 * wide) : Math.min(400, wide),
       size = Math.round(Math.max(240, most)),
       pixels = Math.round(size * Math.min(2, window.devicePixelRatio || 1)),
       step = this.events.step(this.selection.event),
@@ -229,6 +238,7 @@ export class ProofMap {
     }
     for (const cell of painted.hits) this.fill(cell, size); // small ones stay on top of later neighbours
     context.putImageData(painted.image, 0, 0);
+    if (this.listeners.length) this.tell({ map: painted.pixels });
     // The cell under the pointer or of the event, and the pairs that another engine got wrong.
     const { axes } = this.cells,
       nodes = this.events.about(now, "node").map((n) => n.number),

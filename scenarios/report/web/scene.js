@@ -186,10 +186,8 @@ class TraceReader {
 // ---- the same view beside another run's, in a page that compares them (index.html?alone in a frame): common
 // camera and step
 class Together {
-  constructor(view, selection, events) {
-    this.view = view;
-    this.selection = selection;
-    this.events = events;
+  constructor(view, selection, events, map) {
+    Object.assign(this, { view, selection, events, map });
     this.listening = false; // while applying the other view's state: not to be sent back
     document.documentElement.classList.add("alone");
     view.camera.controls.addEventListener("change", () => this.tell({ camera: view.camera.json() }));
@@ -197,6 +195,9 @@ class Together {
     window.addEventListener("message", (e) => e.source === parent && e.data.lrbscope
         && this.hear(e.data.lrbscope));
     this.tell({ camera: view.camera.json(), step: this.step }); // the view that is created last sets both
+    if (!map) return;
+    this.tell({ hasMap: true });
+    map.listeners.push((what) => this.tell(what));
   }
 
   get step() {
@@ -207,9 +208,15 @@ class Together {
     if (!this.listening) parent.postMessage({ lrbscope: what }, "*");
   }
 
-  hear({ camera, step, region }) {
+  hear({ camera, step, region, window, mapping }) {
     if (region !== undefined) return this.showRegion(region);
     this.listening = true;
+    if (mapping !== undefined && this.map) {
+      byId("scene").append(this.map.box);
+      document.documentElement.classList.toggle("mapping", mapping);
+      this.map.redraw();
+    }
+    if (window) this.map?.show(window);
     if (camera) this.view.camera.set(camera);
     if (step !== undefined && step !== this.step) seek("step", step);
     this.listening = false;
@@ -255,7 +262,8 @@ function startScene() {
     wrappers = complete ? new Wrappers(bodies, events, scene.wrapper) : null;
   if (wrappers)
     selection.listeners.push((what) => {
-      if (what === "event") wrappers.seek(selection.event);
+      const { event, picked } = selection;
+      if (what !== "look") wrappers.seek(event, picked?.resolved ? picked : null);
     }); // before the listeners that display them
   const timeline = new Timeline(events, selection), panel = new Panel(events, selection, wrappers);
   const filter = new EventFilter(), table = new EventTable(events, selection, filter),
@@ -304,6 +312,7 @@ function startScene() {
     byId("events").scrollIntoView({ block: "nearest" });
   };
   byId("picked-events").onclick = listPicked;
+  if (byId("resolve")) byId("resolve").onclick = () => selection.resolve();
   byId("help-open").onclick = toggleHelp;
   followPage(events, selection);
   const keys = { ...keysOf(timeline, table, selection, controls), ...keysOfTabs(tabs, listPicked) };
@@ -318,7 +327,7 @@ function startScene() {
   if (view) view.frameAll(view.camera.from);
   const address = new PageAddress({ events, selection, view, controls, tabs });
   if (location.hash.length > 1) address.read();
-  if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events);
+  if (view && new URLSearchParams(location.search).has("alone")) new Together(view, selection, events, map);
   return { scene, events, map, selection, wrappers, timeline, table, filter, form, panel, why, work,
       attempts, view, controls, loader, strip, tabs, address };
 }
@@ -394,6 +403,7 @@ function keysOf(timeline, table, selection, controls) {
     "[": () => timeline.go(() => timeline.byStep(-1)),
     "]": () => timeline.go(() => timeline.byStep(1)),
     " ": () => timeline.playback.toggle(),
+    m: () => selection.resolve(),
     r: (shift) => timeline.go(() => timeline.toChange(shift ? -1 : 1)),
     c: (shift) => timeline.go(() => timeline.toContact(shift ? -1 : 1)),
     "?": toggleHelp,

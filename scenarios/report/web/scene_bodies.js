@@ -1,4 +1,4 @@
-import { boxEdges, fadingLines, HOLES, holeUniforms, WHITE } from "./scene_lines.js";
+import { boxEdges, fadingLines, HOLES, holeUniforms, lineGeometry, WHITE } from "./scene_lines.js";
 import { NONE } from "./scene_run.js";
 
 // ---- counters as colours: one number for each face, on a scale common to both bodies
@@ -171,6 +171,7 @@ export class FaceMesh {
       for (const end = k + 9; k < end; k++) array[k] = bytes[k % 3];
     }
     color.needsUpdate = true;
+    this.version = ++FaceMesh.versions;
   }
 
   /** Shows only the faces that pass. */
@@ -182,22 +183,7 @@ export class FaceMesh {
       if (passes(this.faceOf[t])) for (let c = 0; c < 3; c++) geometry.index.array[n++] = 3 * t + c;
     geometry.index.needsUpdate = true;
     geometry.setDrawRange(0, n);
-    this.sortedAlong = "";
-  }
-
-  /** Orders the shown faces from back to front along a direction, as glass is to be drawn. */
-  sort(ahead) {
-    const { index, drawRange, attributes } = this.mesh.geometry, { array } = attributes.position,
-      key = ahead.map((x) => x.toFixed(1)).join();
-    if (!index || key === this.sortedAlong) return;
-    this.sortedAlong = key;
-    const depths = new Float32Array(this.triangles), corners = index.array.subarray(0, drawRange.count),
-      firsts = corners.filter((_, i) => i % 3 === 0);
-    for (const first of firsts)
-      for (let c = 0; c < 9; c++) depths[first / 3] += array[3 * first + c] * ahead[c % 3];
-    firsts.sort((p, q) => depths[q / 3] - depths[p / 3]);
-    for (let i = 0; i < corners.length; i++) corners[i] = firsts[(i / 3) | 0] + (i % 3);
-    index.needsUpdate = true;
+    this.version = ++FaceMesh.versions;
   }
 
   /** Returns the face and the simplex that a ray hits. */
@@ -210,6 +196,63 @@ export class FaceMesh {
   }
   dispose() {
     this.mesh.geometry.dispose();
+  }
+}
+FaceMesh.versions = 0; // of all: each change of what one shows has its own
+
+// ---- glass: the lids of both bodies as one mesh, drawn from back to front also where the bodies overlap
+export class Glass {
+  constructor(material) {
+    this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
+    this.mesh.renderOrder = 1;
+    this.mesh.frustumCulled = false;
+  }
+
+  /** `panes`: FaceMeshes in the world. `ahead`: the direction of the view. */
+  show(panes, ahead) {
+    const ways = ahead.toArray().map((x) => x.toFixed(1)),
+      key = [ways, ...panes.map((p) => [p.version, ...p.mesh.matrixWorld.elements])].join();
+    if (key === this.key) return;
+    this.key = key;
+    const parts = panes.map(({ mesh }) => {
+        const { index, attributes, drawRange } = mesh.geometry, { position, normal, color } = attributes;
+        return { e: mesh.matrixWorld.elements, corners: index.array, count: drawRange.count / 3, p: position.array,
+          n: normal.array, c: color.array };
+      }),
+      count = parts.reduce((n, part) => n + part.count, 0), depths = new Float32Array(count),
+      of = new Uint8Array(count), first = new Uint32Array(count), { geometry } = this.mesh;
+    let t = 0, least = Infinity, most = -Infinity;
+    parts.forEach(({ e, corners, count: own, p }, k) => {
+      const [x, y, z, w] = [0, 4, 8, 12].map((c) => e[c] * ahead.x + e[c + 1] * ahead.y + e[c + 2] * ahead.z);
+      for (let i = 0; i < own; i++, t++) {
+        const at = 3 * corners[3 * i];
+        first[t] = at;
+        of[t] = k;
+        depths[t] = x * (p[at] + p[at + 3] + p[at + 6]) + y * (p[at + 1] + p[at + 4] + p[at + 7])
+          + z * (p[at + 2] + p[at + 5] + p[at + 8]) + 3 * w;
+        least = Math.min(least, depths[t]);
+        most = Math.max(most, depths[t]);
+      }
+    });
+    // Sorted by counting, the farthest first.
+    const steps = 65535, scale = steps / (most - least || 1), next = new Uint32Array(steps + 2),
+      place = (d) => Math.trunc((most - d) * scale);
+    for (const d of depths) next[place(d) + 1]++;
+    for (let i = 0; i <= steps; i++) next[i + 1] += next[i];
+    const position = new Float32Array(9 * count), normal = new Float32Array(9 * count),
+      color = new Uint8Array(9 * count);
+    for (t = 0; t < count; t++) {
+      const { e, p, n, c } = parts[of[t]], to = 9 * next[place(depths[t])]++;
+      for (let k = 0; k < 9; k++) {
+        const x = first[t] + k - (k % 3), r = k % 3;
+        position[to + k] = e[r] * p[x] + e[4 + r] * p[x + 1] + e[8 + r] * p[x + 2] + e[12 + r];
+        normal[to + k] = e[r] * n[x] + e[4 + r] * n[x + 1] + e[8 + r] * n[x + 2];
+        color[to + k] = c[x + r];
+      }
+    }
+    geometry.dispose();
+    for (const [name, array] of Object.entries({ position, normal, color }))
+      geometry.setAttribute(name, new THREE.BufferAttribute(array, 3, name === "color"));
   }
 }
 
@@ -318,13 +361,22 @@ export class BodyView {
     this.lidFaces = range(flat ? 0 : body.realCount, body.faceCount)
         .filter((f) => body.offsets[f] < body.offsets[f + 1]);
     this.lids = new FaceMesh(body, this.lidFaces, this.materials.lids);
-    this.lids.mesh.renderOrder = 1;
-    this.lids.mesh.frustumCulled = false;
-    this.group.add(this.real.mesh, this.lids.mesh);
+    this.group.add(this.real.mesh);
+    this.addGlass(this.lids);
     this.put("edges", this.lines(flat ? [] : edgesOf(body, this.realFaces), 0.5));
-    this.put("lidEdges", this.lines([], 0));
+    this.put("lidEdges", this.lines([], 0.25, { opens: true }));
     this.measure();
     this.fills = flat ? this.makeFills() : null;
+  }
+
+  /** Lids of a 3D body are drawn with those of the other one; see Glass. */
+  addGlass(faces) {
+    if (this.body.dim === 2) this.group.add(faces.mesh);
+    else faces.mesh.matrixWorld = this.group.matrixWorld;
+  }
+  get panes() {
+    const glass = this.body.dim === 2 ? [] : [this.lids, ...this.pieces.slice(1)];
+    return glass.filter(({ mesh }) => mesh.visible && mesh.geometry.index);
   }
 
   /** Replaces an object of the body, named as a member; null: removes it. */
@@ -414,14 +466,13 @@ export class BodyView {
             float inside = intoHole();
             if (inside > pixel) discard;
             float clear = isPlane ? 1.0 : mix(1.0, 0.06 + 0.94 * pow(1.0 - facing, 2.5), rim);
-            if (inside > -pixel) gl_FragColor = vec4(0.5 * tint, 0.6);
+            if (inside > -pixel) gl_FragColor = vec4(0.6 * tint, 0.35);
             else gl_FragColor = vec4(isPlane ? tint : tint * mix(0.6 + 0.45 * facing, 1.0, rim),
                 veil * clear);
           }`,
       }),
       piece: faces(THREE.MeshLambertMaterial, 1),
       counted: faces(THREE.MeshBasicMaterial, 1),
-      openLids: faces(THREE.MeshLambertMaterial, 0, { ...glass, opacity: 0.6 }),
     };
   }
 
@@ -503,14 +554,30 @@ export class BodyView {
 
   /** Shows the lids of the wrapper: its pseudo faces. */
   showLids(onBoundary) {
-    const { realCount } = this.body, shown = [...this.lidFaces.filter(onBoundary)];
+    const { realCount } = this.body, shown = this.lidFaces.filter(onBoundary);
     this.isShown = this.isShown || new Uint8Array(this.body.faceCount);
     this.isShown.fill(0);
     for (const f of shown) this.isShown[f] = 1;
     this.lids.show((f) => this.isShown[f]);
-    if (this.fills) this.fills.wrapper.show(shown);
-    else this.put("lidEdges", this.lines(edgesOf(this.body, shown), 0.25, { opens: true }));
+    if (this.fills) this.fills.wrapper.show([...shown]);
+    else this.showLidEdges(shown);
     this.lidCount = shown.filter((f) => f >= realCount).length;
+  }
+
+  /** Shows edges of lids. The surface is closed: two faces have an edge in opposite directions, and it is
+      shown with the one that goes to the larger number. Where the other face is a real one, its edges are
+      shown anyway. */
+  showLidEdges(faces) {
+    const { vertices, corners, offsets } = this.body,
+      ends = new Float32Array(6 * faces.reduce((n, f) => n + offsets[f + 1] - offsets[f], 0));
+    let n = 0;
+    for (const f of faces)
+      for (let i = offsets[f]; i < offsets[f + 1]; i++) {
+        const a = corners[i], b = corners[i + 1 < offsets[f + 1] ? i + 1 : offsets[f]];
+        for (let c = 0; c < 6 && a < b; c++) ends[n++] = vertices[c < 3 ? 3 * a + c : 3 * b + c - 3];
+      }
+    this.lidEdges.geometry.dispose();
+    this.lidEdges.geometry = lineGeometry(ends.subarray(0, n));
   }
 
   ghost(on) {
@@ -553,16 +620,16 @@ export class BodyView {
     }
     this.pieces = [
       new FaceMesh(body, solid.faces, this.materials.piece, solid.shifts),
-      new FaceMesh(body, glass.faces, this.materials[share > 0 ? "lids" : "openLids"], glass.shifts),
+      new FaceMesh(body, glass.faces, this.materials.lids, glass.shifts),
     ];
-    this.pieces[1].mesh.renderOrder = 2;
     if (body.dim === 3) this.pieces[1].show(() => true); // to be sorted
     if (share > 0 && ends.length)
       this.reached = this.farthest((visit) => {
         for (const x of this.extremes) visit(...x);
         for (let i = 0; i < ends.length; i += 3) visit(ends[i], ends[i + 1], ends[i + 2]);
       });
-    this.group.add(...this.pieces.map((p) => p.mesh));
+    this.group.add(this.pieces[0].mesh);
+    this.addGlass(this.pieces[1]);
     this.put("pieceEdges", this.thin(ends, share > 0 ? 0.35 : 0.6));
   }
 
@@ -591,13 +658,6 @@ export class BodyView {
       ways.slice(1).forEach((way, k) => out.add(ways[k].clone().cross(way)));
     }
     return out;
-  }
-
-  /** Orders the lids from back to front. `ahead`: the direction of the view in the world. */
-  sortLids(ahead) {
-    if (this.body.dim === 2) return;
-    const along = ahead.clone().transformDirection(new THREE.Matrix4().getInverse(this.group.matrix)).toArray();
-    for (const glass of [this.lids, ...this.pieces.slice(1)]) if (glass.mesh.visible) glass.sort(along);
   }
 
   /** Shows faces that have a counter in the exact colour of the scale, without lighting; on a ghost, these

@@ -1,13 +1,19 @@
 // ---- lines, points and edges of boxes
 export const WHITE = [1, 1, 1];
 
+/** Returns the length of a line. Math.hypot() is slow. */
+function lengthOf(ends, i) {
+  let sum = 0;
+  for (let k = i; k < i + 3; k++) sum += (ends[k] - ends[k + 3]) ** 2;
+  return Math.sqrt(sum);
+}
+
 /** Returns the geometry of lines, six numbers each, with their lengths, by which they fade. */
-function lineGeometry(ends) {
-  const geometry = new THREE.BufferGeometry(), at = Float32Array.from(ends),
+export function lineGeometry(ends) {
+  const geometry = new THREE.BufferGeometry(), at = new Float32Array(ends),
     span = new Float32Array(at.length / 3);
   for (let i = 0; i < span.length; i += 2)
-    span[i] = span[i + 1] = Math.hypot(at[3 * i] - at[3 * i + 3], at[3 * i + 1] - at[3 * i + 4],
-        at[3 * i + 2] - at[3 * i + 5]);
+    span[i] = span[i + 1] = lengthOf(at, 3 * i);
   geometry.setAttribute("position", new THREE.BufferAttribute(at, 3));
   geometry.setAttribute("span", new THREE.BufferAttribute(span, 1));
   return geometry;
@@ -93,33 +99,39 @@ export function fadingLines(ends, colour, opacity, lens, { depthWrite = false, o
   return lines;
 }
 
-/** Returns lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`: six numbers for
-    each line. A line that starts where the one before it ends continues its dashes. */
-export function thickLines(ends, material) {
+/** Returns the geometry of lines of any width, in pixels: browsers draw WebGL lines one pixel wide. `ends`:
+    six numbers for each line. A line that starts where the one before it ends continues its dashes. */
+export function thickGeometry(ends) {
   const count = ends.length / 6, at = new Float32Array(12 * count), other = new Float32Array(12 * count),
     side = new Float32Array(4 * count),
     along = new Float32Array(4 * count),
     index = new Uint32Array(6 * count);
   let length = 0;
-  for (let l = 0; l < count; l++) {
-    const a = ends.slice(6 * l, 6 * l + 3), b = ends.slice(6 * l + 3, 6 * l + 6);
-    if (l === 0 || a.some((x, i) => x !== ends[6 * l - 3 + i])) length = 0;
-    const until = length + Math.hypot(...a.map((x, i) => x - b[i]));
-    [[a, b, 1], [a, b, -1], [b, a, -1], [b, a, 1]].forEach(([here, there, s], k) => {
-      at.set(here, 12 * l + 3 * k);
-      other.set(there, 12 * l + 3 * k);
-      side[4 * l + k] = s;
+  for (let l = 0, e = 0; l < count; l++, e += 6) {
+    if (l === 0 || [0, 1, 2].some((c) => ends[e + c] !== ends[e + c - 3])) length = 0;
+    const until = length + lengthOf(ends, e);
+    for (let k = 0; k < 4; k++) { // two corners at each end
+      for (let c = 0; c < 3; c++) {
+        at[12 * l + 3 * k + c] = ends[e + c + (k < 2 ? 0 : 3)];
+        other[12 * l + 3 * k + c] = ends[e + c + (k < 2 ? 3 : 0)];
+      }
+      side[4 * l + k] = k % 3 ? -1 : 1;
       along[4 * l + k] = k < 2 ? length : until;
-    });
+    }
     length = until;
-    index.set([0, 1, 2, 2, 1, 3].map((i) => 4 * l + i), 6 * l);
+    index.set([4 * l, 4 * l + 1, 4 * l + 2, 4 * l + 2, 4 * l + 1, 4 * l + 3], 6 * l);
   }
   const geometry = new THREE.BufferGeometry();
   for (const [name, array, size] of [["position", at, 3], ["other", other, 3], ["side", side, 1],
       ["along", along, 1]])
     geometry.setAttribute(name, new THREE.BufferAttribute(array, size));
   geometry.setIndex(new THREE.BufferAttribute(index, 1));
-  const mesh = new THREE.Mesh(geometry, material);
+  return geometry;
+}
+
+/** `ends`: as above, or their geometry. */
+export function thickLines(ends, material) {
+  const mesh = new THREE.Mesh(ends.isBufferGeometry ? ends : thickGeometry(ends), material);
   mesh.frustumCulled = false;
   return mesh;
 }

@@ -1,6 +1,6 @@
 import { byId, digits, element } from "./dom.js";
 import { COUNTERS, discard, edgesOf, FaceMesh, mixed } from "./scene_bodies.js";
-import { boxEdges, roundPoints, thickLines, thickMaterial, WHITE } from "./scene_lines.js";
+import { boxEdges, roundPoints, thickGeometry, thickLines, thickMaterial, WHITE } from "./scene_lines.js";
 import { SIDES, unpack } from "./scene_run.js";
 
 // ---- the elements of the event and of the selection: painted over the bodies, with outlines visible through
@@ -25,8 +25,8 @@ export class Marks {
     this.shown.set(name, { key, parts });
   }
 
-  /** Shows faces in a colour. `through`: outlines are visible through everything. */
-  set(name, key, faces, { colour, opacity = 1, width = 1.5, over = false, through = true }) {
+  /** Shows faces in a colour, or `hatched` with it. `through`: outlines are visible through everything. */
+  set(name, key, faces, { colour, opacity = 1, width = 1.5, over = false, through = true, hatched = false }) {
     this.show(name, key, faces, (view, shown) => {
       const own = shown.map((f) => f.face);
       const material = new THREE.MeshLambertMaterial({
@@ -34,6 +34,11 @@ export class Marks {
         depthWrite: opacity === 1 && !over, depthTest: !over, polygonOffset: true, polygonOffsetFactor: 0,
         polygonOffsetUnits: -2,
       });
+      if (hatched)
+        material.onBeforeCompile = (shader) => {
+          shader.fragmentShader = shader.fragmentShader.replace(/}\s*$/,
+              "if (mod(gl_FragCoord.x + gl_FragCoord.y, 12.0) < 6.0) gl_FragColor.rgb = vec3(1.0); }");
+        };
       const strips = new FaceMesh(view.body, own, material), mesh = strips.mesh;
       mesh.renderOrder = over ? 5 : opacity < 1 ? 3 : 0;
       const rim = thickLines(
@@ -90,7 +95,7 @@ class WorldLines {
     view.stage.add(this.group);
   }
 
-  /** `ends`: six numbers for each line; `look`: see thickMaterial(). */
+  /** `ends`: see thickLines(); `look`: see thickMaterial(). */
   addLines(ends, colour, width, order, look) {
     this.add(thickLines(ends, thickMaterial(colour, width, this.view.lens, look)), order);
   }
@@ -241,8 +246,9 @@ export class MeasuredMarks extends WorldLines {
     MEASURED.forEach(({ colour, key: text, width, isArrow }, kind) => {
       const marks = now.filter((mark) => mark.kind === kind);
       if (marks.length === 0) return;
-      const ends = marks.flatMap(({ from, to }) => (isArrow ? arrowOf(from, to, events.dim) : [from, to]))
-          .flatMap((p) => p.toArray());
+      const ends = thickGeometry(marks
+          .flatMap(({ from, to }) => (isArrow ? arrowOf(from, to, events.dim) : [from, to]))
+          .flatMap((p) => p.toArray()));
       this.addLines(ends, WHITE, 2 * width, 8); // so that they are visible on bodies of any colour
       this.addLines(ends, colours[colour], width, 9);
       key.push([colours[colour], text, WHITE]);
@@ -315,13 +321,14 @@ export class ContactCurves extends WorldLines {
     this.shown = step;
     this.clear();
     const curves = this.ofStep.get(step) || [], { contact } = view.colours,
-      ends = curves.flatMap((points) => points.slice(1).flatMap((p, i) => [...points[i], ...p])),
+      lines = curves.flatMap((points) => points.slice(1).flatMap((p, i) => [...points[i], ...p])),
+      ends = thickGeometry(lines),
       hidden = view.events.dim === 3 ? [[WHITE, 5, 0.5, 0], [contact, 2.2, 0.85, 9]] : [];
     this.now = curves;
-    this.dashed = hidden.length > 0 && ends.length > 0;
-    for (const [colour, width, opacity, dash] of ends.length ? hidden : [])
+    this.dashed = hidden.length > 0 && lines.length > 0;
+    for (const [colour, width, opacity, dash] of lines.length ? hidden : [])
       this.addLines(ends, colour, width, 7, { opacity, dash });
-    for (const [colour, width, order] of ends.length ? [[WHITE, 6, 8], [contact, 3, 9]] : [])
+    for (const [colour, width, order] of lines.length ? [[WHITE, 6, 8], [contact, 3, 9]] : [])
       this.addLines(ends, colour, width, order, { hides: view.events.dim === 3 });
     // Curves too small to be noticed, and single points, have a dot.
     const least = 0.01 * view.reach().radius,
@@ -335,6 +342,7 @@ export class ContactCurves extends WorldLines {
 const MARKED = [
   ["tested", "underTest", "pair under test"], ["refined", "refining", "region being refined"],
   ["attempt", "underTest", "patch of this attempt"], ["picked", "selected", "selected"],
+  ["resolved", "refining", "faces on the way in"],
   ["wrong", "wrong", "pairs that the engine got wrong"],
 ];
 

@@ -66,11 +66,11 @@ export class Selection {
     showEvent(this.events.id(this.event), this.events.stepNumber(this.event));
   }
 
-  /** `simplex`: the selected one of the face; by default the first. */
-  pickFace(side, face, simplex) {
+  /** `simplex`: the selected one of the face; by default the first. `goal`: the real face under it. */
+  pickFace(side, face, simplex, goal = face) {
     const body = this.events.bodies[side], meant = simplex === undefined ? body.firstSimplex[face] : simplex;
     this.chosen = this.chosen.map((s, i) => (i !== side ? s : body.isReal(face) ? meant : NONE));
-    this.pickOnly({ side, face, region: body.regionOf(face) });
+    this.pickOnly({ side, face, goal, region: body.regionOf(face) });
   }
   pickRegion(side, region) {
     this.pick({ side, face: NONE, region });
@@ -89,6 +89,14 @@ export class Selection {
   }
   pickOnly(picked) {
     this.picked = picked && { vertex: NONE, ...picked };
+    this.tell("pick");
+  }
+
+  /** Refines the wrapper down to the selected place, or undoes it. */
+  resolve() {
+    const { picked } = this, body = picked && this.events.bodies[picked.side];
+    if (!picked || !this.events.canResolve(body, picked)) return;
+    picked.resolved = !picked.resolved;
     this.tell("pick");
   }
 }
@@ -135,7 +143,7 @@ export class Panel {
     this.selection = selection;
     this.wrappers = wrappers;
     selection.listeners.push((what) => {
-      if (what === "event") this.showEvent();
+      if (what !== "look") this.showEvent();
       if (what === "pick") this.showPicked();
     });
     byId("picked-none").onclick = () => selection.pick(null);
@@ -212,11 +220,17 @@ export class Panel {
     byId("picked-title").textContent = name[0].toUpperCase() + name.slice(1) + this.name(picked.side);
     fillList(byId("picked-facts"), [
       ...(hasFace && !this.events.engine ? this.faceRows(body, picked.face) : []),
+      ...(picked.resolved ? [["way in", this.wayTo(body, picked.goal), "faces, and the regions behind them"]]
+        : []),
       ...(picked.vertex !== NONE ? this.vertexRows(body, picked.vertex)
         : this.regionRows(body, picked.region)),
       ...(this.events.passes ? [] : this.countRows(body, picked)),
     ]);
     byId("picked-isolate").disabled = !body.hasLids(picked.region);
+    const resolve = byId("resolve"); // not with other engines and of constructions
+    if (!resolve) return;
+    resolve.disabled = !this.events.canResolve(body, picked);
+    resolve.setAttribute("aria-pressed", Boolean(picked.resolved));
   }
 
   faceRows(body, face) {
@@ -226,6 +240,12 @@ export class Panel {
       ["behind it", cell(body.inner[face], "the solid")],
       ["in front", cell(body.outer[face], "the outside")],
     ];
+  }
+
+  wayTo(body, goal) {
+    const way = body.wayTo(goal).flatMap(({ lid, region }) =>
+        [`${digits(lid)} \u2192 `, this.regionButton(body.side, region), " \u2192 "]);
+    return element("span", {}, ...way, digits(goal));
   }
 
   /** Of a construction. */

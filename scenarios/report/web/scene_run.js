@@ -116,7 +116,10 @@ export class Body {
   }
   /** Returns true if the page has the corners of a region's lids: of large bodies it may not. */
   hasLids(region) {
-    return region !== NONE && this.lids(region).every((f) => this.offsets[f] < this.offsets[f + 1]);
+    return region !== NONE && this.hasCorners(this.lids(region));
+  }
+  hasCorners(faces) {
+    return faces.every((f) => this.offsets[f] < this.offsets[f + 1]);
   }
   floor(region) {
     return this.floorOf.of(region);
@@ -126,6 +129,17 @@ export class Body {
     let depth = 0;
     for (let r = region; r !== NONE; r = this.parent[r]) depth++;
     return depth;
+  }
+  /** Returns the transitions face, region by which one comes to a face from the outside, [{lid, region}]: of
+      each region the nearest lid. */
+  wayTo(face) {
+    const out = [], corner = (f, c) => this.vertices[3 * this.face(f)[0] + c],
+      far = (f) => Math.hypot(...[0, 1, 2].map((c) => corner(f, c) - corner(face, c)));
+    for (let region = this.outer[face]; region !== NONE; region = this.parent[region]) {
+      const lids = this.lids(region).filter((f) => this.outer[f] === this.parent[region]);
+      out.unshift({ region, lid: lids.reduce((p, q) => (far(q) < far(p) ? q : p)) });
+    }
+    return out;
   }
   faceText(face) {
     return `${this.isReal(face) ? "face" : "pseudo face"} ${digits(face)}`;
@@ -217,7 +231,8 @@ export class Events {
     return this.kinds[this.kind[i]];
   }
   changesWrapper(i) {
-    return [this.REFINE, this.COARSEN, this.REGION].includes(this.kind[i]);
+    const kind = this.kind[i];
+    return kind === this.REFINE || kind === this.COARSEN || kind === this.REGION;
   }
   /** Returns true if an event concerns a body. */
   concerns(i, side) {
@@ -264,6 +279,13 @@ export class Events {
     for (let k = pass ? this.from(pass.first) : i + 1; k <= i; k++)
       if (this.kind[k] === this.REGION) out.push({ side: 0, region: this.a[k] });
     return out;
+  }
+  /** Returns true if the wrapper of a body can be refined down to a selected face: if the page has the
+      corners of what that shows. */
+  canResolve(body, { goal = NONE }) {
+    const way = this.engine || this.passes || goal === NONE ? [] : body.wayTo(goal);
+    return way.length > 0
+        && way.every(({ region }) => body.hasLids(region) && body.hasCorners(body.floor(region)));
   }
   /** Returns the event of the face comparison that led to this one; -1: none on the page. */
   test(i) {
@@ -412,21 +434,31 @@ export class Wrappers {
     return this.included(side, body.inner[face], true) !== inFront;
   }
 
-  /** Moves to just after an event: forward by the events in between, backward by restarting the step. */
-  seek(event) {
+  /** Moves to just after an event: forward by the events in between, backward by restarting the step.
+      `goal`: {side, goal}, a face down to which a wrapper is refined, as by Wrapper::refine_path(). */
+  seek(event, goal) {
     const first = this.events.firstOfStep[this.events.step(event)];
     const forward = this.at >= first && this.at <= event;
     if (!forward) this.reset();
     for (let i = forward ? this.at + 1 : first; i <= event; i++)
       if (this.events.changesWrapper(i)) this.apply(i);
     this.at = event;
+    if (!goal) return;
+    this.at = -1; // not the state after an event
+    for (const { region } of this.bodies[goal.side].wayTo(goal.goal))
+      this.change(goal.side, region, () => this.refine(goal.side, region, -1));
   }
 
   apply(event) {
     const side = this.events.side[event], region = this.events.a[event];
+    this.change(side, region, () => {
+      if (this.events.kind[event] !== this.events.REFINE) this.coarsen(side, region);
+      else this.refine(side, region, this.byFace ? this.refinedFace(event, side, region) : -1);
+    });
+  }
+  change(side, region, action) {
     const before = this.visibleOf(side, region);
-    if (this.events.kind[event] !== this.events.REFINE) this.coarsen(side, region);
-    else this.refine(side, region, this.byFace ? this.refinedFace(event, side, region) : -1);
+    action();
     this.sizes[side] += this.visibleOf(side, region) - before;
     this.versions[side]++;
   }

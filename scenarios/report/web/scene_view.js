@@ -1,5 +1,5 @@
 import { byId, oncePerFrame } from "./dom.js";
-import { BodyView, Colours, COUNTERS, countsSoFar, sumsOfGroups } from "./scene_bodies.js";
+import { BodyView, Colours, COUNTERS, countsSoFar, Glass, sumsOfGroups } from "./scene_bodies.js";
 import { SceneCamera } from "./scene_camera.js";
 import { ContactCurves, Legend, Marks, MeasuredMarks, WhyMarks } from "./scene_marks.js";
 import { lensOf, setHoles } from "./scene_lines.js";
@@ -23,7 +23,7 @@ class Picker {
       const hit = this.under(e.clientX, e.clientY, e.altKey),
         vertex = hit && selection.events.attempts ? this.vertexNear(hit, e.clientX, e.clientY) : NONE;
       if (vertex !== NONE) selection.pickVertex(hit.side, vertex);
-      else if (hit) selection.pickFace(hit.side, hit.face, hit.simplex);
+      else if (hit) selection.pickFace(hit.side, hit.face, hit.simplex, this.realFaceUnder(hit, e));
       else selection.pick(null);
     });
     canvas.addEventListener("dblclick", (e) => {
@@ -45,6 +45,12 @@ class Picker {
     const reach = Math.min(most, Math.min(...edges) / 3);
     const near = corners.find((p) => Math.hypot(p.x - x, p.y - y) <= reach);
     return near ? near.vertex : NONE;
+  }
+
+  /** Returns the body's own face that a lid hides at a place of the screen; without one, the lid. */
+  realFaceUnder({ side, face }, { clientX, clientY }) {
+    const { view } = this, real = view.nearest(clientX, clientY, [view.views[side].real]);
+    return real && !view.bodies[side].isReal(face) ? real.face : face;
   }
 
   /** Returns the face under a point of the screen, {side, face, simplex}; `through`: lids are ignored. */
@@ -80,6 +86,8 @@ export class BodiesCanvas {
     this.stage.add(new THREE.AmbientLight(0xffffff, 0.54), this.camera.perspective, this.camera.flat);
     this.views = bodies.map((b) => new BodyView(b, this.colours, this.lens));
     this.views.forEach((v) => this.stage.add(v.group));
+    this.glass = new Glass(this.views[0].materials.lids);
+    this.stage.add(this.glass.mesh);
     this.marks = new Marks(this.views, this.colours, this.lens);
     this.legend = new Legend(this);
   }
@@ -113,7 +121,8 @@ export class BodiesCanvas {
     lens.depths.set(camera.distance - radius, 2 * radius);
     if (camera.plane) for (const part of [...this.views, this.marks]) part.widen(lens.pixel.value);
     camera.prepare(ball, this.now ? this.now.slice : 0);
-    for (const view of this.views) view.sortLids(camera.camera.getWorldDirection(new THREE.Vector3()));
+    this.stage.updateMatrixWorld();
+    this.glass.show(this.views.flatMap((v) => v.panes), camera.camera.getWorldDirection(new THREE.Vector3()));
     this.renderer.render(this.stage, camera.camera);
   }
 
@@ -237,7 +246,7 @@ export class SceneView extends BodiesCanvas {
   /** Cuts the wrappers open in front of the step's contacts. */
   open() {
     const { now, lens, camera } = this, least = LEAST_HOLE * this.reach().radius,
-      isOpen = now.open && now.by === "kind" && !camera.plane && now.explode === 0;
+      isOpen = now.open && now.by === "kind" && !camera.plane && now.explode === 0 && !now.isolate;
     setHoles(lens, (isOpen ? this.curves.now : []).map((curve) => {
       const points = curve.map((p) => new THREE.Vector3(...p)),
         { centre } = ballOf(new THREE.Box3().setFromPoints(points));
@@ -309,18 +318,18 @@ export class SceneView extends BodiesCanvas {
   }
 
   paint() {
-    const { by, per, scope } = this.now, counter = COUNTERS.includes(by),
+    const { by, per, scope, isolate } = this.now, counter = COUNTERS.includes(by),
       newest = by === "region" ? this.newestLayer() : 0;
     this.once(
       "paint",
-      `${by} ${per} ${scope} ${newest} ${counter && scope === "step" ? this.selection.event : ""}`,
+      [by, per, scope, newest, Boolean(isolate), counter && scope === "step" && this.selection.event].join(),
       () => {
         const counts = counter ? this.countsOf(by, per, scope) : null,
           mode = this.colours.mode(this.bodies, by, counts, newest);
         // Mostly real faces are tested: they must be visible.
-        const veil = by === "kind" ? 0.6 : counter && per === "face" ? 0.2 : 0.69;
+        const veil = by === "kind" || isolate ? 0.6 : counter && per === "face" ? 0.2 : 0.69;
         this.views.forEach((view, side) => {
-          view.paint(mode, veil, by === "kind" ? 1 : 0);
+          view.paint(mode, veil, by === "kind" && !isolate ? 1 : 0);
           view.showCounted(
             counter ? view.realFaces.filter((f) => counts[side][f] > 0) : [],
             (f) => mode.of(side, f),
@@ -370,15 +379,19 @@ export class SceneView extends BodiesCanvas {
     if (events.attempts) this.markAttempt();
     const wrong = events.wrong[events.step(i)];
     this.marks.set("wrong", wrong.length ? events.step(i) : -1, this.facesOfPairs(wrong), {
-      colour: colours.wrong, opacity: 0.7, width: 3, over: true,
+      colour: colours.wrong, opacity: 0.7, width: 3, over: true, hatched: true,
+    });
+    const p = this.selection.picked, body = p?.resolved && this.bodies[p.side],
+      way = body ? body.sided(body.wayTo(p.goal).map(({ lid }) => lid)) : [];
+    this.marks.set("resolved", body ? `${p.side} ${p.goal}` : "", way, {
+      colour: colours.refining, opacity: 0.3, width: 1.5,
     });
     const nodes = events.about(i, "node");
     this.marks.setBoxes("nodes", nodes.length ? i : -1, nodes, colours.underTest);
-    const p = this.selection.picked;
     if (events.attempts) this.marks.setPoint("vertex", p && p.vertex !== NONE ? p : null, colours.selected);
     const picked = this.pickedFaces();
     const shown = events.attempts ? picked.map((f) => f.face) : [],
-      pickedKey = p ? [p.side, p.face, p.region, ...shown].join(" ") : "";
+      pickedKey = p ? [p.side, p.face, p.region, p.resolved, ...shown].join(" ") : "";
     this.marks.set("picked", pickedKey, picked, {
       colour: colours.selected, opacity: 0.65, width: 2.5, over: p && p.face !== NONE,
     });
@@ -423,7 +436,7 @@ export class SceneView extends BodiesCanvas {
   pickedFaces() {
     const p = this.selection.picked, { attempts } = this.events, body = p && this.bodies[p.side];
     if (!p || this.now.isolate || p.vertex !== NONE) return [];
-    if (p.face !== NONE) return body.sided([p.face]);
+    if (p.face !== NONE) return body.sided([p.resolved ? p.goal : p.face]);
     // In a construction: its faces on the front now.
     if (!attempts || this.wrappers.included(p.side, p.region, false)) return body.sided(body.lids(p.region));
     return attempts.ofEvent.has(this.selection.event) ? []

@@ -1,12 +1,50 @@
-import { linkRow } from "./dom.js";
+import { element, linkRow, percent, textButton } from "./dom.js";
 
 // Views of runs side by side: camera and step of one are forwarded to the others.
 
 export const views = [...document.querySelectorAll(".views iframe")];
 window.addEventListener("message", (e) => {
   if (!e.data.lrbscope) return;
-  for (const view of views) if (view.contentWindow !== e.source) view.contentWindow.postMessage(e.data, "*");
+  const { map, hasMap } = e.data.lrbscope, from = views.findIndex((view) => view.contentWindow === e.source);
+  if (hasMap) withMap.add(from);
+  if (map) maps[from] = map;
+  if (map) drawDifference();
+  else if (hasMap && withMap.size === views.length) addMaps();
+  else if (!hasMap) tell(e.data.lrbscope, from);
 });
+function tell(what, from) {
+  views.forEach((view, i) => i !== from && view.contentWindow.postMessage({ lrbscope: what }, "*"));
+}
+
+// Proof maps of two runs instead of their bodies, and under them where the two squares differ.
+const withMap = new Set(), maps = [], canvas = element("canvas"), share = element("p", { class: "note" });
+function addMaps() {
+  const section = document.querySelector(".views"),
+    box = element("div", { class: "maps" }, element("h3", {}, "Where the maps differ"), canvas, share),
+    button = textButton("proof maps", () => {
+      box.hidden = !box.hidden;
+      button.setAttribute("aria-pressed", !box.hidden);
+      tell({ mapping: !box.hidden });
+    }, "Show which test rejected which pairs of faces, of both");
+  box.hidden = true;
+  section.querySelector("h2").after(button);
+  section.append(box);
+}
+/** Draws what the second map shows where it differs from the first, and the rest pale. */
+function drawDifference() {
+  if (maps[0]?.length !== maps[1]?.length) return;
+  const size = Math.sqrt(maps[0].length), image = new ImageData(size, size),
+    out = new Uint32Array(image.data.buffer);
+  let differ = 0;
+  maps[1].forEach((colour, i) => {
+    const same = colour === maps[0][i];
+    out[i] = same ? (colour & 0xffffff) | 0x20000000 : colour;
+    differ += !same;
+  });
+  canvas.width = canvas.height = size;
+  canvas.getContext("2d").putImageData(image, 0, 0);
+  share.textContent = `${percent(differ, out.length)} of the shown part; of it, what the second run has there.`;
+}
 // A row "regions 3 5" of a table selects region 3 in the first view and 5 in the second; "-": none.
 for (const row of document.querySelectorAll('tr[data-to^="regions "]')) {
   const numbers = row.dataset.to.split(" ").slice(1);
