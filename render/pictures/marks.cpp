@@ -155,12 +155,17 @@ render::DrawList with_leaders(render::DrawList list, const render::Projection& p
       }
     label.dx = static_cast<float>(direction.x());
     label.dy = static_cast<float>(direction.y());
-    // Step 3: a line to the border of the text, unless it is beside the point.
+    // Step 3: a line to the border of the text, unless it is beside the point; in front of everything, so
+    // that it is solid.
     const double end = 1 - (half.array() / direction.array().abs().max(1e-9)).minCoeff();
-    const Vector3d shift = projection.axes().transpose() * Vector3d(direction.x(), -direction.y(), 0);
-    if (end * direction.norm() > kBeside + kOff)
-      outline(list, {label.x, label.x + end * projection.unit_per_pixel(label.x) * shift}, label.colour, 1,
-              label.halo);
+    if (end * direction.norm() <= kBeside + kOff) continue;
+    const Vector3d shift = projection.axes().transpose() * Vector3d(direction.x(), -direction.y(), 0),
+                   to_viewer = projection.towards_viewer(label.x);
+    constexpr double kInFront = 0.98;  // of the way to the near plane
+    const double depth = kInFront * (projection.to_eye(label.x).z() - projection.near_depth());
+    const Vector3d from = label.x + depth / std::abs(projection.axes().row(2).dot(to_viewer)) * to_viewer;
+    outline(list, {from, from + end * projection.unit_per_pixel(from) * shift}, label.colour, 1, label.halo);
+    list.lines.back().halo_width = 1;
   }
   return list;
 }
@@ -178,7 +183,7 @@ void add_arrow(render::DrawList& list, const Vector3d& from, const Vector3d& to,
 
 std::string interval_text(double lower, double upper) {
   const std::string low = render::short_number(lower), high = render::short_number(upper);
-  return low == high ? high : low + " to " + high;
+  return low == high ? high : lower == 0 ? "\u2264 " + high : low + " to " + high;
 }
 
 std::string kind_text(ClashKind kind) {

@@ -38,7 +38,7 @@ std::string title_of(std::string caption) {
   constexpr std::string_view kLong = " intersecting", kFaces = " of faces", kUsual = "crossing, ";
   const std::size_t number_end = caption.find(kLong);
   if (number_end == std::string::npos) return caption;
-  caption.resize(caption.size() - kFaces.size());
+  if (const std::size_t at = caption.find(kFaces); at != std::string::npos) caption.erase(at, kFaces.size());
   caption.erase(number_end, kLong.size());
   caption.replace(caption.rfind(": "), 2, ", ");
   if (const std::size_t at = caption.find(kUsual); at != std::string::npos) caption.erase(at, kUsual.size());

@@ -63,12 +63,14 @@ class FrameJob {
   render::Image picture(std::size_t i, bool plain = false) {
     std::vector<Panel> panels;
     for (const render::Look::View& view : look_.views) {
-      render::Look::View seen = view;
-      // A panel of a montage is looked at alone: without a contact it shows the whole.
-      if (plain && view.camera == render::FrameSpec::Camera::contact && !state.in_contact())
-        seen.camera = render::FrameSpec::Camera::scene;
-      const auto camera = [this, seen, i](double width, double height) {
-        return camera_for(seen, framing_, width, height, progress(i));
+      Framing framing = framing_;
+      // A panel of a montage is looked at alone: without a contact it shows where the bodies are nearest.
+      if (plain && view.camera == render::FrameSpec::Camera::contact && !state.in_contact() &&
+          state.reps().size() == 2)
+        framing.contacts =
+            nearest_points({*state.reps()[0], state.pose(Side::a), *state.reps()[1], state.pose(Side::b)});
+      const auto camera = [this, &view, framing, i](double width, double height) {
+        return camera_for(view, framing, width, height, progress(i));
       };
       panels.push_back({list(view, plain), camera, view.title});
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <lrbscope/distance.hpp>
 #include <lrbscope/render/rasterize.hpp>
 #include <lrbscope/render/scene.hpp>
 
@@ -209,6 +210,12 @@ std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& p, const ren
   return broadside(box, up);
 }
 
+std::vector<Vector3d> nearest_points(const PosedBodies& bodies) {
+  const DistanceResult found = distance(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b);
+  if (!std::isfinite(found.upper)) return {};
+  return {found.witness[0].point, found.witness[1].point};
+}
+
 Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
   const bool regions_alone = !(spec.isolate[0].empty() && spec.isolate[1].empty());
   Framing f;
@@ -220,6 +227,14 @@ Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
       for (const Vector3d& x : body) f.points.push_back(step_pose(step, i).apply(x));
   }
   f.contacts = contacts_of(p);
+  const bool closes_up = std::any_of(spec.views.begin(), spec.views.end(), [](const auto& view) {
+    return view.camera == render::FrameSpec::Camera::contact;
+  });
+  if (f.contacts.empty() && closes_up && p.reps.size() == 2 && !p.trace->steps.empty()) {
+    const trace::Step& s =
+        p.trace->steps[p.close_up_steps.empty() ? p.trace->steps.size() - 1 : p.close_up_steps.back()];
+    f.contacts = nearest_points({*p.reps[0], s.pose_a, *p.reps[1], s.pose_b});
+  }
   // The contacts of a few steps may be a point: a close-up of those still shows a part of the bodies.
   if (!p.close_up_steps.empty() && !f.contacts.empty() && f.dim == 3) {
     constexpr double kLeast = 0.1;  // of the size of everything

@@ -14,6 +14,9 @@ namespace lrb::run {
 /// rest is shown as a ghost; if it explodes bodies, the displaced regions.
 Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spec);
 
+/// Returns the closest points of two bodies: what close-ups show without a contact.
+std::vector<Eigen::Vector3d> nearest_points(const PosedBodies& bodies);
+
 /// Returns the direction from which a single thin body in upright position fills its pictures: across its
 /// thinnest extent, if that is horizontal and less than a quarter of the largest. Returns nullopt for other
 /// bodies, and if the pictures have views.
