@@ -167,8 +167,7 @@ export class ProofMap {
   draw() {
     if (!this.box.offsetParent) return; // another tab is shown
     const room = this.box.closest(".tab-body"),
-      wide = this.box.clientWidth,
-      most = room ? Math.min(room.clientHeight - 32, 0.55 * wide) : Math.min(400, wide),
+      most = Math.min(room ? room.clientHeight - 32 : 400, 0.55 * this.box.clientWidth),
       size = Math.round(Math.max(240, most)),
       pixels = Math.round(size * Math.min(2, window.devicePixelRatio || 1)),
       step = this.events.step(this.selection.event),

@@ -214,6 +214,7 @@ class Together {
     if (mapping !== undefined && this.map) {
       byId("scene").append(this.map.box);
       document.documentElement.classList.toggle("mapping", mapping);
+      seek("step", this.step); // to its end
       this.map.redraw();
     }
     if (window) this.map?.show(window);

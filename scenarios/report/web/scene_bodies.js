@@ -243,11 +243,14 @@ export class Glass {
       color = new Uint8Array(9 * count);
     for (t = 0; t < count; t++) {
       const { e, p, n, c } = parts[of[t]], to = 9 * next[place(depths[t])]++;
-      for (let k = 0; k < 9; k++) {
-        const x = first[t] + k - (k % 3), r = k % 3;
-        position[to + k] = e[r] * p[x] + e[4 + r] * p[x + 1] + e[8 + r] * p[x + 2] + e[12 + r];
-        normal[to + k] = e[r] * n[x] + e[4 + r] * n[x + 1] + e[8 + r] * n[x + 2];
-        color[to + k] = c[x + r];
+      for (let k = 0; k < 9; k += 3) {
+        const at = first[t] + k, [x, y, z] = [p[at], p[at + 1], p[at + 2]],
+          [u, v, w] = [n[at], n[at + 1], n[at + 2]];
+        for (let r = 0; r < 3; r++) {
+          position[to + k + r] = e[r] * x + e[4 + r] * y + e[8 + r] * z + e[12 + r];
+          normal[to + k + r] = e[r] * u + e[4 + r] * v + e[8 + r] * w;
+          color[to + k + r] = c[at + r];
+        }
       }
     }
     geometry.dispose();
@@ -574,7 +577,9 @@ export class BodyView {
     for (const f of faces)
       for (let i = offsets[f]; i < offsets[f + 1]; i++) {
         const a = corners[i], b = corners[i + 1 < offsets[f + 1] ? i + 1 : offsets[f]];
-        for (let c = 0; c < 6 && a < b; c++) ends[n++] = vertices[c < 3 ? 3 * a + c : 3 * b + c - 3];
+        if (a > b) continue;
+        for (let c = 3 * a; c < 3 * a + 3; c++) ends[n++] = vertices[c];
+        for (let c = 3 * b; c < 3 * b + 3; c++) ends[n++] = vertices[c];
       }
     this.lidEdges.geometry.dispose();
     this.lidEdges.geometry = lineGeometry(ends.subarray(0, n));
