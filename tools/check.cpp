@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -138,6 +139,11 @@ int run_check(const CheckOptions& o, const Globals& globals) {
                        (o.queries.empty() ? "" : " with these numbers") + "; record some, or choose others");
     checks.push_back(profile::check(capture, settings, progress_report(globals.quiet)));
   }
+  std::map<std::string, std::size_t> captures;  // of each engine
+  for (const profile::Check& c : checks) ++captures[c.engine];
+  for (std::size_t i = 0; i < checks.size(); ++i)
+    if (captures[checks[i].engine] > 1)
+      checks[i].engine = std::filesystem::path(o.inputs[i]).filename().string();
   if (o.json)
     for (const profile::Check& c : checks) print(json_lines(c));
   else

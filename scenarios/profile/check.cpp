@@ -366,6 +366,8 @@ report::Table verdict_table(std::span<const Check> checks) {
 
 std::vector<std::string> add_checks(report::Document& page, std::span<const Check> checks) {
   std::vector<std::string> notes;
+  for (const Check& c : checks)
+    if (!c.wrong.empty()) page.text({"Wrong answer of " + c.engine, c.wrong.front()});
   for (const Check& c : checks) {
     if (!c.pose_error.empty()) page.text({"Poses of " + c.engine, c.pose_error});
     if (!c.tree_faults.empty()) page.text({"Trees of " + c.engine, c.tree_faults});

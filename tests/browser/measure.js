@@ -249,14 +249,17 @@
     if (page.scrollWidth > page.clientWidth) fail("the page scrolls sideways", `${page.scrollWidth} of ${page.clientWidth} pixels`);
   }
 
-  /** The view of a run as it opens: its share of the window, and nothing over it. On a phone it follows the title. */
-  function measureView() {
+  /** The view as a page opens: its share of the window, and nothing over it; a run's follows the title. */
+  function measureView(least, isRun) {
     const rect = (e) => e.getBoundingClientRect(),
       canvas = rect(byId("view-canvas")),
       share = (canvas.width * canvas.height) / (innerWidth * innerHeight);
-    if (innerWidth === 1280 && share < 0.6) fail("the view has less than 60 % of the window", `${(100 * share).toFixed(1)} %`);
-    if (innerWidth < 640 && canvas.top > 0.15 * innerHeight) fail("the view is not first", `at ${canvas.top} of ${innerHeight} pixels`);
-    if (innerWidth < 640 && rect(byId("tools")).height > 50) fail("the tools have more than one row", `${rect(byId("tools")).height} pixels`);
+    if (innerWidth === 1280 && share < least)
+      fail(`the view has less than ${100 * least} % of the window`, `${(100 * share).toFixed(1)} %`);
+    if (isRun && innerWidth < 640 && canvas.top > 0.15 * innerHeight)
+      fail("the view is not first", `at ${canvas.top} of ${innerHeight} pixels`);
+    if (isRun && innerWidth < 640 && rect(byId("tools")).height > 50)
+      fail("the tools have more than one row", `${rect(byId("tools")).height} pixels`);
     for (const part of document.querySelectorAll("header > *, .tools, .keys, .timeline, .panel, .tabs")) {
       const { left, right, top, bottom } = rect(part);
       const isOver = Math.min(right, canvas.right) - Math.max(left, canvas.left) > 1 && Math.min(bottom, canvas.bottom) - Math.max(top, canvas.top) > 1;
@@ -306,7 +309,8 @@
       await wait(60);
       if (isRun && run.view) run.view.draw();
       measureAll(name === "as it opens" ? document.body : byId("scene"));
-      if (isRun && run.view && name === "as it opens") measureView();
+      const canvas = byId("view-canvas");
+      if (canvas && isShown(canvas) && name === "as it opens") measureView(isRun ? 0.6 : 0.33, isRun);
     }
     for (const name of isRun ? run.tabs.names : []) {
       run.tabs.show(name);

@@ -216,8 +216,8 @@ export class Glass {
     this.key = key;
     const parts = panes.map(({ mesh }) => {
         const { index, attributes, drawRange } = mesh.geometry, { position, normal, color } = attributes;
-        return { e: mesh.matrixWorld.elements, corners: index.array, count: drawRange.count / 3, p: position.array,
-          n: normal.array, c: color.array };
+        return { e: mesh.matrixWorld.elements, corners: index.array, count: drawRange.count / 3,
+          p: position.array, n: normal.array, c: color.array };
       }),
       count = parts.reduce((n, part) => n + part.count, 0), depths = new Float32Array(count),
       of = new Uint8Array(count), first = new Uint32Array(count), { geometry } = this.mesh;
