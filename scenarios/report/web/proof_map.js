@@ -126,7 +126,8 @@ export class ProofMap {
   /** `view`: null without a 3D view. */
   constructor(scene, events, selection, view) {
     // Listeners are notified of the part of the map that is shown, and of the painted picture.
-    Object.assign(this, { scene, events, selection, view, key: "", window: [0, 0, 1], listeners: [] });
+    Object.assign(this, { scene, events, selection, view, key: "", window: [0, 0, 1], corners: [0, 0, 0, 0],
+        listeners: [] });
     const label = "Proof map: all pairs of faces, by the test that decided them",
       whole = textButton("whole", () => this.zoom([0, 0], [0, 0], 1), "Show all pairs; the wheel enlarges");
     const look = "flex:none;cursor:crosshair";
@@ -190,13 +191,15 @@ export class ProofMap {
     this.count();
   }
 
-  /** Returns the pixels of a cell: [x0, x1, y0, y1]. Neighbours round their common border alike. */
+  /** Returns the pixels of a cell: [x0, x1, y0, y1], an array that the next call changes: there may be a
+      million. Neighbours round their common border alike. */
   rectangle({ low, high, argument }, size) {
-    const [x, y, part] = this.window,
-      pixel = (side, at) => Math.round(((at / this.cells.axes[side].size - (side ? x : y)) / part) * size),
-      out = [pixel(1, low[1]), pixel(1, high[1]), pixel(0, low[0]), pixel(0, high[0])],
+    const { window, corners: out } = this, { axes } = this.cells, part = size / window[2],
       least = isHit(argument) ? 3 : isPoint(argument) ? 2 : 0;
-    for (const i of [0, 2]) {
+    for (let side = 0; side < 2; side++) {
+      const count = axes[side].size, start = window[1 - side], i = 2 - 2 * side;
+      out[i] = Math.round((low[side] / count - start) * part);
+      out[i + 1] = Math.round((high[side] / count - start) * part);
       const more = Math.max(0, least - (out[i + 1] - out[i]));
       out[i] -= more >> 1;
       out[i + 1] += more - (more >> 1);
@@ -256,7 +259,7 @@ export class ProofMap {
   }
 
   fill(cell, size) {
-    const [x0, x1, y0, y1] = this.rectangle(cell, size);
+    const out = this.rectangle(cell, size), x0 = out[0], x1 = out[1], y0 = out[2], y1 = out[3];
     if (x1 <= 0 || y1 <= 0 || x0 >= size || y0 >= size || x0 === x1 || y0 === y1) return;
     const { pixels, shades } = this.painted,
       shade = Math.round(((SHADES - 1) * Math.log(cell.pairs + 1)) / Math.log(this.cells.pairs + 1)),
