@@ -132,9 +132,9 @@ export class ProofMap {
       whole = textButton("whole", () => this.zoom([0, 0], [0, 0], 1), "Show all pairs; the wheel enlarges");
     const look = "flex:none;cursor:crosshair";
     this.canvas = element("canvas", { style: look, role: "img", "aria-label": label });
-    this.words = element("p", { class: "note", style: "min-height:4.5em;max-width:60ch" });
+    this.words = element("p", { class: "note", style: "max-width:60ch" });
     this.legend = element("table");
-    const side = element("div", {}, element("p", { class: "parts" }, whole), this.words, this.legend);
+    const side = element("div", {}, this.legend, element("p", { class: "parts" }, whole), this.words);
     this.box = element("div", { style: "display:flex;flex-wrap:wrap;gap:16px" }, this.canvas, side);
     byId("scene").append(element("div", { class: "tab", "data-tab": "Proof map" }, this.box));
     this.redraw = oncePerFrame(() => this.draw());
