@@ -83,7 +83,7 @@ inline constexpr Rgba kPaleBack{178, 170, 160};
 
 /// Contacts: darker than vermillion, so that they contrast with both bodies in greyscale as well.
 inline constexpr Rgba kContact{196, 18, 48};
-inline constexpr Rgba kWrong{255, 0, 0};  ///< errors of another engine: brighter than contacts
+inline constexpr Rgba kWrong{200, 0, 190};  ///< errors of another engine: not the red of contacts
 inline constexpr Rgba kRefining = kGreen;
 inline constexpr Rgba kUnderTest = kYellow;
 
