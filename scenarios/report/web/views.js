@@ -43,7 +43,7 @@ function drawDifference() {
   });
   canvas.width = canvas.height = size;
   canvas.getContext("2d").putImageData(image, 0, 0);
-  share.textContent = `${percent(differ, out.length)} of what is shown: in the colours of the second run.`;
+  share.textContent = `${percent(differ, out.length)} of the shown part, in the colours of the second run.`;
 }
 // A row "regions 3 5" of a table selects region 3 in the first view and 5 in the second; "-": none.
 for (const row of document.querySelectorAll('tr[data-to^="regions "]')) {
