@@ -130,7 +130,7 @@ export class WorkIcicle {
           .find((text) => 7.2 * text.length + 14 <= w),
       rect = svgElement("rect", { x, y, width: w, height, rx: 3 });
     if (colour) rect.style.fill = colour;
-    rect.style.fillOpacity = colour ? 0.5 : 0.25;
+    rect.style.fillOpacity = colour ? 0.4 : 0.25;
     const group = svgElement(
       "g",
       { role: "button", "aria-label": title },
