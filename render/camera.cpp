@@ -241,11 +241,11 @@ Vector3d Projection::to_screen(const Vector3d& e) const {
 }
 
 double Projection::nearer(double depth, double heights) const {
-  const double direction = heights * height_ / focal_;  // perspective: at distance 1
-  if (orthographic_) return depth - 2 * direction / (far_ - near_);
-  // With depth = infinite - c / z, moving a point to z (1 - way) scales its difference from `infinite`.
+  const double shift = heights * height_ / focal_;  // perspective: at distance 1
+  if (orthographic_) return depth - 2 * shift / (far_ - near_);
+  // With depth = infinite - c / z, moving a point to z (1 - shift) scales its difference from `infinite`.
   const double infinite = (far_ + near_) / (far_ - near_);
-  return infinite - (infinite - depth) / (1 - direction);
+  return infinite - (infinite - depth) / (1 - shift);
 }
 
 std::optional<Eigen::Vector2d> Projection::to_pixel(const Vector3d& world) const {

@@ -139,15 +139,14 @@ int run_check(const CheckOptions& o, const Globals& globals) {
                        (o.queries.empty() ? "" : " with these numbers") + "; record some, or choose others");
     checks.push_back(profile::check(capture, settings, progress_report(globals.quiet)));
   }
+  if (o.json)
+    for (const profile::Check& c : checks) print(json_lines(c));
+  // In texts, captures of the same engine are named by their files.
   std::map<std::string, std::size_t> captures;  // of each engine
   for (const profile::Check& c : checks) ++captures[c.engine];
   for (std::size_t i = 0; i < checks.size(); ++i)
-    if (captures[checks[i].engine] > 1)
-      checks[i].engine = std::filesystem::path(o.inputs[i]).filename().string();
-  if (o.json)
-    for (const profile::Check& c : checks) print(json_lines(c));
-  else
-    print(text_of(checks));
+    if (captures[checks[i].engine] > 1) checks[i].engine = printable_name(o.inputs[i]);
+  if (!o.json) print(text_of(checks));
   if (!o.folder.empty()) {
     write_page(checks, o.folder, globals);
     if (!o.json) print(o.folder + "/index.html\n");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -74,15 +75,20 @@ std::string choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBod
 
 /// Returns some of the poses; steps: "FROM:TO" or "FROM:TO:EVERY".
 std::vector<Pose> some_of(const std::vector<Pose>& poses, const std::string& steps) {
-  std::size_t from = 0, to = 0, every = 1;
-  char rest = 0;
-  const int found = std::sscanf(steps.c_str(), "%9zu:%9zu:%9zu%c", &from, &to, &every, &rest);
-  if (found != std::count(steps.begin(), steps.end(), ':') + 1 || found < 2 || every == 0 || from > to ||
-      to >= poses.size())
+  std::size_t number[] = {0, 0, 1}, count = 0;
+  const char *next = steps.data(), *const end = next + steps.size();
+  while (count < 3) {
+    const auto [rest, error] = std::from_chars(next, end, number[count]);
+    next = rest;
+    if (error != std::errc() || ++count == 3 || next == end || *next != ':') break;
+    ++next;
+  }
+  const auto [from, to, every] = number;
+  if (next != end || count < 2 || steps.back() == ':' || every == 0 || from > to || to >= poses.size())
     throw InputError("--steps " + steps + ": expected FROM:TO or FROM:TO:EVERY with numbers of poses up to " +
                      std::to_string(poses.size() - 1));
   std::vector<Pose> out;
-  for (std::size_t i = from; i <= to; i += every) out.push_back(poses[i]);
+  for (std::size_t i = 0; i <= (to - from) / every; ++i) out.push_back(poses[from + i * every]);
   return out;
 }
 
@@ -198,8 +204,10 @@ Command add_collide(App& root, const Globals& globals) {
   app->add_option("--points", meshes.more.points, "FILE",
                   "Also compute the signed distances of points to A at each step: lines of 3 numbers, x y z, "
                   "in B's frame");
-  app->add_option("--steps", meshes.steps, "FROM:TO[:EVERY]",
-                  "Only these poses of the file, from 0, and of them each EVERY-th")
+  app->add_option(
+         "--steps", meshes.steps, "FROM:TO[:EVERY]",
+         "Use only poses FROM to TO of the file, numbered from 0, or every EVERY-th of them; the run's steps "
+         "are numbered from 0")
       ->needs(app->get_option("--poses"));
   app->add_flag("--gzip", meshes.gzip, "Compress the trace: trace.json.gz");
   add_events_option(*app, meshes.events);

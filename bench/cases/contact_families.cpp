@@ -124,13 +124,13 @@ Case make_shared(RandomEngine& random, double difficulty) {
   c.a = any_body(random);
   std::array<Vector3d, 3> t = any_triangle(random, *c.a);
   const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-  const auto deviation = [&] {
+  const auto point_beside = [&] {
     const double along = uniform(random, -1, 1), across = uniform(random, -1, 1);
     const Vector3d v = t[0] + along * (t[1] - t[0]) + across * (t[2] - t[0]);
     return Vector3d(v + uniform(random, -0.2, 1) * n);
   };
   const int shared = pick(random, 1, 3);
-  std::array<Vector3d, 4> p = {t[0], deviation(), deviation(), deviation()};
+  std::array<Vector3d, 4> p = {t[0], point_beside(), point_beside(), point_beside()};
   for (int i = 0; i < shared; ++i) p[i] = t[i];
   for (int i = 0; i < shared; ++i) p[i] += slack(difficulty) * shapes::random_direction(random);
   c.b = body(tetrahedron(p));

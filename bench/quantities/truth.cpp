@@ -146,8 +146,8 @@ Rational distance_sq(const Question& q) {
       });
 }
 
-/// Returns a lower bound on the time t at which box b, translated by `from` + t * `way`, intersects box a;
-/// infinite: never.
+/// Returns a lower bound on the time t at which box b, translated by `from` + t * `towards`, intersects box
+/// a; infinite: never.
 double box_time(const AlignedBox3d& a, const AlignedBox3d& b, const Vector3d& from, const Vector3d& towards) {
   double begin = 0, end = 1;
   for (int k = 0; k < 3; ++k) {

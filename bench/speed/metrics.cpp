@@ -114,7 +114,7 @@ double BodyDistance::Side::distance(const Eigen::Vector3d& world) {
   return nearest.find(x / unit).distance * unit;
 }
 
-double BodyDistance::offset(const std::vector<Eigen::Vector3d>& points) {
+double BodyDistance::deviation(const std::vector<Eigen::Vector3d>& points) {
   double most = 0;
   for (const Eigen::Vector3d& p : points) most = std::max(most, a_.distance(p) + b_.distance(p));
   return most;
@@ -250,7 +250,7 @@ class Judge {
 
   void set_region(Errors& e, const methods::MethodInfo& info, const Region& found) const {
     set_region(e, info, region_error(maker().of_pairs(q_.expected), found, diagonal_),
-               std::min(1.0, BodyDistance(a_, q_.pose_a, b_, q_.pose_b).offset(found.points) / diagonal_));
+               std::min(1.0, BodyDistance(a_, q_.pose_a, b_, q_.pose_b).deviation(found.points) / diagonal_));
   }
 
   static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r, double offset) {

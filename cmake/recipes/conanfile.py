@@ -41,4 +41,5 @@ class LrbscopeConan(ConanFile):
     def package_info(self):
         self.cpp_info.set_property("cmake_target_name", "lrb::engine")
         self.cpp_info.libs = ["lrb_engine"]
-        self.cpp_info.cxxflags = ["-ffp-contract=off"]
+        is_arm = str(self.settings.arch).startswith("armv8")
+        self.cpp_info.cxxflags = ["-ffp-contract=off"] + (["-U__ARM_FEATURE_FMA"] if is_arm else [])

@@ -143,8 +143,8 @@ class CandidateCache {
     void operator()(SimplexPair, exact::Meet, bool) const {}
   };
   /// Determines the Meet of each chosen pair at the pose of k; all other pairs are disjoint. Calls
-  /// exact(pair) where floats do not decide, and see(pair, meet, is_certain) for each chosen pair, in order.
-  /// Returns true if the set of intersecting pairs or a Meet changed since the last update.
+  /// exact(pair) where floats do not decide, and visit(pair, meet, is_certain) for each chosen pair, in
+  /// order. Returns true if the set of intersecting pairs or a Meet changed since the last update.
   template <class Exact, class Visit = Unseen>
   bool update(const TreeKernel& k, Exact&& exact, Visit&& visit = {});
 

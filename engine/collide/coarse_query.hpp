@@ -71,7 +71,7 @@ std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const Col
 
 /// Returns true if a piece of either wrapper's boundary is in the other wrapper, or nullopt if `in_time()`,
 /// which is called before each point location, returns false. For wrappers whose faces do not intersect.
-/// Calls see(side, vertex, where) for each point.
+/// Calls visit(side, vertex, where) for each point.
 template <class InTime, class Visit>
 std::optional<bool> wrappers_nested(QueryContext& ctx, InTime&& in_time, Visit&& visit) {
   for (const Side side : {Side::a, Side::b}) {

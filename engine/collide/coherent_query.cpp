@@ -160,7 +160,7 @@ void CoherentQuery::Work::answer(const Pose& pose_a, const Pose& pose_b, Probe& 
   }
   const auto began = Clock::now();
   note_step(motion_.step());
-  // No point of B is further than where.off from its position in the sweep.
+  // No point of B is further than where.offset from its position in the sweep.
   const SweepPoint where = has_cache_ ? motion_.along(sweep_) : SweepPoint{};
   if (policy_.must_wait()) {
     // The last queries of a pause: the motion is tracked again, but no cache is made.

@@ -42,7 +42,7 @@ void decide_by_enclosure(const Enclosed& a_in_b, const Enclosed& b_in_a, Collide
 /// Sets result.relation from result.pairs or, if there are no pairs, from the location of one vertex of each
 /// component. A body counts as inside the other even if only some of its components are enclosed, because the
 /// bodies are then not separate. `in_time()` is called before each point location; once it returns false,
-/// this returns false and sets no relation. Calls see(side, vertex, where) for each point.
+/// this returns false and sets no relation. Calls visit(side, vertex, where) for each point.
 template <class InTime, class Visit>
 bool decide_relation(QueryContext& ctx, CollideResult& result, InTime&& in_time, Visit&& visit) {
   if (decide_without_points(ctx, result)) return true;

@@ -1,6 +1,6 @@
 /// Predicts the motion of B relative to A from its last three poses, by repeating the last step.
 ///
-/// 1. see() records a pose on A's axes and bounds its rounding.
+/// 1. record() keeps a pose on A's axes and bounds its rounding.
 /// 2. ahead() extrapolates a straight sweep, as long as the deviation of the last step from the one before
 ///    allows.
 /// 3. along() projects a pose onto a sweep by least squares and bounds the distance of all points from it.
@@ -89,13 +89,13 @@ double RelativeMotion::step() const {
 
 /// Returns the sweep over the next 2 `steps` steps, extended a little at both ends.
 Sweep RelativeMotion::sweep_of(int steps) const {
-  const RelativePose direction = motion_between(last_, now_);
+  const RelativePose motion = motion_between(last_, now_);
   Sweep s;
   // Repeat the last step: `steps` times to the mid_pose, and as often again to the end.
   RelativePose end = now_;
-  for (int i = 0; i < steps; ++i) end = after(direction, end);
+  for (int i = 0; i < steps; ++i) end = after(motion, end);
   s.mid_pose = end;
-  for (int i = 0; i < steps; ++i) end = after(direction, end);
+  for (int i = 0; i < steps; ++i) end = after(motion, end);
   // Half the chord from now to the end, extended by kBeyondEnd steps at either end.
   const double longer = 1 + kBeyondEnd / steps;
   s.dm = (end.m - now_.m) * (longer / 2);

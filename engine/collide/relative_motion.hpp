@@ -39,7 +39,7 @@ struct Sweep {
 };
 
 /// Position of B in a sweep: displaced from the middle by `at` times (dm x + dt), with a deviation of at most
-/// `off` for any point of B.
+/// `offset` for any point of B.
 struct SweepPoint {
   double at = 0, offset = 0;
 };

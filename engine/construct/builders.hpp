@@ -66,8 +66,8 @@ inline double fitting_worth(std::size_t front_faces, std::size_t real_faces, dou
 
 /// Builds tightly fitting fronts. The maximum deviation grows from pass to pass, slowly enough that each
 /// front is about the simplest one possible at its deviation. `size`: the body's largest side. Calls
-/// pass(front faces, off) while faces() returns more than `least`; a pass that leaves more than the share
-/// `gain` of the faces is the last at its deviation.
+/// pass(front faces, deviation) while faces() returns more than `least`; a pass that leaves more than the
+/// share `gain` of the faces is the last at its deviation.
 template <class Faces, class Pass>
 void fit_fronts(double size, std::uint32_t least, double gain, Faces faces, Pass pass) {
   for (double deviation = kFirstOff * size; deviation < kLastOff * size; deviation *= kOffStep) {

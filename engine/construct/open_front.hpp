@@ -143,7 +143,7 @@ class OpenFront {
   void set_held_by(Index component, CapVerdict verdict) { components_[component].held_by = verdict; }
 
   /// Replaces the star by a fan from its vertex v, or from a new vertex at `w`. `united`: of all its faces.
-  /// `hints` (rim, or empty), `off`: of the new faces. Returns the fan's vertex.
+  /// `hints` (rim, or empty), `deviation`: of the new faces. Returns the fan's vertex.
   Index collapse(const Star& star, const Union& united, const Vector3& w, std::span<const Slot> hints,
                  float deviation);
   /// A committed face is part of a polygon of the mesh, of which the component has covered other parts.

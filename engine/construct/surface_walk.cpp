@@ -63,10 +63,8 @@ bool SurfaceWalk::find_within(const Point& p, Slot& hint, float enough) const {
   while (top > 0) {
     const std::uint32_t n = stack[--top];
     const Node& node = nodes_[n];
-    const Point deviation = (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0f);
-    if (!((deviation[0] * deviation[0] + deviation[1] * deviation[1]) + deviation[2] * deviation[2] <=
-          enough))
-      continue;
+    const Point offset = (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0f);
+    if (!((offset[0] * offset[0] + offset[1] * offset[1]) + offset[2] * offset[2] <= enough)) continue;
     if (node.right != 0) {
       stack[top++] = node.right;
       stack[top++] = n + 1;

@@ -289,11 +289,11 @@ double scaled_down(double x, int exponent) {
   return y < kSmall ? std::max(0.0, std::nextafter(y, 0.0)) : y;
 }
 
-/// Returns axes whose first one points along `way`, or the world's axes if `way` has no direction.
+/// Returns axes whose first one points along `towards`, or the world's axes if `towards` has no direction.
 Matrix3d axes_along(const Vector3d& towards) {
   const double length = stable_norm3(towards);
   if (!(length > 0) || !std::isfinite(length)) return Matrix3d::Identity();
-  // Householder reflection that maps the x axis to `way`. It is symmetric, so its first row is `way`.
+  // Householder reflection that maps the x axis to `towards`. It is symmetric, so its first row is `towards`.
   const Vector3d mirror = Vector3d::UnitX() - towards / length;
   constexpr double kNearlyX = 1e-6;
   // Almost along x: the mirror's normal would consist of rounding errors, and the world's axes serve as well.

@@ -13,8 +13,8 @@ inline float dot3(const float* x, const float* y) {
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 
-/// Normalises `way`, which is on a node's axes, and writes it on the axes of its body. Returns false if it is
-/// too short.
+/// Normalises `towards`, which is on a node's axes, and writes it on the axes of its body. Returns false if
+/// it is too short.
 inline bool direction_of(const TreeNode& n, const float* towards, float* direction) {
   // Above this length the sum of squares, 2^-120, is a normal float.
   constexpr float kLeast = 0x1p-60F;

@@ -58,10 +58,10 @@ inline Lanes far_along_normal(const Corners& t, const Corners& a, const Corners&
 }
 
 /// Returns the lanes whose triangles are proven to be farther apart than allowed. Lanes that are not in
-/// `here` do not matter. The first slabs are normal to the triangles: often the nearest points are a corner
-/// and a point of a face. The direction of another slab runs from the origin to a point p of the Minkowski
-/// difference B - A; p approaches the point of least length (Gilbert, "An Iterative Procedure for Computing
-/// the Minimum of a Quadratic Form on a Convex Set", 1966):
+/// `current` do not matter. The first slabs are normal to the triangles: often the nearest points are a
+/// corner and a point of a face. The direction of another slab runs from the origin to a point p of the
+/// Minkowski difference B - A; p approaches the point of least length (Gilbert, "An Iterative Procedure for
+/// Computing the Minimum of a Quadratic Form on a Convex Set", 1966):
 /// 1. p: the difference of the centroids.
 /// 2. v: the corner of B - A that is least along p. The slab normal to p is p . v / |p| wide.
 /// 3. Replace p by the point of least length between p and v, and continue with 2.

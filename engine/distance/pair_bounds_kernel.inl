@@ -66,8 +66,8 @@ struct OnFeature {
   }
 };
 
-/// Writes a normal of the closest features that stays accurate if they nearly touch. way: from A's point to
-/// B's.
+/// Writes a normal of the closest features that stays accurate if they nearly touch. towards: from A's point
+/// to B's.
 inline void normal_of_features(const OnFeature& a, const OnFeature& b, const Doubles* towards,
                                Doubles* normal) {
   Doubles u[3], v[3], across[3];

@@ -146,7 +146,7 @@ class Pair {
       const Whole3 from_end = minus(corner(side, k), corner(1 - side, j + 1));
       consider({dot(from_end, from_end), 1}, side, current, {feature(0, (j + 1) % n_), {}});
     } else {
-      // Pythagoras: the squared distance is |way|^2 - at^2 / length.
+      // Pythagoras: the squared distance is |direction|^2 - at^2 / length.
       consider({length * dot(direction, direction) - at * at, length}, side, current,
                {feature(1, j), {{at, length}, {}}});
     }

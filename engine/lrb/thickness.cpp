@@ -219,7 +219,7 @@ struct Piece {
   Simplex x;
   std::array<double, 3> deviation;                        ///< distance of each corner to the face
   SimplexId face = kNull;                                 ///< a real simplex
-  double most = std::numeric_limits<double>::infinity();  ///< the maximum of `off`
+  double most = std::numeric_limits<double>::infinity();  ///< the maximum of `deviation`
   std::uint32_t cuts = 0;
 };
 

@@ -175,8 +175,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Calls see(origin, radius), in mesh units, for balls that together enclose the body: those of the nodes two
-/// levels below the root. Tighter than the root's ball, at constant cost.
+/// Calls visit(origin, radius), in mesh units, for balls that together enclose the body: those of the nodes
+/// two levels below the root. Tighter than the root's ball, at constant cost.
 template <class Visit>
 void for_each_ball(const ObbTree& tree, Visit&& visit) {
   const auto nodes = tree.nodes().data();

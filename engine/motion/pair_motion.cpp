@@ -51,16 +51,16 @@ double cross(const Difference& x, const Difference& y) {
   return x.u * y.v - x.v * y.u;
 }
 
-/// Returns true if a 2D triangle contains the origin, even if each of its corners moves by up to `way`.
-bool holds_origin(const Difference* k, double direction) {
+/// Returns true if a 2D triangle contains the origin, even if each of its corners moves by up to `distance`.
+bool holds_origin(const Difference* k, double distance) {
   double sign = 0;
   for (int i = 0; i < 3; ++i) {
     const Difference &x = k[i], &y = k[(i + 1) % 3];
     // Twice the signed area of the triangle of the origin and this edge.
     const double turn = cross(x, y);
     const double most = std::abs(x.u) + std::abs(x.v) + std::abs(y.u) + std::abs(y.v);
-    // Moving both ends by `way` changes this by less than the first term; the second covers rounding.
-    if (!(std::abs(turn) > 2 * direction * (most + direction) + kPairRounding * most * most)) return false;
+    // Moving both ends by `distance` changes this by less than the first term; the second covers rounding.
+    if (!(std::abs(turn) > 2 * distance * (most + distance) + kPairRounding * most * most)) return false;
     // The origin is inside if it is on the same side of all three edges.
     if (i > 0 && (turn > 0) != (sign > 0)) return false;
     sign = turn;

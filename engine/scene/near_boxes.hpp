@@ -90,7 +90,7 @@ inline int longest_axis(std::span<const Box> a, std::span<const Box> b) {
   return axis;
 }
 
-/// Calls see(a, b, gap) for each pair of boxes at most `limit` apart; see() may lower the limit.
+/// Calls visit(a, b, gap) for each pair of boxes at most `limit` apart; visit() may lower the limit.
 template <class Visit>
 void each_near_pair(std::span<const Box> boxes, const double& limit, const Visit& visit) {
   const SortedBoxes sorted(boxes, longest_axis(boxes, {}));

@@ -75,7 +75,7 @@ struct Participants {
     return {gap, a.placed[i].key, b.placed[j].key, i, j};
   }
 
-  /// Calls see(near) for the pairs whose AABBs are at most `limit` apart. see() may lower the limit.
+  /// Calls visit(near) for the pairs whose AABBs are at most `limit` apart. visit() may lower the limit.
   template <class Visit>
   void each_near(const double& limit, const Visit& visit) const {
     const auto found = [&](std::uint32_t i, std::uint32_t j, double gap) { visit(pair(i, j, gap)); };

@@ -150,8 +150,8 @@ inline Between between(const TreeKernel& k, const TreeNode& a, const TreeNode& b
   const float whole = k.m_size * (radius_a + radius_b + __builtin_fabsf(df[0]) + __builtin_fabsf(df[1]) +
                                   __builtin_fabsf(df[2]));
   float reach = whole;
-  // The sweep of B's origin is in w.way. The margin bounds by how much other points of the node differ from
-  // it.
+  // The sweep of B's origin is in w.direction. The margin bounds by how much other points of the node differ
+  // from it.
   if constexpr (kMargin) {
     const float size = sweep(k, b, a_columns, w);
     w.margin = k.margin + k.sweep_turn * radius_b + kSweepRounding * size;

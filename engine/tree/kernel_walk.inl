@@ -260,7 +260,7 @@ inline void leaf_pair(TreeKernel& k, const TreeNode& na, const TreeNode& nb) {
     const Corners some_a = pick(a, list.a + begin), some_b = pick(b, list.b + begin);
     const SideLanes b_sides = sides_of_planes<kMargin>(some_a, some_b, errors, errors.edge_error[0]);
     const SideLanes a_sides = sides_of_planes<kMargin>(some_b, some_a, errors, errors.edge_error[1]);
-    // `here` masks the lanes in use; only the last batch may have fewer than eight.
+    // `current` masks the lanes in use; only the last batch may have fewer than eight.
     const std::uint32_t current = list.size - begin < 8 ? (1u << (list.size - begin)) - 1 : 255u;
     const std::uint32_t left = ~bits(either(a_sides.rejected, b_sides.rejected)) & current;
     if (k.rejected != nullptr && left != current) [[unlikely]]

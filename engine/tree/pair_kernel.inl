@@ -114,7 +114,7 @@ struct Across {
   }
 };
 
-/// Calls see() with directions that may separate the pairs: both normals, the coordinate axes, and the line
+/// Calls visit() with directions that may separate the pairs: both normals, the coordinate axes, and the line
 /// between the centroids.
 template <class Visit>
 inline void for_directions(const EightPairs& p, Visit&& visit) {

@@ -126,8 +126,8 @@ def body_of(mesh: _Mesh) -> Body:
         key = content.digest()
         body = _recent.pop(key, None) or _core.Body(*arrays, regions=False, name="mesh")
         _recent[key] = body
-        if len(_recent) > 4:
-            _recent.pop(next(iter(_recent)), None)
+        for old in list(_recent)[:-4]:  # a copy, because other threads may change it
+            _recent.pop(old, None)
         return body
     return _core.Body(vertices, faces, regions=False, name="mesh")  # lists and masked arrays
 

@@ -497,7 +497,7 @@ CameraFit camera_along(const WalkExplanation& walk, const Square& square, int di
   const Vector3d centre = bounds(points).center();
   if (dim == 2) {
     const double room = kLeast * whole.diagonal().norm();
-    for (const double towards : {-room, room}) points.emplace_back(centre + Vector3d(towards, towards, 0));
+    for (const double offset : {-room, room}) points.emplace_back(centre + Vector3d(offset, offset, 0));
     return [points](double width, double height) { return fit_top(points, width, height, 0.2); };
   }
   FitOptions fit;

@@ -98,13 +98,13 @@ void write_at(render::DrawList& list, const Vector3d& x, const std::string& text
 }
 
 /// Draws the barbs of an arrowhead in the plane of the arrow and `across`.
-void add_barbs(render::DrawList& list, const MarkedSegment& direction, const Vector3d& across,
+void add_barbs(render::DrawList& list, const MarkedSegment& arrow, const Vector3d& across,
                render::Rgba colour, float width = kSegmentWidth) {
   constexpr double kHeadLength = 0.24, kHeadWidth = 0.11;
-  const Vector3d along = direction.to - direction.from;
-  const Vector3d back = direction.to - kHeadLength * along, aside = kHeadWidth * along.norm() * across;
+  const Vector3d along = arrow.to - arrow.from;
+  const Vector3d back = arrow.to - kHeadLength * along, aside = kHeadWidth * along.norm() * across;
   for (const Vector3d& end : {Vector3d(back + aside), Vector3d(back - aside)})
-    outline(list, {end, direction.to}, colour, width);
+    outline(list, {end, arrow.to}, colour, width);
 }
 
 }  // namespace
@@ -183,7 +183,7 @@ void add_arrow(render::DrawList& list, const Vector3d& from, const Vector3d& to,
 
 std::string interval_text(double lower, double upper) {
   const std::string low = render::short_number(lower), high = render::short_number(upper);
-  return low == high ? high : lower == 0 ? "\u2264 " + high : low + " to " + high;
+  return low == high ? high : lower == 0 && std::isfinite(upper) ? "\u2264 " + high : low + " to " + high;
 }
 
 std::string kind_text(ClashKind kind) {
@@ -389,14 +389,14 @@ void add_contact_points(render::Scene& scene, std::span<const ContactMark> conta
                          "normals, from A to B, longer where deeper"});
 }
 
-void add_separation_vector(render::Scene& scene, const MarkedSegment& direction, int dim,
+void add_separation_vector(render::Scene& scene, const MarkedSegment& arrow, int dim,
                            const render::Style& style) {
-  outline(scene.list, {direction.from, direction.to}, kSeparationColour, kSegmentWidth);
-  const Vector3d along = (direction.to - direction.from).normalized();
+  outline(scene.list, {arrow.from, arrow.to}, kSeparationColour, kSegmentWidth);
+  const Vector3d along = (arrow.to - arrow.from).normalized();
   const Vector3d across = dim == 2 ? Vector3d::UnitZ().cross(along) : along.unitOrthogonal();
-  add_barbs(scene.list, direction, across, kSeparationColour);
-  if (dim == 3) add_barbs(scene.list, direction, along.cross(across), kSeparationColour);
-  write_at(scene.list, (direction.from + direction.to) / 2, direction.text, style);
+  add_barbs(scene.list, arrow, across, kSeparationColour);
+  if (dim == 3) add_barbs(scene.list, arrow, along.cross(across), kSeparationColour);
+  write_at(scene.list, (arrow.from + arrow.to) / 2, arrow.text, style);
   scene.key.push_back({render::LegendItem::Mark::arrow, kSeparationColour, "B leaves A this way"});
 }
 

@@ -38,9 +38,10 @@ std::string title_of(std::string caption) {
   constexpr std::string_view kLong = " intersecting", kFaces = " of faces", kUsual = "crossing, ";
   const std::size_t number_end = caption.find(kLong);
   if (number_end == std::string::npos) return caption;
-  if (const std::size_t at = caption.find(kFaces); at != std::string::npos) caption.erase(at, kFaces.size());
+  if (const std::size_t at = caption.find(kFaces, number_end); at != std::string::npos)
+    caption.erase(at, kFaces.size());
   caption.erase(number_end, kLong.size());
-  caption.replace(caption.rfind(": "), 2, ", ");
+  caption.replace(caption.rfind(": ", number_end), 2, ", ");
   if (const std::size_t at = caption.find(kUsual); at != std::string::npos) caption.erase(at, kUsual.size());
   return caption;
 }

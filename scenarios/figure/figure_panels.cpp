@@ -191,12 +191,12 @@ Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera&
 render::Camera part_of(const render::Camera& camera, const Eigen::AlignedBox2d& part) {
   render::Camera out = camera;
   const double share = part.sizes().y() / kViewSide, tangent = std::tan(0.5 * camera.fov_y);
-  const Eigen::Vector2d deviation =
+  const Eigen::Vector2d offset =
       (2 * part.center() - Eigen::Vector2d::Constant(kViewSide)) / kViewSide;  // in half sides, y down
   out.half_height *= share;
   out.fov_y = 2 * std::atan(tangent * share);
   out.shift +=
-      (camera.orthographic ? camera.half_height : tangent) * Eigen::Vector2d(deviation.x(), -deviation.y());
+      (camera.orthographic ? camera.half_height : tangent) * Eigen::Vector2d(offset.x(), -offset.y());
   return out;
 }
 

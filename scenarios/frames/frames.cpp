@@ -63,13 +63,16 @@ class FrameJob {
   render::Image picture(std::size_t i, bool plain = false) {
     std::vector<Panel> panels;
     for (const render::Look::View& view : look_.views) {
-      Framing framing = framing_;
       // A panel of a montage is looked at alone: without a contact it shows where the bodies are nearest.
+      std::vector<Eigen::Vector3d> nearest;
       if (plain && view.camera == render::FrameSpec::Camera::contact && !state.in_contact() &&
           state.reps().size() == 2)
-        framing.contacts =
+        nearest =
             nearest_points({*state.reps()[0], state.pose(Side::a), *state.reps()[1], state.pose(Side::b)});
-      const auto camera = [this, &view, framing, i](double width, double height) {
+      const auto camera = [this, &view, nearest, i](double width, double height) {
+        if (nearest.empty()) return camera_for(view, framing_, width, height, progress(i));
+        Framing framing = framing_;
+        framing.contacts = nearest;
         return camera_for(view, framing, width, height, progress(i));
       };
       panels.push_back({list(view, plain), camera, view.title});

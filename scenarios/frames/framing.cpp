@@ -211,8 +211,12 @@ std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& p, const ren
 }
 
 std::vector<Vector3d> nearest_points(const PosedBodies& bodies) {
-  const DistanceResult found = distance(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b);
-  if (!std::isfinite(found.upper)) return {};
+  DistanceRequest request;
+  request.relative_tolerance = 0.01;  // enough for a camera
+  request.relation = false;
+  if (bodies.a.dim() == 2) return {};  // a view from above has no room around two points
+  const DistanceResult found = distance(bodies.a, bodies.pose_a, bodies.b, bodies.pose_b, request);
+  if (!std::isfinite(found.upper) || found.upper == 0) return {};
   return {found.witness[0].point, found.witness[1].point};
 }
 

@@ -14,7 +14,8 @@ namespace lrb::run {
 /// rest is shown as a ghost; if it explodes bodies, the displaced regions.
 Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spec);
 
-/// Returns the closest points of two bodies: what close-ups show without a contact.
+/// Returns the closest points of two bodies: what close-ups show without a contact. Returns
+/// none for 2D bodies, and for bodies that meet or have no faces.
 std::vector<Eigen::Vector3d> nearest_points(const PosedBodies& bodies);
 
 /// Returns the direction from which a single thin body in upright position fills its pictures: across its

@@ -140,7 +140,7 @@ std::size_t empty_cell(std::string_view line) {
   }
 }
 
-/// Calls see(numbers, line) for each line of `count` numbers; `meaning` describes them for messages.
+/// Calls visit(numbers, line) for each line of `count` numbers; `meaning` describes them for messages.
 template <class Visit>
 void read_lines(const std::string& text, const std::string& name, std::size_t count, const char* meaning,
                 Visit&& visit) {

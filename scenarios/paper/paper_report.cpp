@@ -202,7 +202,7 @@ report::Table counters(std::span<const ObjectRow> rows, std::size_t recursion) {
     const RecursionRow& x = row.recursions[recursion];
     t.rows.push_back({row.object, render::group_digits(row.steps), whole(x.comparisons.min),
                       whole(x.comparisons.average), whole(x.comparisons.max), fixed(x.refinements.average, 1),
-                      fixed(missed_percent(x), 2) + " %"});
+                      missed_text(x)});
     if (complete) t.rows.back().push_back(whole(x.bound_tests));
   }
   t.note = complete
@@ -393,7 +393,14 @@ std::vector<std::string> differences(const PaperReport& r, std::span<const Objec
     out.push_back(
         "Every collision begins with " + render::group_digits(n) +
         " comparisons: all outermost faces of A with those of the other object, and the floors of their only "
-        "regions. They are most of each minimum, and the reason that minima do not grow.");
+        "regions" +
+        (std::all_of(rows.begin(), rows.end(),
+                     [&](const ObjectRow& row) {
+                       return 2 * static_cast<double>(n) >
+                              static_cast<double>(row.recursions[0].comparisons.min);
+                     })
+             ? ": most of each minimum, and the reason that minima do not grow."
+             : "."));
   return out;
 }
 

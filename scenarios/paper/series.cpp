@@ -264,7 +264,7 @@ report::Table table(std::span<const SeriesRow> rows, SeriesPartner partner, std:
                       whole(x.comparisons.average), whole(x.comparisons.max),
                       fixed(x.refinements.average, 1)});
     if (complete) t.rows.back().push_back(whole(x.bound_tests));
-    t.rows.back().push_back(fixed(missed_percent(x), 2) + " %");
+    t.rows.back().push_back(missed_text(x));
     t.rows.back().push_back(fixed(row.microseconds[recursion], 0));
   }
   return t;
@@ -391,7 +391,8 @@ report::Table accelerator_table(std::span<const Mesh> bodies, PaperProtocol prot
   t.note =
       "Each body with itself, averages over " + std::to_string(protocol.collisions) +
       " approaches. Tests are those of boxes and faces; those of recursions are multiples of the default's. \"" +
-      std::to_string(kLids) + " lids\": built with --max-lids " + std::to_string(kLids) + ".";
+      std::to_string(kLids) + " lids\": built with --max-lids " + std::to_string(kLids) +
+      "; their missed pairs are those of both recursions.";
   Workspace workspace;
   for (const Mesh& body : bodies) {
     BuildOptions options;

@@ -51,6 +51,11 @@ inline double missed_percent(const RecursionRow& x) {
   return all > 0 ? 100 * static_cast<double>(x.missed) / static_cast<double>(all) : 0;
 }
 
+/// Returns it as text; a dash without pairs.
+inline std::string missed_text(const RecursionRow& x) {
+  return x.pairs + x.missed > 0 ? fixed(missed_percent(x), 2) + " %" : "–";
+}
+
 struct ObjectRow {
   std::string object;
   std::uint32_t real_faces = 0, total_faces = 0;

@@ -40,10 +40,10 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
   for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
     const trace::Step& s = p.trace->steps[i];
     if (!s.finished) continue;
-    if (const auto direction = s.result.distance ? gap_of(*s.result.distance) : std::nullopt)
-      add(s, gap, direction->from, direction->to, "distance " + direction->text);
-    if (const auto direction = separation_vector_in(p, i))
-      add(s, separation_vector, direction->from, direction->to, "depth " + direction->text);
+    if (const auto segment = s.result.distance ? gap_of(*s.result.distance) : std::nullopt)
+      add(s, gap, segment->from, segment->to, "distance " + segment->text);
+    if (const auto segment = separation_vector_in(p, i))
+      add(s, separation_vector, segment->from, segment->to, "depth " + segment->text);
     if (s.result.near) {
       const std::vector<NearMark> marks = near_marks(*s.result.near);
       for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)

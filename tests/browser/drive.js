@@ -141,6 +141,9 @@
     check(wrappers.onBoundary(side, goal), "m refines the wrapper down to the face under it");
     check(view.marks.shown.get("resolved").parts.length > 0, "shows the faces on the way");
     check(text("picked-facts").includes("way in"), "and lists them");
+    check(text("view-caption").includes(digits(wrappers.sizes[side])), "the caption has its faces");
+    byId("picked-facts").querySelector("button").click();
+    check(!selection.picked.goal && wrappers.onBoundary(side, goal), "also if a region is selected");
     press("Escape");
     equal(wrappers.sizes.join(), sizes, "Esc undoes it");
     view.draw();
@@ -184,6 +187,19 @@
     equal(Number(last.dataset.event), count - 1, "and scrolls to its last");
     table.events = events;
     byId("filter-clear").click();
+  }
+
+  /** The button of wrong pairs moves from one to the next. */
+  function showsWrongPairs() {
+    const { wrong } = events, pairs = [[0, 0], [1, 1]].map((simplices) => ({ simplices, missed: true }));
+    events.wrong = wrong.map(() => pairs);
+    selection.goTo(selection.event);
+    const button = byId("event-facts").lastElementChild.firstChild,
+      next = () => (button.click(), `${button.isConnected} ${button.textContent} ${selection.chosen}`);
+    equal(next(), "true 1 of 2: missed 0,0", "the button of wrong pairs selects the first");
+    equal(next(), "true 2 of 2: missed 1,1", "and then the second");
+    Object.assign(events, { wrong });
+    selection.goTo(selection.event);
   }
 
   /** Why: of a contact, and of a step in which the bodies are apart. */
@@ -386,8 +402,7 @@
     const region = events.bodies[0].regionCount >> 1,
       made = named("region").find((r) => r.region === region);
     selection.pickRegion(0, region);
-    const isListed = shown().split(" ").includes(String(made.cause));
-    check(isListed, "a region lists the attempt that made it", shown());
+    check(shown().split(" ").includes(String(made.cause)), "a region lists what made it", shown());
     rows().find((r) => events.id(r.attempt.cap) === made.cause).click();
     await frame();
     const after = wrappers.sizes[0];
@@ -462,8 +477,8 @@
     reload: [opensAtItsAddress],
     screen: [fitsOneScreen],
     all: [
-      ...[opensAtLargestContact, showsOneStep, replaysAsRecorded, selectsEverywhere, clicks, filters, explains, mapsAllPairs],
-      ...[rowsLead, keepsItsState, loadsTheTrace],
+      ...[opensAtLargestContact, showsOneStep, replaysAsRecorded, selectsEverywhere, clicks, filters],
+      ...[showsWrongPairs, explains, mapsAllPairs, rowsLead, keepsItsState, loadsTheTrace],
     ],
     flat: [opensAtLargestContact, withoutWebgl],
   };

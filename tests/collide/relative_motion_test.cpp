@@ -58,12 +58,12 @@ TEST_CASE("no point of B moves further than the predicted motion allows") {
       walk.step_b.t = walk.b.t - walk.step_b.r * walk.b.t;
     }
     RelativeMotion history(body, body);
-    REQUIRE(history.see(walk.a, walk.b));
+    REQUIRE(history.record(walk.a, walk.b));
     CHECK(std::isinf(history.step()));
     for (int step = 0; step < 3; ++step) {
       const Walk before = walk;
       walk.go();
-      if (!history.see(walk.a, walk.b)) {
+      if (!history.record(walk.a, walk.b)) {
         CHECK(drift != 0);
         break;
       }

@@ -48,9 +48,9 @@ class Motion {
   /// are rotations (mirrored ones included) to about 1e-3, or equal.
   static Motion screw(const Pose& start, const Pose& end);
   /// Starts at a pose, rotates about the world axis `turn` through `centre` by |turn| radians, and translates
-  /// by `way` at the same time, together with the axis. |turn| may exceed a full revolution.
+  /// by `translation` at the same time, together with the axis. |turn| may exceed a full revolution.
   static Motion turning(const Pose& start, const Eigen::Vector3d& turn, const Eigen::Vector3d& centre,
-                        const Eigen::Vector3d& direction);
+                        const Eigen::Vector3d& translation);
   /// Interpolates between key frames as screw() does. Throws InputError unless the first is at t = 0, the
   /// last at t = 1, and times ascend.
   static Motion key_frames(std::span<const KeyFrame> frames);

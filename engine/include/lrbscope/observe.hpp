@@ -228,7 +228,7 @@ void in_phase(Probe& probe, Phase phase, const Work& work) {
   probe.end(phase, work());
 }
 
-/// Runs a point location phase. work(see) calls see(side, vertex, where) for each point.
+/// Runs a point location phase. work(visit) calls visit(side, vertex, where) for each point.
 template <class Probe, class Work>
 void locate_in_phase(Probe& probe, const Work& work) {
   in_phase(probe, Phase::relation, [&] {

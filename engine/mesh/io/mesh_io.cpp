@@ -29,7 +29,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-enum class MeshFormat : std::uint8_t { obj, stl_ascii, stl_binary, ply, deviation };
+enum class MeshFormat : std::uint8_t { obj, stl_ascii, stl_binary, ply, off };
 
 constexpr std::string_view kAdvice = "export the mesh as OBJ, STL, PLY or OFF";
 
@@ -134,7 +134,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   if (first_of_all == "ply") return MeshFormat::ply;
   // A binary STL of a wrong size may also begin with "solid"; its reader reports the sizes.
   if (lower(first_of_all) == "solid") return is_text(bytes) ? MeshFormat::stl_ascii : MeshFormat::stl_binary;
-  if (off_header_size(first) > 0) return MeshFormat::deviation;
+  if (off_header_size(first) > 0) return MeshFormat::off;
   // Unsupported formats are named in the message.
   if (const auto what = looks_like(bytes)) reject(name, *what);
   if (is_utf16_without_mark(bytes)) reject(name, "UTF-16 text (save it as UTF-8)");
@@ -148,7 +148,7 @@ MeshFormat tell_format(std::string_view bytes, std::string_view name) {
   if (std::find(kObjKeywords.begin(), kObjKeywords.end(), first) != kObjKeywords.end())
     return MeshFormat::obj;
   if (extension == "obj") return MeshFormat::obj;  // the OBJ reader reports the invalid line
-  if (extension == "off" && is_number(first)) return MeshFormat::deviation;  // the keyword OFF is optional
+  if (extension == "off" && is_number(first)) return MeshFormat::off;  // the keyword OFF is optional
   reject(name, "text that begins with " + in_quotes(first));
 }
 
@@ -160,7 +160,7 @@ Mesh read_as(MeshFormat format, std::string_view bytes, std::string_view name) {
       return read_stl_binary(bytes, name);
     case MeshFormat::ply:
       return read_ply(bytes, name);
-    case MeshFormat::deviation:
+    case MeshFormat::off:
       return read_off(bytes, name);
     default:
       return read_obj(bytes, name);

@@ -179,10 +179,11 @@ export class ProofMap {
     }
     const { list, complete } = this.cells;
     this.canvas.hidden = this.legend.hidden = !list.length;
-    if (!list.length)
-      return this.words.replaceChildren(
-        complete ? "This step has no traversal of its own." : "The tab Events loads the events of this step.",
-      );
+    if (!list.length) {
+      this.words.textContent = complete ? "This step has no traversal of its own."
+        : "The tab Events loads the events of this step.";
+      return this.tell({ map: null });
+    }
     if (!this.painted) {
       this.canvas.width = this.canvas.height = pixels;
       this.canvas.style.width = this.canvas.style.height = `${size}px`;
@@ -240,7 +241,8 @@ export class ProofMap {
     }
     for (const cell of painted.hits) this.fill(cell, size); // small ones stay on top of later neighbours
     context.putImageData(painted.image, 0, 0);
-    if (this.listeners.length) this.tell({ map: painted.pixels });
+    if (painted.told !== painted.next) this.tell({ map: painted.pixels });
+    painted.told = painted.next;
     // The cell under the pointer or of the event, and the pairs that another engine got wrong.
     const { axes } = this.cells,
       nodes = this.events.about(now, "node").map((n) => n.number),
@@ -304,6 +306,7 @@ export class ProofMap {
 
   /** Goes to the event that decides the pairs at a place. */
   go(at) {
+    if (document.documentElement.classList.contains("mapping")) return; // another run's map would stay
     const cell = this.find(at, Infinity);
     if (cell) this.selection.goTo(cell.event);
   }

@@ -192,7 +192,7 @@ class Together {
     document.documentElement.classList.add("alone");
     view.camera.controls.addEventListener("change", () => this.tell({ camera: view.camera.json() }));
     selection.listeners.push((what) => what === "event" && this.tell({ step: this.step }));
-    window.addEventListener("message", (e) => e.source === parent && e.data.lrbscope
+    window.addEventListener("message", (e) => e.source === parent && e.data?.lrbscope
         && this.hear(e.data.lrbscope));
     this.tell({ camera: view.camera.json(), step: this.step }); // the view that is created last sets both
     if (!map) return;
@@ -214,7 +214,7 @@ class Together {
     if (mapping !== undefined && this.map) {
       byId("scene").append(this.map.box);
       document.documentElement.classList.toggle("mapping", mapping);
-      seek("step", this.step); // to its end
+      if (mapping) seek("step", this.step); // to its end
       this.map.redraw();
     }
     if (window) this.map?.show(window);
@@ -263,8 +263,7 @@ function startScene() {
     wrappers = complete ? new Wrappers(bodies, events, scene.wrapper) : null;
   if (wrappers)
     selection.listeners.push((what) => {
-      const { event, picked } = selection;
-      if (what !== "look") wrappers.seek(event, picked?.resolved ? picked : null);
+      if (what !== "look") wrappers.seek(selection.event, selection.resolved);
     }); // before the listeners that display them
   const timeline = new Timeline(events, selection), panel = new Panel(events, selection, wrappers);
   const filter = new EventFilter(), table = new EventTable(events, selection, filter),
@@ -277,7 +276,7 @@ function startScene() {
   byId("thinned").textContent = scene.thinned;
   byId("thinned").hidden = !scene.thinned;
   selection.listeners.push((what) => {
-    if (what === "event") byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
+    if (what !== "look") byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
   });
   new RowLinks(events, selection, controls);
   new AnswerLine(scene.answers, events, selection);
@@ -356,7 +355,6 @@ function openView(scene, selection, wrappers, why) {
     return no(`This browser has no WebGL, which the view in three dimensions needs.${frames}`);
   return new SceneView(scene, selection, wrappers, why);
 }
-
 
 /** Marks the events of the selected face or region on the charts. */
 function markAbout(events, selection) {

@@ -217,6 +217,7 @@ export class Glass {
     const parts = panes.map(({ mesh }) => {
         const { index, attributes, drawRange } = mesh.geometry, { position, normal, color } = attributes;
         return { e: mesh.matrixWorld.elements, corners: index.array, count: drawRange.count / 3,
+          turn: new THREE.Matrix3().getNormalMatrix(mesh.matrixWorld).elements, // poses may scale and shear
           p: position.array, n: normal.array, c: color.array };
       }),
       count = parts.reduce((n, part) => n + part.count, 0), depths = new Float32Array(count),
@@ -242,13 +243,13 @@ export class Glass {
     const position = new Float32Array(9 * count), normal = new Float32Array(9 * count),
       color = new Uint8Array(9 * count);
     for (t = 0; t < count; t++) {
-      const { e, p, n, c } = parts[of[t]], to = 9 * next[place(depths[t])]++;
+      const { e, turn, p, n, c } = parts[of[t]], to = 9 * next[place(depths[t])]++;
       for (let k = 0; k < 9; k += 3) {
         const at = first[t] + k, [x, y, z] = [p[at], p[at + 1], p[at + 2]],
           [u, v, w] = [n[at], n[at + 1], n[at + 2]];
         for (let r = 0; r < 3; r++) {
           position[to + k + r] = e[r] * x + e[4 + r] * y + e[8 + r] * z + e[12 + r];
-          normal[to + k + r] = e[r] * u + e[4 + r] * v + e[8 + r] * w;
+          normal[to + k + r] = turn[r] * u + turn[3 + r] * v + turn[6 + r] * w;
           color[to + k + r] = c[at + r];
         }
       }
@@ -390,11 +391,15 @@ export class BodyView {
     if (object) this.group.add(object);
   }
 
-  /** Returns thin lines along edges, pairs of corners. */
-  lines(edges, opacity, more) {
+  /** Returns the coordinates of edges, pairs of corners. */
+  endsOf(edges) {
     const { vertices } = this.body, ends = new Float32Array(3 * edges.length);
     for (let i = 0; i < ends.length; i++) ends[i] = vertices[3 * edges[(i / 3) | 0] + (i % 3)];
-    return this.thin(ends, opacity, more);
+    return ends;
+  }
+  /** Returns thin lines along edges. */
+  lines(edges, opacity, more) {
+    return this.thin(this.endsOf(edges), opacity, more);
   }
   thin(ends, opacity, more) {
     const colour = new THREE.Color(...this.colours.edge(this.body.side)),
@@ -490,10 +495,8 @@ export class BodyView {
     this.extremes = this.reached = this.farthest((visit) => this.eachCorner(outermost, visit), most);
     this.radius = 0;
     this.eachCorner(outermost, (x, y, z) => {
-      this.radius = Math.max(
-        this.radius,
-        Math.hypot(x - this.centroid[0], y - this.centroid[1], z - this.centroid[2]),
-      );
+      const far = Math.hypot(x - this.centroid[0], y - this.centroid[1], z - this.centroid[2]);
+      this.radius = Math.max(this.radius, far);
     });
   }
 
@@ -555,34 +558,30 @@ export class BodyView {
     this.materials.lids.uniforms.rim.value = rim;
   }
 
-  /** Shows the lids of the wrapper: its pseudo faces. */
-  showLids(onBoundary) {
-    const { realCount } = this.body, shown = this.lidFaces.filter(onBoundary);
+  /** Shows the lids of the wrapper: its pseudo faces. `isClosed`: no faces of the wrapper are discarded. */
+  showLids(onBoundary, isClosed) {
+    const { realCount, faceCount } = this.body, shown = this.lidFaces.filter(onBoundary);
     this.isShown = this.isShown || new Uint8Array(this.body.faceCount);
     this.isShown.fill(0);
     for (const f of shown) this.isShown[f] = 1;
     this.lids.show((f) => this.isShown[f]);
     if (this.fills) this.fills.wrapper.show([...shown]);
-    else this.showLidEdges(shown);
+    else this.showLidEdges(shown, isClosed && this.lidFaces.length === faceCount - realCount);
     this.lidCount = shown.filter((f) => f >= realCount).length;
   }
 
-  /** Shows edges of lids. The surface is closed: two faces have an edge in opposite directions, and it is
-      shown with the one that goes to the larger number. Where the other face is a real one, its edges are
-      shown anyway. */
-  showLidEdges(faces) {
-    const { vertices, corners, offsets } = this.body,
-      ends = new Float32Array(6 * faces.reduce((n, f) => n + offsets[f + 1] - offsets[f], 0));
-    let n = 0;
-    for (const f of faces)
+  /** Shows edges of lids. On a closed surface two faces have an edge in opposite directions, and it is shown
+      with the one that goes to the larger number. Where the other face is a real one, its edges are shown
+      anyway. */
+  showLidEdges(faces, isClosed) {
+    const { corners, offsets } = this.body, edges = isClosed ? [] : edgesOf(this.body, faces);
+    for (const f of isClosed ? faces : [])
       for (let i = offsets[f]; i < offsets[f + 1]; i++) {
         const a = corners[i], b = corners[i + 1 < offsets[f + 1] ? i + 1 : offsets[f]];
-        if (a > b) continue;
-        for (let c = 3 * a; c < 3 * a + 3; c++) ends[n++] = vertices[c];
-        for (let c = 3 * b; c < 3 * b + 3; c++) ends[n++] = vertices[c];
+        if (a < b) edges.push(a, b);
       }
     this.lidEdges.geometry.dispose();
-    this.lidEdges.geometry = lineGeometry(ends.subarray(0, n));
+    this.lidEdges.geometry = lineGeometry(this.endsOf(edges));
   }
 
   ghost(on) {

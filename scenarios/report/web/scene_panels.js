@@ -46,6 +46,7 @@ export class Selection {
     // {side, face, region, vertex}: face NONE: a region as a whole; region NONE: a face that no region hides;
     // vertex: of a construction, with neither; otherwise NONE.
     this.picked = null;
+    this.resolved = null; // {side, goal}: the wrapper of a body is refined down to a face
     this.chosen = [NONE, NONE]; // simplices of A and B that were picked in succession
     this.listeners = [];
   }
@@ -85,6 +86,7 @@ export class Selection {
   }
   pick(picked) {
     this.chosen = [NONE, NONE];
+    if (!picked) this.resolved = null;
     this.pickOnly(picked);
   }
   pickOnly(picked) {
@@ -92,11 +94,17 @@ export class Selection {
     this.tell("pick");
   }
 
-  /** Refines the wrapper down to the selected place, or undoes it. */
+  /** True if the wrapper is refined down to the selected face. */
+  get isResolved() {
+    const { picked, resolved } = this;
+    return Boolean(resolved) && picked?.side === resolved.side && picked.goal === resolved.goal;
+  }
+  /** Refines the wrapper down to the selected face, or undoes it. */
   resolve() {
-    const { picked } = this, body = picked && this.events.bodies[picked.side];
-    if (!picked || !this.events.canResolve(body, picked)) return;
-    picked.resolved = !picked.resolved;
+    const { picked, events } = this,
+      isNew = picked && !this.isResolved && events.canResolve(events.bodies[picked.side], picked);
+    if (!isNew && !this.resolved) return;
+    this.resolved = isNew ? { side: picked.side, goal: picked.goal } : null;
     this.tell("pick");
   }
 }
@@ -143,7 +151,7 @@ export class Panel {
     this.selection = selection;
     this.wrappers = wrappers;
     selection.listeners.push((what) => {
-      if (what !== "look") this.showEvent();
+      if (what === "event" || selection.resolved !== this.resolved) this.showEvent();
       if (what === "pick") this.showPicked();
     });
     byId("picked-none").onclick = () => selection.pick(null);
@@ -153,13 +161,14 @@ export class Panel {
     return this.bodies.length > 1 ? ` of ${SIDES[side]}` : "";
   }
 
-  regionButton(side, region, words = digits(region)) {
+  regionButton(side, region, words = `region ${digits(region)}`) {
     return textButton(words, () => this.selection.pickRegion(side, region));
   }
 
   showEvent() {
     const i = this.selection.event, events = this.events, kind = events.kindOf(i), level = events.level(i),
       cause = events.find(events.cause[i]);
+    this.resolved = this.selection.resolved;
     byId("event-title").textContent = eventPlace(events, i);
     const rows = [["kind", kind.name], ["what", eventText(events, i)]];
     if (outcomeText(events, i)) rows.push(["result", outcomeText(events, i)]);
@@ -170,21 +179,16 @@ export class Panel {
     if (cause >= 0)
       rows.push(["cause", textButton(`event ${digits(events.id(cause))}`, () => this.selection.goTo(cause))]);
     if (this.wrappers && !events.engine)
-      rows.push([
-        events.passes ? "front" : "wrapper",
-        events.passes ? `${digits(this.wrappers.sizes[0])} faces`
-            : sizeText(this.bodies, this.wrappers.sizes),
-      ]);
+      rows.push(events.passes ? ["front", `${digits(this.wrappers.sizes[0])} faces`]
+          : ["wrapper", sizeText(this.bodies, this.wrappers.sizes)]);
     const wrong = events.wrong[events.step(i)];
     if (wrong.length) rows.push(["wrong", this.wrongButton(wrong), "Pairs that the engine got wrong here"]);
     fillList(byId("event-facts"), rows);
     const parts = [
       ...events
         .faces(i)
-        .map((f) => textButton(this.bodies[f.side].faceText(f.face) + this.name(f.side), () =>
-            this.selection.pickFace(f.side, f.face),
-          ),
-        ),
+        .map(({ side, face }) => textButton(this.bodies[side].faceText(face) + this.name(side),
+            () => this.selection.pickFace(side, face))),
       ...events
         .regions(i)
         .filter((r) => this.bodies[r.side].complete)
@@ -211,17 +215,17 @@ export class Panel {
   }
 
   showPicked() {
-    const picked = this.selection.picked;
+    const { picked, resolved, isResolved } = this.selection;
     byId("picked").hidden = !picked;
     if (!picked) return;
     document.querySelector(".panel").scrollTop = 0;
-    const body = this.bodies[picked.side], hasFace = picked.face !== NONE;
+    const body = this.bodies[picked.side], hasFace = picked.face !== NONE,
+      hasWay = isResolved || (!hasFace && resolved?.side === picked.side);
     const name = placeText(body, picked);
     byId("picked-title").textContent = name[0].toUpperCase() + name.slice(1) + this.name(picked.side);
     fillList(byId("picked-facts"), [
       ...(hasFace && !this.events.engine ? this.faceRows(body, picked.face) : []),
-      ...(picked.resolved ? [["way in", this.wayTo(body, picked.goal), "faces, and the regions behind them"]]
-        : []),
+      ...(hasWay ? [["way in", this.wayTo(body, resolved.goal), "faces, and the regions behind them"]] : []),
       ...(picked.vertex !== NONE ? this.vertexRows(body, picked.vertex)
         : this.regionRows(body, picked.region)),
       ...(this.events.passes ? [] : this.countRows(body, picked)),
@@ -229,8 +233,8 @@ export class Panel {
     byId("picked-isolate").disabled = !body.hasLids(picked.region);
     const resolve = byId("resolve"); // not with other engines and of constructions
     if (!resolve) return;
-    resolve.disabled = !this.events.canResolve(body, picked);
-    resolve.setAttribute("aria-pressed", Boolean(picked.resolved));
+    resolve.disabled = !hasWay && !this.events.canResolve(body, picked);
+    resolve.setAttribute("aria-pressed", hasWay);
   }
 
   faceRows(body, face) {
@@ -254,11 +258,8 @@ export class Panel {
       made = this.events.attempts.around(vertex).every((f) => !body.isReal(f));
     return [
       ["sort", made ? "of pseudo faces alone" : "the body's own", "those of pseudo faces are made by caps"],
-      [
-        "covered by",
-        region === NONE ? "no region: it is on the outermost wrapper"
-          : this.regionButton(body.side, region, `region ${digits(region)}`),
-      ],
+      ["covered by", region === NONE ? "no region: it is on the outermost wrapper"
+          : this.regionButton(body.side, region)],
     ];
   }
 

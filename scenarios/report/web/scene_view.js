@@ -47,9 +47,11 @@ class Picker {
     return near ? near.vertex : NONE;
   }
 
-  /** Returns the body's own face that a lid hides at a place of the screen; without one, the lid. */
+  /** Returns the body's own face that a lid hides at a place of the screen; without one, or if the lid is
+      away from the body, the lid. */
   realFaceUnder({ side, face }, { clientX, clientY }) {
-    const { view } = this, real = view.nearest(clientX, clientY, [view.views[side].real]);
+    const { view } = this, isAway = view.now.explode > 0 && !view.now.isolate,
+      real = isAway ? null : view.nearest(clientX, clientY, [view.views[side].real]);
     return real && !view.bodies[side].isReal(face) ? real.face : face;
   }
 
@@ -164,9 +166,7 @@ export class BodiesCanvas {
     const at = new THREE.Vector2((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height);
     const ray = new THREE.Raycaster();
     ray.setFromCamera(at, this.camera.camera);
-    const hits = ray.intersectObjects(
-      among.filter((faces) => faces.triangles > 0).map((faces) => faces.mesh),
-    );
+    const hits = ray.intersectObjects(among.filter((f) => f.triangles > 0).map((f) => f.mesh));
     const isSliced = ({ point }) => point.clone().project(this.camera.camera).z < -1,
       hit = hits.find((h) => !isSliced(h) && !this.isCut(h));
     if (!hit) return null;
@@ -292,8 +292,7 @@ export class SceneView extends BodiesCanvas {
       view.lookInside(!ghost && !isolate, shown);
       if (shown)
         this.once(`lids${side}`, this.wrappers.versions[side], () =>
-          view.showLids((f) => this.wrappers.onBoundary(side, f)),
-        );
+          view.showLids((f) => this.wrappers.onBoundary(side, f), !this.wrappers.byFace));
       this.once(`ghost${side}`, ghost || Boolean(isolate), () => view.ghost(ghost || Boolean(isolate)));
       this.once(`boxes${side}`, boxes, () => view.showBoxes(boxes));
       this.once(
@@ -312,9 +311,8 @@ export class SceneView extends BodiesCanvas {
 
   includedRegions(side) {
     const body = this.bodies[side];
-    return Array.from({ length: body.regionCount }, (_, r) => r).filter((r) =>
-      this.wrappers.included(side, r, true) && body.hasLids(r),
-    );
+    return Array.from({ length: body.regionCount }, (_, r) => r)
+        .filter((r) => this.wrappers.included(side, r, true) && body.hasLids(r));
   }
 
   paint() {
@@ -330,10 +328,8 @@ export class SceneView extends BodiesCanvas {
         const veil = by === "kind" || isolate ? 0.6 : counter && per === "face" ? 0.2 : 0.69;
         this.views.forEach((view, side) => {
           view.paint(mode, veil, by === "kind" && !isolate ? 1 : 0);
-          view.showCounted(
-            counter ? view.realFaces.filter((f) => counts[side][f] > 0) : [],
-            (f) => mode.of(side, f),
-          );
+          view.showCounted(counter ? view.realFaces.filter((f) => counts[side][f] > 0) : [],
+            (f) => mode.of(side, f));
         });
         this.legend.showScale(mode.key);
       },
@@ -360,9 +356,7 @@ export class SceneView extends BodiesCanvas {
       compared = this.comparedFaces();
     const key = compared.map((f) => f.face);
     this.marks.set("tested", `${key} ${kind === events.CONTACT}`, compared, {
-      colour: kind === events.CONTACT ? colours.contact : colours.underTest,
-      opacity: 0.85,
-      over: true,
+      colour: kind === events.CONTACT ? colours.contact : colours.underTest, opacity: 0.85, over: true,
     });
     const refined = events.passes ? events.builtIn(i) : kind === events.REFINE || kind === events.COARSEN
         ? events.regions(i) : [];
@@ -381,9 +375,9 @@ export class SceneView extends BodiesCanvas {
     this.marks.set("wrong", wrong.length ? events.step(i) : -1, this.facesOfPairs(wrong), {
       colour: colours.wrong, opacity: 0.7, width: 3, over: true, hatched: true,
     });
-    const p = this.selection.picked, body = p?.resolved && this.bodies[p.side],
-      way = body ? body.sided(body.wayTo(p.goal).map(({ lid }) => lid)) : [];
-    this.marks.set("resolved", body ? `${p.side} ${p.goal}` : "", way, {
+    const { picked: p, resolved, isResolved } = this.selection, body = resolved && this.bodies[resolved.side],
+      way = body ? body.sided(body.wayTo(resolved.goal).map(({ lid }) => lid)) : [];
+    this.marks.set("resolved", body ? `${body.side} ${resolved.goal}` : "", way, {
       colour: colours.refining, opacity: 0.3, width: 1.5,
     });
     const nodes = events.about(i, "node");
@@ -391,7 +385,7 @@ export class SceneView extends BodiesCanvas {
     if (events.attempts) this.marks.setPoint("vertex", p && p.vertex !== NONE ? p : null, colours.selected);
     const picked = this.pickedFaces();
     const shown = events.attempts ? picked.map((f) => f.face) : [],
-      pickedKey = p ? [p.side, p.face, p.region, p.resolved, ...shown].join(" ") : "";
+      pickedKey = p ? [p.side, p.face, p.region, isResolved && p.goal, ...shown].join(" ") : "";
     this.marks.set("picked", pickedKey, picked, {
       colour: colours.selected, opacity: 0.65, width: 2.5, over: p && p.face !== NONE,
     });
@@ -429,14 +423,13 @@ export class SceneView extends BodiesCanvas {
   /** Returns the faces of pairs of simplices, each once: [{side, face}]. */
   facesOfPairs(pairs) {
     return this.bodies.flatMap((body, side) =>
-      body.sided(new Set(pairs.map((p) => body.faceOfSimplex(p.simplices[side])))),
-    );
+      body.sided(new Set(pairs.map((p) => body.faceOfSimplex(p.simplices[side])))));
   }
 
   pickedFaces() {
     const p = this.selection.picked, { attempts } = this.events, body = p && this.bodies[p.side];
     if (!p || this.now.isolate || p.vertex !== NONE) return [];
-    if (p.face !== NONE) return body.sided([p.resolved ? p.goal : p.face]);
+    if (p.face !== NONE) return body.sided([this.selection.isResolved ? p.goal : p.face]);
     // In a construction: its faces on the front now.
     if (!attempts || this.wrappers.included(p.side, p.region, false)) return body.sided(body.lids(p.region));
     return attempts.ofEvent.has(this.selection.event) ? []
@@ -451,10 +444,8 @@ export class SceneView extends BodiesCanvas {
 
   ballOfFaces(faces) {
     const box = new THREE.Box3();
-    for (const f of faces)
-      this.views[f.side].eachCorner([f.face], (x, y, z) =>
-        box.expandByPoint(this.views[f.side].toWorld([x, y, z])),
-      );
+    for (const { side, face } of faces)
+      this.views[side].eachCorner([face], (...p) => box.expandByPoint(this.views[side].toWorld(p)));
     return ballOf(box);
   }
 

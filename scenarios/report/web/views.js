@@ -4,35 +4,38 @@ import { element, linkRow, percent, textButton } from "./dom.js";
 
 export const views = [...document.querySelectorAll(".views iframe")];
 window.addEventListener("message", (e) => {
-  if (!e.data.lrbscope) return;
-  const { map, hasMap } = e.data.lrbscope, from = views.findIndex((view) => view.contentWindow === e.source);
-  if (hasMap) withMap.add(from);
-  if (map) maps[from] = map;
-  if (map) drawDifference();
-  else if (hasMap && withMap.size === views.length) addMaps();
-  else if (!hasMap) tell(e.data.lrbscope, from);
+  const what = e.data?.lrbscope, from = views.findIndex((view) => view.contentWindow === e.source);
+  if (!what || from < 0) return;
+  if ("map" in what) maps[from] = what.map;
+  if ("map" in what) drawDifference();
+  else if (!what.hasMap) tell(what, from);
+  else if (withMap.add(from).size === views.length) addMaps();
 });
 function tell(what, from) {
   views.forEach((view, i) => i !== from && view.contentWindow.postMessage({ lrbscope: what }, "*"));
 }
 
 // Proof maps of two runs instead of their bodies, and under them where the two squares differ.
-const withMap = new Set(), maps = [], canvas = element("canvas"), share = element("p", { class: "note" });
+const withMap = new Set(), maps = [], title = "Where the maps differ",
+  canvas = element("canvas", { role: "img", "aria-label": title }), share = element("p", { class: "note" }),
+  box = element("div", { class: "maps", hidden: "" }, element("h3", {}, title), canvas, share);
 function addMaps() {
+  if (box.isConnected) return tell({ mapping: !box.hidden }); // a frame was loaded again
   const section = document.querySelector(".views"),
-    box = element("div", { class: "maps" }, element("h3", {}, "Where the maps differ"), canvas, share),
     button = textButton("proof maps", () => {
       box.hidden = !box.hidden;
       button.setAttribute("aria-pressed", !box.hidden);
       tell({ mapping: !box.hidden });
     }, "Show which test rejected which pairs of faces, of both");
-  box.hidden = true;
+  button.setAttribute("aria-pressed", false);
   section.querySelector("h2").after(button);
   section.append(box);
 }
-/** Draws what the second map shows where it differs from the first, and the rest pale. */
+/** Draws the second map where it differs from the first, and the rest pale; without two, nothing. */
 function drawDifference() {
-  if (maps[0]?.length !== maps[1]?.length) return;
+  canvas.width = canvas.width; // clears it
+  share.textContent = "";
+  if (!maps[0] || maps[0].length !== maps[1]?.length) return;
   const size = Math.sqrt(maps[0].length), image = new ImageData(size, size),
     out = new Uint32Array(image.data.buffer);
   let differ = 0;
