@@ -241,8 +241,8 @@ export class ProofMap {
     }
     for (const cell of painted.hits) this.fill(cell, size); // small ones stay on top of later neighbours
     context.putImageData(painted.image, 0, 0);
-    if (painted.told !== painted.next) this.tell({ map: painted.pixels });
-    painted.told = painted.next;
+    if (painted.reported !== painted.next) this.tell({ map: painted.pixels });
+    painted.reported = painted.next;
     // The cell under the pointer or of the event, and the pairs that another engine got wrong.
     const { axes } = this.cells,
       nodes = this.events.about(now, "node").map((n) => n.number),
