@@ -142,7 +142,7 @@ int run_check(const CheckOptions& o, const Globals& globals) {
   if (o.json)
     for (const profile::Check& c : checks) print(json_lines(c));
   // In texts, captures of the same engine are named by their files.
-  std::map<std::string, std::size_t> captures;  // of each engine
+  std::map<std::string, std::size_t> captures;  // number for each engine
   for (const profile::Check& c : checks) ++captures[c.engine];
   for (std::size_t i = 0; i < checks.size(); ++i)
     if (captures[checks[i].engine] > 1) checks[i].engine = printable_name(o.inputs[i]);

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <memory>
