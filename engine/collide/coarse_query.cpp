@@ -63,21 +63,20 @@ bool is_limited(const CollideRequest& request) {
   return request.max_tests > 0 || request.max_time > 0;
 }
 
-CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
+std::optional<CoarseStep> first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
+  const bool limited = is_limited(request);
+  if (!limited && request.mode != Mode::all_pairs) return std::nullopt;
+  CoarseStep step;
   // Wrappers of a surface that is not closed or intersects itself need not enclose it: no levels.
-  for (const LrbRep* rep : {&a, &b})
-    if (!rep->closed() || rep->self_intersecting()) return {};
-  return step_of(a, b, is_limited(request) ? std::numeric_limits<double>::max() : request.tolerance, request);
+  if (a.closed() && b.closed() && !a.self_intersecting() && !b.self_intersecting())
+    step = step_of(a, b, limited ? std::numeric_limits<double>::max() : request.tolerance, request);
+  return limited || !step.exact() ? std::optional(step) : std::nullopt;
 }
 
-bool is_answered_exactly(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
-  return !is_limited(request) && (request.mode != Mode::all_pairs || first_step(a, b, request).exact());
-}
-
-std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
-  const CoarseStep first = first_step(a, b, request);
+std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CoarseStep& first,
+                                     const CollideRequest& request) {
   // Without limits the level of the tolerance is the only step.
-  if (first.exact() || !is_limited(request)) return {first};
+  if (!is_limited(request)) return {first};
   std::vector<CoarseStep> steps;
   // Use powers of two, so that bodies of similar size share levels from pair to pair.
   int exponent = 0;

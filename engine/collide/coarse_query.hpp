@@ -13,7 +13,7 @@
 ///    wrapper is inside the other.
 ///
 /// A query to a tolerance of bodies without a level that is much smaller than they are is the exact query
-/// from the beginning (is_answered_exactly()).
+/// from the beginning (first_step()).
 ///
 /// Step 1 may use half of a limit. If it ends without an answer, the levels decide as much as they can.
 ///
@@ -59,15 +59,15 @@ struct CoarseStep {
 /// Returns true if the request has a limit of tests or time.
 bool is_limited(const CollideRequest& request);
 
-/// Returns the first step to try: the only one, or within limits the coarsest. Exact if no level is worth it.
-CoarseStep first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
-
-/// Returns true if a query to a tolerance is the exact query: if it is for one pair, or if no level is worth
-/// it, as for bodies of a few hundred faces. Measured, the rules of a trial cost 3 to 8 % of such queries.
-bool is_answered_exactly(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
+/// Returns the first step to try: the only one, or within limits the coarsest; exact if no level is worth it.
+/// Returns nullopt if a query to a tolerance is the exact query: if it is for one pair, or if no level is
+/// worth it, as for bodies of a few hundred faces. Measured, the rules of a trial cost 3 to 8 % of such
+/// queries.
+std::optional<CoarseStep> first_step(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
 
 /// Returns the steps to try, coarsest first; the last is as fine as requested.
-std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CollideRequest& request);
+std::vector<CoarseStep> coarse_steps(const LrbRep& a, const LrbRep& b, const CoarseStep& first,
+                                     const CollideRequest& request);
 
 /// Returns true if a piece of either wrapper's boundary is in the other wrapper, or nullopt if `in_time()`,
 /// which is called before each point location, returns false. For wrappers whose faces do not intersect.
@@ -199,8 +199,15 @@ struct WrapperRules : LimitedRules<Clock> {
 template <class Probe, class Clock = std::chrono::steady_clock>
 class CoarseQuery {
  public:
-  CoarseQuery(QueryContext& ctx, const CollideRequest& request, CollideResult& result, Probe& probe)
-      : ctx_(ctx), request_(request), result_(result), probe_{probe} {}
+  /// `first`: see first_step(). `may_be_apart`: false if roots_are_apart() has returned false.
+  CoarseQuery(QueryContext& ctx, const CollideRequest& request, const CoarseStep& first, bool may_be_apart,
+              CollideResult& result, Probe& probe)
+      : ctx_(ctx),
+        request_(request),
+        first_(first),
+        may_be_apart_(may_be_apart),
+        result_(result),
+        probe_{probe} {}
 
   void run() {
     // Reading the clock takes as long as a pair of nodes.
@@ -208,11 +215,10 @@ class CoarseQuery {
     result_.relation = Relation::unresolved;
     result_.error_bound = kInfinity;
     result_.finished = false;
-    const LrbRep &a = ctx_[Side::a].rep(), &b = ctx_[Side::b].rep();
-    if (first_step(a, b, request_).exact())
+    if (first_.exact())
       ask_exactly(0);
     else if (!first_walk_decides())
-      climb(coarse_steps(a, b, request_));
+      climb(coarse_steps(ctx_[Side::a].rep(), ctx_[Side::b].rep(), first_, request_));
     if constexpr (Probe::kEnabled)
       for (std::size_t i = 0; i < result_.pairs.size(); ++i)
         probe_.probe.contact(result_.pairs[i].a, result_.pairs[i].b, result_.meets[i]);
@@ -264,7 +270,8 @@ class CoarseQuery {
   bool walk(const CollideRequest& request, CollideResult& found, Rules& rules) {
     found.counters = std::move(result_.counters);
     TreeQuery<WithoutContacts, Rules> query(ctx_, request, found, probe_, rules);
-    query.run();
+    query.run(may_be_apart_);
+    apart_ = query.ends_at_roots();
     result_.counters = std::move(found.counters);
     rules = query.rules();
     return !rules.stopped;
@@ -273,6 +280,15 @@ class CoarseQuery {
   /// Returns the predicate for decide_relation() that stops point location when time is up.
   static auto in_time(LimitedRules<Clock>& rules) {
     return [&rules] { return !rules.has_deadline || !rules.time_is_up(); };
+  }
+
+  /// Decides the relation after a walk of the bodies themselves. Returns false if time is up.
+  bool decide(CollideResult& found, LimitedRules<Clock>& rules) {
+    // A probe is shown the location of points even if boxes decide.
+    if (Probe::kEnabled || !apart_ || !ctx_[Side::a].rep().closed() || !ctx_[Side::b].rep().closed())
+      return decide_relation_watched(ctx_, found, probe_, in_time(rules));
+    set_separate(found);
+    return true;
   }
 
   /// Makes `found` the answer.
@@ -294,7 +310,7 @@ class CoarseQuery {
     limit(rules, false);
     if (!walk(request_, found, rules)) return;
     sort(found);
-    if (decide_relation_watched(ctx_, found, probe_, in_time(rules))) answer(found, error_bound, true);
+    if (decide(found, rules)) answer(found, error_bound, true);
   }
 
   /// Queries the bodies themselves, until one pair is found that completes the answer, or one of many pairs
@@ -308,7 +324,7 @@ class CoarseQuery {
     if (!whole) keep_one_crossing(found);
     if (whole || !found.pairs.empty()) {
       sort(found);
-      const bool known = decide_relation_watched(ctx_, found, probe_, in_time(rules));
+      const bool known = decide(found, rules);
       if (known) answer(found, whole ? 0 : kInfinity, whole);
       if (known && whole) return true;
     }
@@ -424,8 +440,11 @@ class CoarseQuery {
 
   QueryContext& ctx_;
   const CollideRequest& request_;
+  const CoarseStep first_;
+  const bool may_be_apart_;
   CollideResult& result_;
   WithoutContacts probe_;
+  bool apart_ = false;                ///< the last walk has proven the bounds of the roots disjoint
   typename Clock::time_point began_;  ///< set only under a time limit
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 
 #include "engine/collide/coarse_query.hpp"
 #include "engine/collide/paper_query.hpp"
@@ -36,14 +37,14 @@ void collide_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
     count_roots_apart(result.counters);
     return;
   }
-  const bool is_coarse = request.is_coarse() && !is_answered_exactly(a, b, request);
+  const std::optional<CoarseStep> coarse = request.is_coarse() ? first_step(a, b, request) : std::nullopt;
   context.body[0].begin(a, pose_a, request.wrapper);
   context.body[1].begin(b, pose_b, request.wrapper);
   const std::uint64_t fallbacks = exact::exact_fallbacks();
   {
     const exact::FloatingPredicates floating(request.predicates == Predicates::floating);
-    if (is_coarse) {
-      CoarseQuery<Probe>(context, request, result, probe).run();
+    if (coarse) {
+      CoarseQuery<Probe>(context, request, *coarse, !tests_roots || ends_at_roots, result, probe).run();
     } else {
       bool apart = false;
       if (request.recursion == Recursion::complete) {

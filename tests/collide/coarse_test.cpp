@@ -204,7 +204,9 @@ CollideResult ask_counted(const CoarseBodies& pair, const Pose& p, double looks,
   context.body[0].begin(pair.a, Pose{}, request.wrapper);
   context.body[1].begin(pair.b, p, request.wrapper);
   CountedClock::looks = 0;
-  CoarseQuery<NullProbe, CountedClock>(context, request, result, probe).run();
+  CoarseQuery<NullProbe, CountedClock>(context, request, *first_step(pair.a, pair.b, request), true, result,
+                                       probe)
+      .run();
   return result;
 }
 
