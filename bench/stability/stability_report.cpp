@@ -139,7 +139,8 @@ report::Grid page_grid(const Grid& grid, const ReportOptions& options) {
   out.corner = "family, and its difficulty from benign to degenerate";
   out.level_names.assign(kLevelNames.begin(), kLevelNames.end());
   out.part_names = {"wrong answer", "crashed", "timed out", "refused"};
-  for (const methods::MethodInfo& m : grid.methods) out.columns.push_back({m.title, m.remark});
+  for (const methods::MethodInfo& m : grid.methods)
+    out.columns.push_back({m.name, m.title + ". " + m.remark});
   for (std::size_t f = 0; f < grid.families.size(); ++f) {
     const FamilyRow& family = grid.families[f];
     out.rows.push_back({family.name, family.what, family.benign, family.degenerate, family.values});

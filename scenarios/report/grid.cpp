@@ -68,7 +68,7 @@ std::string breakable(const std::string& text) {
 }
 
 std::string small(const std::string& text) {
-  return text.empty() ? "" : fill("<small>{}</small>", {text});
+  return text.empty() ? "" : fill("<small>{!}</small>", {breakable(text)});
 }
 
 /// Returns marks under a line as wide as a profile, with a value at every third bar.
@@ -134,8 +134,7 @@ std::string table_html(const Grid& grid) {
       R"(<tr><th class="corner">{}</th>)",
       {grid.title, std::to_string(grid.columns.size()), grid.corner});
   for (const GridHead& c : grid.columns)
-    out +=
-        fill(R"(<th scope="col" title="{}"><b>{!}</b>{!}</th>)", {c.text, breakable(c.title), small(c.text)});
+    out += fill(R"(<th scope="col" title="{}"><b>{}</b>{!}</th>)", {c.text, c.title, small(c.text)});
   out += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < grid.rows.size(); ++i) {
     const bool total = i < grid.total_rows;  // sums first
@@ -153,7 +152,7 @@ std::string table_html(const Grid& grid) {
 std::string grid_html(const Grid& grid, const InlinedImages& images) {
   std::string columns;  // in full, because the heads are too narrow for it
   for (const GridHead& c : grid.columns)
-    if (!c.text.empty()) columns += fill("<div><dt>{!}</dt><dd>{}</dd></div>", {breakable(c.title), c.text});
+    if (!c.text.empty()) columns += fill("<div><dt>{}</dt><dd>{!}</dd></div>", {c.title, breakable(c.text)});
   std::string out = fill("<section class=\"grid\" id=\"grid\"><h2>{}</h2>\n", {grid.title}) +
                     wide_style(grid) + legend_html(grid);
   if (!grid.missing.empty()) out += fill("<p class=\"missing note\">{}</p>\n", {grid.missing});

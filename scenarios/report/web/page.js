@@ -92,9 +92,42 @@ const marksPlugin = {
       c.fillRect(ax - 1, bottom - 6, 2, 6);
     }
     if (at >= 0 && px > left - 1 && px < right + 1) line(style("--soft"), [4, 3], px, top, px, bottom);
+    if (chart.config.type === "scatter" && right - left > 600) nameSeries(chart);
     c.restore();
   },
 };
+
+/** Writes the name of each series beside one of its points, where that covers no point, line or name. */
+function nameSeries(chart) {
+  const c = chart.ctx, { left, right, top, bottom } = chart.chartArea, half = 6, taken = [];
+  const seen = chart.data.datasets.map((set, i) => ({ set, points: chart.getDatasetMeta(i).data }))
+    .filter((_, i) => chart.isDatasetVisible(i)), sets = seen.filter(({ set }) => set.pointRadius);
+  const take = (x, y, reach) => taken.push([x - reach, y - reach, x + reach, y + reach]);
+  for (const { x, y } of sets.flatMap(({ points }) => points)) take(x, y, half);
+  for (const { set, points } of seen) for (let i = 1; set.showLine && i < points.length; i++) {
+    const { x: x0, y: y0 } = points[i - 1], { x: x1, y: y1 } = points[i];
+    const steps = Math.ceil(Math.hypot(x1 - x0, y1 - y0) / half);
+    for (let k = 1; k < steps; k++) take(x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, 1);
+  }
+  const isFree = ([x0, y0, x1, y1]) => x0 > left && x1 < right && y0 > top && y1 < bottom &&
+    taken.every((t) => x1 <= t[0] || x0 >= t[2] || y1 <= t[1] || y0 >= t[3]);
+  c.font = `${Chart.defaults.font.size}px ${Chart.defaults.font.family}`;
+  c.textBaseline = "middle";
+  c.setLineDash([]);
+  for (const { set, points } of sets) {
+    const width = c.measureText(set.label).width;
+    const places = points.flatMap(({ x, y }) => [y - half, y - 3 * half, y + half].flatMap((top) =>
+      [[x + half, top], [x - half - width, top], [x - width / 2, top]]));
+    const place = places.map(([x, y]) => [x, y, x + width, y + 2 * half]).find(isFree);
+    if (!place) continue; // the legend has it
+    taken.push(place);
+    c.lineWidth = 3;
+    c.strokeStyle = style("--card");
+    c.strokeText(set.label, place[0], place[1] + half);
+    c.fillStyle = set.borderColor;
+    c.fillText(set.label, place[0], place[1] + half);
+  }
+}
 
 /** Drops the ticks of a logarithmic axis beyond its ends, which would take space, and on a long axis all
     but powers of ten. */
