@@ -26,7 +26,7 @@ constexpr std::uint8_t kRefiningAlpha = 120;
 constexpr std::uint8_t kGhostAlpha = 14;
 /// Faces that meet at a larger angle than this, in radians, have a crease between them. Connected creases
 /// shorter than a share of the body's size are the noise of scans.
-constexpr double kCrease = 0.5, kShortCrease = 0.08;
+constexpr double kCrease = 0.7, kShortCrease = 0.08;
 /// Lids of earlier passes of a construction: share by which their colour fades, and its opacity.
 constexpr double kEarlierPale = 0.72;
 constexpr std::uint8_t kEarlierAlpha = 215;
