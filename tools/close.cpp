@@ -10,6 +10,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/mesh_repair.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::tools {
 namespace {
@@ -19,6 +20,7 @@ using Json = nlohmann::ordered_json;
 struct CloseOptions {
   bodies::Corners corners = bodies::Corners::joined;
   std::string mesh, out;
+  double weld = 0;
   bool json = false;
 };
 
@@ -80,14 +82,20 @@ std::string as_text(const ClosedHoles& result, std::size_t closed, const MeshRep
 
 int run_close(const CloseOptions& o, const Globals& globals) {
   std::vector<std::string> notes;
-  const CheckedMesh mesh = check(bodies::read_body(o.mesh, o.corners, notes));
-  note(globals, notes);
+  CheckedMesh mesh = check(bodies::read_body(o.mesh, o.corners, notes));
   if (mesh.mesh().dim == 2)
     throw InputError(
         mesh.mesh().name +
         ": expected a 3D body, found a 2D body; close it with segments (l) between its ends, which lrbscope inspect lists");
   if (!mesh.report().queryable())
     throw InputError(mesh.mesh().name + ": has faults that must be fixed first; lrbscope inspect lists them");
+  if (o.weld > 0) {
+    WeldedCorners done;
+    mesh = weld_corners(mesh, o.weld, done);
+    notes.push_back("welded " + render::counted(done.welded, "vertex", "vertices") + ", moved by at most " +
+                    for_people(done.farthest, 2));
+  }
+  note(globals, notes);
   if (const MeshReport& report = mesh.report(); report.sheets > 0 && report.sheets == report.open_components)
     throw InputError(mesh.mesh().name + ": " + obstacles_to_build(mesh));
   check_mesh_name(o.out, mesh.mesh().dim);
@@ -125,6 +133,12 @@ Command add_close(App& root, const Globals& globals) {
   app->add_option("-o,--output", o->out, "FILE.obj|ply",
                   "Mesh to write; existing vertices and faces keep their numbers")
       ->required();
+  app->add_option(
+         "--weld", o->weld,
+         "First merge vertices of open edges that are at most this far apart; rejected if a face would "
+         "lose its area or intersect another one")
+      ->type_name("LENGTH")
+      ->positive();
   app->add_flag("--json", o->json, "Print one JSON object");
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_close(*o, globals); }};

@@ -211,9 +211,12 @@ std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::
     const std::string found = text.substr(from, range - from);
     const bool is_bounded = high < std::numeric_limits<float>::max();
     const bool is_finite = std::isfinite(std::strtod(found.c_str(), nullptr));
+    // Ranges of positive numbers begin at the least double, which CLI11 prints as 0.
+    const bool is_above = std::strtod(found.c_str(), nullptr) == low;
     constexpr std::size_t kLong = 40;
     return text.substr(0, value) + ": expected " +
            (is_bounded  ? number(low) + " to " + number(high)
+            : is_above  ? "a finite number above " + number(low)
             : is_finite ? "at least " + number(low)
                         : "a finite number of at least " + number(low)) +
            ", found " + (found.size() > kLong ? in_quotes(found) : found);

@@ -429,7 +429,7 @@ constexpr std::array<Help, kMeshFaultCount> kHelp = {{
      "a vertex has only one segment", "add a segment (l) that joins it to another end"},
     {MeshFault::t_junction, ElementKind::vertex_and_face, "make the vertex a corner of the face"},
     {MeshFault::near_vertex, ElementKind::two_vertices,
-     "merge them if the surface should be connected there"},
+     "merge them if the surface should be connected there (lrbscope close --weld LENGTH)"},
     {MeshFault::non_manifold_edge, ElementKind::edge, "separate the parts or remove inner faces",
      "a vertex has more than two segments",
      "separate the parts: one copy of the vertex for each pair of segments"},
@@ -443,7 +443,7 @@ constexpr std::array<Help, kMeshFaultCount> kHelp = {{
     {MeshFault::self_intersection, ElementKind::two_faces, "inside and outside are then decided by parity",
      "two segments intersect outside their shared ends"},
     {MeshFault::duplicate_vertex, ElementKind::two_vertices,
-     "merge them if the surface should be connected there"},
+     "merge them if the surface should be connected there (lrbscope close --weld LENGTH)"},
     {MeshFault::unused_vertex, ElementKind::vertex, "it can be removed without loss",
      "a vertex is not used by any segment"},
 }};

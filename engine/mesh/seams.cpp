@@ -1,8 +1,10 @@
 // Causes of open edges of a surface that looks closed: vertices on the open edge of another face
-// (T-junctions), and vertices that nearly coincide.
+// (T-junctions), and vertices that nearly coincide, which can be welded.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <unordered_set>
 #include <vector>
 
@@ -10,7 +12,12 @@
 #include "engine/mesh/box_tree.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 #include "engine/mesh/vertex_groups.hpp"
+#include <lrbscope/core/float_mode.hpp>
+#include <lrbscope/core/strings.hpp>
+#include <lrbscope/error.hpp>
 #include <lrbscope/mesh_check.hpp>
+#include <lrbscope/mesh_repair.hpp>
+#include <lrbscope/parallel.hpp>
 
 namespace lrb {
 namespace {
@@ -55,26 +62,51 @@ void find_t_junctions(const Mesh& mesh, const std::vector<OpenEdge>& edges,
   }
 }
 
-void find_near_vertices(const Mesh& mesh, const OpenKeys& open, std::vector<VertexId> corners, double width,
-                        MeshReport& report) {
-  FirstAtPosition first_at(mesh.vertices);
-  std::erase_if(corners, [&](VertexId v) { return first_at(v) != v; });
+/// Calls visit(u, v) for vertices of open edges, u before v, at most `width` apart, that no open edge joins,
+/// until it returns true for this v. `corners`: ascending.
+template <class Visit>
+void for_each_near_pair(const Mesh& mesh, const OpenKeys& open, std::span<const VertexId> corners,
+                        double width, const Visit& visit) {
   std::vector<Box> boxes;
   for (const VertexId v : corners) boxes.emplace_back(mesh.vertices[v], mesh.vertices[v]);
   const BoxTree tree(boxes);
   for (std::uint32_t j = 0; j < corners.size(); ++j) {
     const VertexId v = corners[j];
     const Eigen::Vector3d& x = mesh.vertices[v];
-    bool found = false;
+    bool done = false;
     tree.for_each_near(
-        Box(x.array() - width, x.array() + width), [&](const Box&) { return !found; },
+        Box(x.array() - width, x.array() + width), [&](const Box&) { return !done; },
         [&](std::uint32_t i) {
           const VertexId u = corners[i];
-          if (found || i >= j || open.contains(seam_key(u, v)) || open.contains(seam_key(v, u))) return;
-          found = norm3(mesh.vertices[u] - x) <= width;
-          if (found) note(report, MeshFault::near_vertex, std::min(u, v), std::max(u, v));
+          if (done || i >= j || open.contains(seam_key(u, v)) || open.contains(seam_key(v, u))) return;
+          done = norm3(mesh.vertices[u] - x) <= width && visit(u, v);
         });
   }
+}
+
+/// The ends of open edges, ascending, and the edges themselves.
+struct OpenCorners {
+  OpenKeys keys;
+  std::vector<VertexId> corners;
+  explicit OpenCorners(const std::vector<OpenEdge>& edges) {
+    for (const OpenEdge& e : edges) {
+      keys.insert(seam_key(e.from, e.to));
+      corners.insert(corners.end(), {e.from, e.to});
+    }
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  }
+};
+
+/// The faults that a weld must not add: all that an edit of corners can cause.
+constexpr MeshFault kOfWelds[] = {MeshFault::repeated_corner,     MeshFault::zero_area_face,
+                                  MeshFault::folded_face,         MeshFault::duplicate_face,
+                                  MeshFault::non_manifold_edge,   MeshFault::flipped_face,
+                                  MeshFault::non_manifold_vertex, MeshFault::inside_out};
+
+[[noreturn]] void reject_weld(const Mesh& mesh, double distance, const std::string& what) {
+  throw InputError(mesh.name + ": a weld of vertices " + io::number_text(distance) +
+                   " apart would spoil it: " + what + "; choose a smaller distance");
 }
 
 }  // namespace
@@ -83,20 +115,53 @@ void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, std::vector<
                  MeshReport& report) {
   std::erase_if(edges, [&](const OpenEdge& e) { return use[e.face] < FaceUse::points; });
   if (edges.empty()) return;
-  OpenKeys open;
-  std::vector<VertexId> corners;
-  for (const OpenEdge& e : edges) {
-    open.insert(seam_key(e.from, e.to));
-    corners.insert(corners.end(), {e.from, e.to});
-  }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  auto [open, corners] = OpenCorners(edges);
   Box box;
   for (const VertexId v : corners) box.extend(mesh.vertices[v]);
   const double diagonal = box.isEmpty() ? 0 : norm3(box.diagonal());
   if (!(diagonal > 0 && diagonal < kMaxDiagonal)) return;
   find_t_junctions(mesh, edges, corners, kSeam * diagonal, report);
-  find_near_vertices(mesh, open, std::move(corners), kSeam * diagonal, report);
+  FirstAtPosition first_at(mesh.vertices);
+  std::erase_if(corners, [&](VertexId v) { return first_at(v) != v; });
+  for_each_near_pair(mesh, open, corners, kSeam * diagonal, [&](VertexId u, VertexId v) {
+    note(report, MeshFault::near_vertex, std::min(u, v), std::max(u, v));
+    return true;
+  });
+}
+
+CheckedMesh weld_corners(const CheckedMesh& mesh, double distance, WeldedCorners& done) {
+  const FloatMode float_mode;
+  if (!(distance > 0 && distance < kMaxDiagonal))
+    throw InputError("weld: expected a length above 0, found " + io::number_text(distance));
+  if (mesh.mesh().dim != 3)
+    throw InputError(mesh.mesh().name + ": expected a 3D mesh to weld, found a 2D one");
+  Mesh out = mesh.mesh();
+  const OpenCorners open(mesh.topology().open_edges);
+  done = {};
+  // 1. Move each corner to the first one within the distance that has not moved itself.
+  std::vector<bool> moved(out.vertices.size());
+  for_each_near_pair(mesh.mesh(), open.keys, open.corners, distance, [&](VertexId u, VertexId v) {
+    if (moved[u]) return false;
+    moved[v] = true;
+    ++done.welded;
+    done.farthest = std::max(done.farthest, norm3(out.vertices[u] - out.vertices[v]));
+    out.vertices[v] = out.vertices[u];
+    return true;
+  });
+  // 2. Merge corners with equal coordinates, and prove that no face became worse.
+  join_corners(out);
+  CheckedMesh welded = check(std::move(out));
+  for (const MeshFault fault : kOfWelds)
+    if (welded.report()[fault].count > mesh.report()[fault].count)
+      reject_weld(mesh.mesh(), distance,
+                  io::in_words(name_of(fault)) + " (" + std::to_string(welded.report()[fault].count) +
+                      " in place of " + std::to_string(mesh.report()[fault].count) + ")");
+  Workers workers(0);
+  const std::vector<FaceId> before = mesh.self_intersecting_faces(workers);
+  for (const FaceId f : welded.self_intersecting_faces(workers))
+    if (!std::binary_search(before.begin(), before.end(), f))
+      reject_weld(mesh.mesh(), distance, "face " + std::to_string(f) + " would intersect another one");
+  return welded;
 }
 
 }  // namespace lrb

@@ -5,6 +5,8 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/faulty_meshes.hpp"
+#include "tests/support/random_simplices.hpp"
+#include <lrbscope/error.hpp>
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/mesh_repair.hpp>
 
@@ -50,6 +52,31 @@ TEST_CASE("a triangle soup is merged into the body that it came from") {
     CHECK(is.genus == was.genus);
     CHECK(is.components == was.components);
     CHECK(is[MeshFault::duplicate_vertex].count == 0);
+  }
+}
+
+TEST_CASE("a soup with displaced corners is welded into its body, or rejected; closed parts do not change") {
+  constexpr double kOff = 1e-9, kDistance = 4e-9;
+  Rng rng(3);
+  for (const Mesh& body : {box(), quad_box(), comb(3), torus(8, 5), icosphere(2), box_with_void()}) {
+    Mesh soup = as_soup(body);
+    for (Point3& x : soup.vertices)
+      for (int i = 0; i < 3; ++i) x[i] += kOff * (2 * random_unit(rng) - 1);
+    const CheckedMesh slit = check(several({soup, box({9, 9, 9}, {10, 10, 10})}));
+    WeldedCorners done;
+    const CheckedMesh whole = weld_corners(slit, kDistance, done);
+    CHECK(whole.report().closed);
+    CHECK(whole.report().components == check_mesh(body).components + 1);
+    CHECK(done.welded == soup.vertices.size() - body.vertices.size());
+    CHECK(done.farthest > kOff);
+    CHECK(done.farthest <= kDistance);
+    for (VertexId v = 0; v < slit.mesh().vertices.size(); ++v) {
+      const double moved = (whole.mesh().vertices[v] - slit.mesh().vertices[v]).norm();
+      CHECK(moved <= (v < soup.vertices.size() ? done.farthest : 0));
+    }
+    // Corners of different edges of a face would become one.
+    CHECK_THROWS_WITH_AS(weld_corners(slit, 3, done), doctest::Contains("cannot be welded"), InputError);
+    CHECK_THROWS_WITH_AS(weld_corners(slit, 0, done), doctest::Contains("above 0"), InputError);
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Boundary loops of an open surface, hole filling, and merging of coincident vertices.
+/// Boundary loops of an open surface, hole filling, and merging of vertices that coincide or nearly do.
 
 #include <cstdint>
 #include <string>
@@ -95,5 +95,20 @@ struct JoinedCorners {
 /// 2. Remaining coincident open ends are merged. The result is closed, or a fault that the checks report (an
 ///    edge with more than two faces, inconsistently oriented faces).
 JoinedCorners join_corners(Mesh& mesh);
+
+/// The effect of weld_corners().
+struct WeldedCorners {
+  std::uint32_t welded = 0;  ///< number of vertices that moved to another one
+  double farthest = 0;       ///< the largest distance that one of them moved
+};
+
+/// Closes the slits between nearly coincident vertices of open edges of a 3D mesh: moves each such vertex to
+/// the first one within `distance` (the mesh's unit) that no open edge joins to it, and merges the two as
+/// join_corners() does. All other vertices keep their coordinates, and faces keep their numbers.
+///
+/// Throws InputError if the distance is not above 0, or if the result has a fault that the mesh did not have:
+/// a face that loses its area or a corner, two equal faces, an edge with more than two faces, inconsistent
+/// orientation, or a face that begins to intersect another one (exact).
+CheckedMesh weld_corners(const CheckedMesh& mesh, double distance, WeldedCorners& done);
 
 }  // namespace lrb
