@@ -29,6 +29,27 @@ Pose relative(const Pose& a, const Pose& b) {
   return {a.r.transpose() * b.r, a.r.transpose() * (b.t - a.t)};
 }
 
+/// Asks a structure, with B's pose in A's frame, and takes the time.
+template <class Body>
+class Structure : public MethodOf<Body> {
+ public:
+  using typename MethodOf<Body>::Posed;
+
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<Body>(rep); }
+  Answer ask(const Posed& a, const Posed& b, Mode mode) final {
+    Answer answer;
+    const Stopwatch watch;
+    search(a, b, relative(a.pose, b.pose), mode == Mode::first_pair, answer);
+    answer.microseconds = watch.microseconds();
+    sort_pairs(answer.pairs);
+    return answer;
+  }
+
+ protected:
+  virtual void search(const Posed& a, const Posed& b, const Pose& b_in_a, bool only_first,
+                      Answer& answer) = 0;
+};
+
 // Descends two sphere trees together to a given level: an approximate, interruptible answer (P. M. Hubbard,
 // "Collision Detection for Interactive Graphics Applications", PhD thesis, Brown University, 1994: the
 // paper's Hub94). Spheres contain the triangles below them, so no contact is missed. Overlapping spheres at
@@ -41,7 +62,8 @@ struct Sphere {
 
 /// Halved by the centroids of the triangles.
 struct SphereBody : SizedBody {
-  explicit SphereBody(const Triangles& t) {
+  explicit SphereBody(const LrbRep& rep) {
+    const Triangles t = triangles_of(rep);
     std::vector<BoxTree::Box> centroids;
     for (const auto& c : t.triangles)
       centroids.emplace_back(Eigen::Vector3d((t.vertices[c[0]] + t.vertices[c[1]] + t.vertices[c[2]]) / 3));
@@ -70,18 +92,11 @@ struct SphereBody : SizedBody {
   std::vector<Sphere> spheres;  ///< around its nodes
 };
 
-class Spheres : public MethodOf<SphereBody> {
+class Spheres : public Structure<SphereBody> {
  public:
   void set(double level) override { level_ = static_cast<int>(level); }
 
-  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
-    return std::make_unique<SphereBody>(triangles_of(rep));
-  }
-
-  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
-    Answer answer;
-    const Stopwatch watch;
-    const Pose b_in_a = relative(a.pose, b.pose);
+  void search(const Posed& a, const Posed& b, const Pose& b_in_a, bool only_first, Answer& answer) override {
     struct Item {
       std::uint32_t a, b;
       int level;
@@ -97,28 +112,23 @@ class Spheres : public MethodOf<SphereBody> {
       if (direction.squaredNorm() > reach * reach) continue;
       const std::uint32_t right_a = a.body.tree.nodes()[item.a].right,
                           right_b = b.body.tree.nodes()[item.b].right;
-      const bool leaf_a = right_a == 0, leaf_b = right_b == 0;
-      if (item.level >= level_ || (leaf_a && leaf_b)) {
+      if (item.level >= level_ || (right_a == 0 && right_b == 0)) {
         // On average, the midpoint between the points where the line of centres leaves one sphere and enters
         // the other.
         const double length = direction.norm();
         const double at = length > 0 ? (p.radius + length - q.radius) / (2 * length) : 0;
         answer.points.push_back(a.pose.apply(p.centre + at * direction));
-        if (mode == Mode::first_pair) break;
+        if (only_first) break;
         continue;
       }
-      if (!leaf_a && !leaf_b) {
-        for (const std::uint32_t i : {item.a + 1, right_a})
-          for (const std::uint32_t j : {item.b + 1, right_b}) stack.push_back({i, j, item.level + 1});
-      } else if (leaf_b) {
-        for (const std::uint32_t i : {item.a + 1, right_a}) stack.push_back({i, item.b, item.level + 1});
-      } else {
-        for (const std::uint32_t j : {item.b + 1, right_b}) stack.push_back({item.a, j, item.level + 1});
-      }
+      // A leaf takes the place of its children.
+      const std::uint32_t below_a[] = {right_a == 0 ? item.a : item.a + 1, right_a},
+                          below_b[] = {right_b == 0 ? item.b : item.b + 1, right_b};
+      for (int i = 0; i < (right_a == 0 ? 1 : 2); ++i)
+        for (int j = 0; j < (right_b == 0 ? 1 : 2); ++j)
+          stack.push_back({below_a[i], below_b[j], item.level + 1});
     }
-    answer.microseconds = watch.microseconds();
     answer.contact = !answer.points.empty();
-    return answer;
   }
 
  private:
@@ -281,7 +291,7 @@ class Grids {
 
 template <class Index>
 struct IndexedBody : SizedBody {
-  explicit IndexedBody(Triangles t) : faces(std::move(t)), index(boxes_of(faces)) {}
+  explicit IndexedBody(const LrbRep& rep) : faces(triangles_of(rep)), index(boxes_of(faces)) {}
   static std::vector<Box> boxes_of(const Triangles& t) {
     std::vector<Box> boxes(t.triangles.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -294,18 +304,11 @@ struct IndexedBody : SizedBody {
 };
 
 template <class Index>
-class Indexed : public MethodOf<IndexedBody<Index>> {
+class Indexed : public Structure<IndexedBody<Index>> {
  public:
-  using typename MethodOf<IndexedBody<Index>>::Posed;
+  using typename Structure<IndexedBody<Index>>::Posed;
 
-  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
-    return std::make_unique<IndexedBody<Index>>(triangles_of(rep));
-  }
-
-  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
-    Answer answer;
-    const Stopwatch watch;
-    const Pose b_in_a = relative(a.pose, b.pose);
+  void search(const Posed& a, const Posed& b, const Pose& b_in_a, bool only_first, Answer& answer) override {
     std::vector<std::uint32_t> tested_with(a.body.faces.triangles.size(), kNull);
     cells_ = 0;
     for (std::uint32_t j = 0; j < b.body.faces.triangles.size(); ++j) {
@@ -319,7 +322,7 @@ class Indexed : public MethodOf<IndexedBody<Index>> {
       box.extend((box.min().array() - kUsualEpsilon).matrix())
           .extend((box.max().array() + kUsualEpsilon).matrix());
       cells_ += a.body.index.visit_near(box, [&](std::uint32_t i) {
-        if (tested_with[i] == j || (mode == Mode::first_pair && answer.contact)) return;
+        if (tested_with[i] == j || (only_first && answer.contact)) return;
         tested_with[i] = j;
         ++answer.face_tests;
         Eigen::Vector3d p[3];
@@ -328,15 +331,12 @@ class Indexed : public MethodOf<IndexedBody<Index>> {
         answer.contact = true;
         answer.pairs.push_back({SimplexId(i), SimplexId(j)});
       });
-      if (mode == Mode::first_pair && answer.contact) break;
+      if (only_first && answer.contact) break;
     }
-    answer.microseconds = watch.microseconds();
-    sort_pairs(answer.pairs);
-    return answer;
   }
 
   std::optional<TestCounts> tests_of(const Posed& a, const Posed& b) override {
-    const std::uint64_t faces = ask(a, b, Mode::all_pairs).face_tests;
+    const std::uint64_t faces = this->ask(a, b, Mode::all_pairs).face_tests;
     return TestCounts{cells_, faces};
   }
 
@@ -361,7 +361,8 @@ struct BspBody : SizedBody {
   };
   static constexpr std::uint32_t kEmpty = kNull, kSolid = kNull - 1;
 
-  explicit BspBody(Triangles t) : faces(std::move(t)) {
+  explicit BspBody(const LrbRep& rep) : faces(triangles_of(rep)) {
+    if (!rep.closed()) throw InputError("skipped: a body that is not closed has no solid side");
     std::vector<Face> all;
     for (const auto& c : faces.triangles) {
       const Eigen::Vector3d &p = faces.vertices[c[0]], &q = faces.vertices[c[1]], &r = faces.vertices[c[2]];
@@ -380,10 +381,6 @@ struct BspBody : SizedBody {
     }
     const auto [least, most] = std::minmax_element(d.begin(), d.end());
     std::array<Polygon, 2> parts;
-    if (*least >= 0 || *most <= 0) {
-      if (*least < 0 || *most > 0) parts[*least < 0] = p;
-      return parts;
-    }
     for (std::size_t i = 0; i < p.size(); ++i) {
       const std::size_t next = (i + 1) % p.size();
       if (d[i] >= 0) parts[0].push_back(p[i]);
@@ -391,7 +388,19 @@ struct BspBody : SizedBody {
       if (d[i] * d[next] >= 0) continue;
       for (Polygon& part : parts) part.push_back(p[i] + (p[next] - p[i]) * (d[i] / (d[i] - d[next])));
     }
+    if (*most <= 0) parts[0].clear();
+    if (*least >= 0) parts[1].clear();
     return parts;
+  }
+
+  /// Returns 1 if a part of the polygon is in an empty cell, 2 in a solid one, 3 both.
+  unsigned leaves_of(std::uint32_t n, const Polygon& p, std::uint64_t& tests) const {
+    if (n == kEmpty || n == kSolid) return n == kEmpty ? 1 : 2;
+    ++tests;
+    auto parts = cut(nodes[n].plane, p);
+    if (parts[0].empty() && parts[1].empty()) parts = {p, p};  // in the plane: on both sides
+    const unsigned front = parts[0].empty() ? 0 : leaves_of(nodes[n].front, parts[0], tests);
+    return parts[1].empty() || front == 3 ? front : front | leaves_of(nodes[n].back, parts[1], tests);
   }
 
   std::size_t bytes() const override { return size_of(nodes); }
@@ -416,8 +425,8 @@ struct BspBody : SizedBody {
     };
     // Many faces are halved across an axis first, which keeps the tree low.
     constexpr std::size_t kMany = 32;
-    bool are_halved = false;
-    for (int axis = 0; axis < 3 && !are_halved && some.size() >= kMany; ++axis) {
+    int axis = some.size() < kMany ? 3 : 0;
+    for (; axis < 3; ++axis) {
       std::vector<double> at;
       for (const Face& f : some) at.push_back(f.corners[0][axis]);
       std::sort(at.begin(), at.end());
@@ -425,9 +434,9 @@ struct BspBody : SizedBody {
       if (above == at.end() || *above - *(above - 1) < 4 * kUsualEpsilon) continue;
       plane = Plane(Eigen::Vector3d::Unit(axis), -(*(above - 1) + *above) / 2);
       distribute();
-      are_halved = 4 * std::max(halves[0].size(), halves[1].size()) < 3 * some.size();
+      if (4 * std::max(halves[0].size(), halves[1].size()) < 3 * some.size()) break;
     }
-    if (!are_halved) {
+    if (axis == 3) {
       const auto median = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
       plane = median->plane;
       some.erase(median);
@@ -437,44 +446,20 @@ struct BspBody : SizedBody {
     const auto n = static_cast<std::uint32_t>(nodes.size());
     nodes.push_back({plane});
     const std::uint32_t front = add(std::move(halves[0]), kEmpty), back = add(std::move(halves[1]), kSolid);
-    nodes[n].front = front;
-    nodes[n].back = back;
+    nodes[n] = {plane, front, back};
     return n;
   }
 };
 
-class Bsp : public MethodOf<BspBody> {
+class Bsp : public Structure<BspBody> {
  public:
-  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
-    if (!rep.closed()) throw InputError("skipped: a body that is not closed has no solid side");
-    return std::make_unique<BspBody>(triangles_of(rep));
-  }
-
-  Answer ask(const Posed& a, const Posed& b, Mode mode) override {
-    Answer answer;
-    const Stopwatch watch;
-    const Pose b_in_a = relative(a.pose, b.pose);
+  void search(const Posed& a, const Posed& b, const Pose& b_in_a, bool only_first, Answer& answer) override {
     for (const auto& c : b.body.faces.triangles) {
       BspBody::Polygon face;
       for (const VertexId v : c) face.push_back(b_in_a.apply(b.body.faces.vertices[v]));
-      answer.contact |= leaves_of(a.body, a.body.root, face, answer.face_tests) == 3;
-      if (mode == Mode::first_pair && answer.contact) break;
+      answer.contact |= a.body.leaves_of(a.body.root, face, answer.face_tests) == 3;
+      if (only_first && answer.contact) break;
     }
-    answer.microseconds = watch.microseconds();
-    return answer;
-  }
-
- private:
-  /// Returns 1 if a part of the polygon is in an empty cell, 2 in a solid one, 3 both.
-  static unsigned leaves_of(const BspBody& tree, std::uint32_t n, const BspBody::Polygon& p,
-                            std::uint64_t& tests) {
-    if (n == BspBody::kEmpty || n == BspBody::kSolid) return n == BspBody::kEmpty ? 1 : 2;
-    const BspBody::Node& node = tree.nodes[n];
-    ++tests;
-    auto parts = BspBody::cut(node.plane, p);
-    if (parts[0].empty() && parts[1].empty()) parts = {p, p};  // in the plane: on both sides
-    const unsigned front = parts[0].empty() ? 0 : leaves_of(tree, node.front, parts[0], tests);
-    return parts[1].empty() || front == 3 ? front : front | leaves_of(tree, node.back, parts[1], tests);
   }
 };
 
