@@ -192,6 +192,9 @@ std::vector<paper::KeptCollision> settle(PaperOptions& o, paper::PaperExperiment
   return {};
 }
 
+/// Number of first contacts with each object in the tables of these.
+constexpr std::uint32_t kContacts = 4;
+
 #ifdef LRB_BUILD_BENCH
 
 /// Questions that a structure cannot answer, beside its name among the methods of `bench`.
@@ -207,26 +210,19 @@ constexpr Silence kSilences[] = {
 
 /// Returns the work of the structures that the paper names, for A with the first and the last other object,
 /// at the first contact of a few collisions.
-report::Table structures_table(std::span<const paper::PaperObject> objects, paper::PaperProtocol protocol) {
-  protocol.steps_after = 0;
-  protocol.collisions = std::min(protocol.collisions, 4U);
+report::Table structures_table(std::span<const paper::PaperObject> objects,
+                               std::span<const paper::ContactStep> contacts) {
   const LrbRep& a = objects.front().rep;
   const std::array others = {&objects[1], &objects.back()};
   std::array<std::vector<paper::ContactStep>, 2> steps;
-  std::size_t contacts = 0;
-  Workspace workspace;
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    for (std::uint32_t i = 0; i < protocol.collisions; ++i)
-      for (paper::ContactStep& s :
-           paper::run_collision(a, others[k]->rep, others[k]->name, i, protocol, workspace, true))
-        steps[k].push_back(std::move(s));
-    contacts += steps[k].size();
-  }
+  for (std::size_t k = 0; k < others.size(); ++k)
+    std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(steps[k]),
+                 [&](const paper::ContactStep& s) { return s.object == others[k]->name; });
   report::Table t{"The structures that the paper names, at first contact",
                   {"structure", "comparisons with " + others[0]->name, "with " + others[1]->name,
                    "contacts found", "bytes per face of " + objects.front().name, "cannot say"}};
   t.note =
-      "Averages over the first contacts of " + std::to_string(protocol.collisions) +
+      "Averages over the first contacts of at most " + std::to_string(kContacts) +
       " collisions each, all pairs. Compared are faces, boxes, spheres, cells, or a face and a plane. Bytes are of "
       "the structure alone; for LRB-reps, with faces and tree. Convex hulls (GJK) and octrees are methods of "
       "lrbscope bench, if FCL is installed.";
@@ -241,7 +237,7 @@ report::Table structures_table(std::span<const paper::PaperObject> objects, pape
         found += one.second;
       }
     t.rows.push_back({title, paper::whole(sums[0]), paper::whole(sums[1]),
-                      std::to_string(found) + " of " + std::to_string(contacts),
+                      std::to_string(found) + " of " + std::to_string(steps[0].size() + steps[1].size()),
                       paper::whole(bytes / a.real_face_count()), silence});
   };
   for (const std::size_t i : {paper::kPaper, std::size_t{3}})
@@ -336,6 +332,14 @@ int run_paper(PaperOptions o, const Globals& globals) {
       plan(of_series, 1, faces);
       plan(of_series, 1, faces, true);
     }
+  const paper::PaperProtocol approaches = paper::first_contacts(protocol, paper::kAcceleratorCollisions);
+  const auto accelerator_seconds = [&](const Mesh& mesh) {  // two builds and the approaches, on one thread
+    const auto faces = static_cast<double>(mesh.face_count());
+    return 2 * building_seconds(faces) +
+           sweep.jobs * approaches.collisions * PaperWork::expected_seconds(approaches, faces, true);
+  };
+  if (!is_shard)
+    for (const Mesh& mesh : meshes) work.plan(accelerator_seconds(mesh));
 
   std::vector<report::Table> more;
   const auto write = [&](const paper::SeriesReport* series) {
@@ -369,12 +373,18 @@ int run_paper(PaperOptions o, const Globals& globals) {
     print(o.folder + "/collisions.jsonl\n");
     return kOk;
   }
+  std::vector<paper::ContactStep> contacts;
+  if (experiment.reports(paper::PaperPart::incremental) || experiment.reports(paper::PaperPart::structures))
+    contacts = run_sweep(objects, {paper::first_contacts(protocol, kContacts), {}, sweep.jobs, true});
   if (experiment.reports(paper::PaperPart::incremental))
-    more.push_back(paper::incremental_table(objects, protocol));
+    more.push_back(paper::incremental_table(objects, contacts));
 #ifdef LRB_BUILD_BENCH
-  if (experiment.reports(paper::PaperPart::structures)) more.push_back(structures_table(objects, protocol));
+  if (experiment.reports(paper::PaperPart::structures)) more.push_back(structures_table(objects, contacts));
 #endif
-  if (!meshes.empty()) more.push_back(paper::accelerator_table(meshes, protocol));
+  if (!meshes.empty())
+    more.push_back(paper::accelerator_table(meshes, protocol, building, [&](const Mesh& mesh) {
+      work.advance(accelerator_seconds(mesh), mesh.name + " as an accelerator");
+    }));
   const paper::SeriesReport series_report{a, series, steps.series, sweep.jobs};
   note(globals, write(meshes.empty() ? nullptr : &series_report));
   work.finish(false);

@@ -438,17 +438,16 @@ class Pages {
 
 }  // namespace
 
-report::Table incremental_table(std::span<const PaperObject> objects, PaperProtocol protocol) {
+report::Table incremental_table(std::span<const PaperObject> objects, std::span<const ContactStep> contacts) {
+  constexpr std::uint32_t kCollisions = 2;
   constexpr int kSteps = 100;
   constexpr double kStep = 2e-4;  // of the diagonal
-  protocol.steps_after = 0;
-  protocol.collisions = std::min(protocol.collisions, 2U);
   report::Table t{"The incremental version: wrappers kept from step to step",
                   {"object", "comparisons from scratch", "on kept wrappers", "share, %", "refinements",
                    "coarsenings", "answers that differ"}};
   t.note = "Averages over " + std::to_string(kSteps) + " steps of " + fixed(100 * kStep, 2) +
-           " % of the diagonal into the body, from the first contact of " +
-           std::to_string(protocol.collisions) +
+           " % of the diagonal into the body, from the first contact of at most " +
+           std::to_string(kCollisions) +
            " collisions, by the paper's recursion. The first of the steps is from scratch.";
   const LrbRep& a = objects.front().rep;
   CollideRequest request;
@@ -457,24 +456,24 @@ report::Table incremental_table(std::span<const PaperObject> objects, PaperProto
   for (const PaperObject& x : objects.subspan(1)) {
     double scratch = 0, kept = 0, refined = 0, coarsened = 0, steps = 0;
     std::uint64_t differ = 0;
-    for (std::uint32_t i = 0; i < protocol.collisions; ++i)
-      for (const ContactStep& start : run_collision(a, x.rep, x.name, i, protocol, workspace, true)) {
-        CoherentQuery query(a, x.rep, request);
-        const Eigen::Vector3d direction = start.pose_a.apply(shapes::box_of(a).center()) -
-                                          start.pose_x.apply(shapes::box_of(x.rep).center());
-        Pose pose = start.pose_x;
-        for (int step = 0; step < kSteps; ++step, ++steps) {
-          const CollideResult& found = query.collide(start.pose_a, pose);
-          const CollideResult expected =
-              std::move(collide(a, start.pose_a, x.rep, pose, request, workspace).value());
-          differ += found.pairs != expected.pairs;
-          kept += static_cast<double>(found.counters.face_tests);
-          scratch += static_cast<double>(expected.counters.face_tests);
-          refined += static_cast<double>(found.counters.refinements);
-          pose.t += kStep * diagonal(a) * direction.normalized();
-        }
-        coarsened += static_cast<double>(query.statistics().coarsened);
+    for (const ContactStep& start : contacts) {
+      if (start.object != x.name || start.collision >= kCollisions) continue;
+      CoherentQuery query(a, x.rep, request);
+      const Eigen::Vector3d direction =
+          start.pose_a.apply(shapes::box_of(a).center()) - start.pose_x.apply(shapes::box_of(x.rep).center());
+      Pose pose = start.pose_x;
+      for (int step = 0; step < kSteps; ++step, ++steps) {
+        const CollideResult& found = query.collide(start.pose_a, pose);
+        const CollideResult expected =
+            std::move(collide(a, start.pose_a, x.rep, pose, request, workspace).value());
+        differ += found.pairs != expected.pairs;
+        kept += static_cast<double>(found.counters.face_tests);
+        scratch += static_cast<double>(expected.counters.face_tests);
+        refined += static_cast<double>(found.counters.refinements);
+        pose.t += kStep * diagonal(a) * direction.normalized();
       }
+      coarsened += static_cast<double>(query.statistics().coarsened);
+    }
     if (steps == 0) continue;  // no contact was found
     t.rows.push_back({x.name, fixed(scratch / steps, 0), fixed(kept / steps, 0),
                       fixed(100 * kept / scratch, 1), fixed(refined / steps, 2), fixed(coarsened / steps, 2),

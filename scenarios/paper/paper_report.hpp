@@ -29,7 +29,7 @@ struct PaperReport {
 std::vector<std::string> write_paper_report(const PaperReport& report, const report::Folder& folder);
 
 /// Returns the work of the paper's recursion on kept wrappers and from scratch, in short steps after first
-/// contact.
-report::Table incremental_table(std::span<const PaperObject> objects, PaperProtocol protocol);
+/// contact. `contacts`: see first_contacts(), with all objects.
+report::Table incremental_table(std::span<const PaperObject> objects, std::span<const ContactStep> contacts);
 
 }  // namespace lrb::paper

@@ -20,7 +20,8 @@ RecursionCount count_of(const CollideResult& result, const std::vector<SimplexPa
   n.missed = static_cast<std::uint64_t>(std::count_if(all.begin(), all.end(), [&](const SimplexPair& p) {
     return !std::binary_search(result.pairs.begin(), result.pairs.end(), p);
   }));
-  n.bound_tests = result.counters.box_tests + result.counters.prefilter_tests;
+  n.box_tests = result.counters.box_tests;
+  n.bound_tests = n.box_tests + result.counters.prefilter_tests;
   return n;
 }
 
@@ -87,6 +88,12 @@ ContactStep count_step(const LrbRep& a, const Pose& pose_a, const LrbRep& x, con
 
 double diagonal(const LrbRep& rep) {
   return shapes::box_of(rep).diagonal().norm();
+}
+
+PaperProtocol first_contacts(PaperProtocol protocol, std::uint32_t most) {
+  protocol.steps_after = 0;
+  protocol.collisions = std::min(protocol.collisions, most);
+  return protocol;
 }
 
 LrbRep scaled(const LrbRep& rep, double by) {

@@ -49,6 +49,7 @@ struct RecursionCount {
   std::uint64_t missed = 0;       ///< number of intersecting pairs that were not found
   std::uint64_t bound_tests = 0;  ///< number of boxes and planes; a batch of eight counts as eight (complete
                                   ///< only)
+  std::uint64_t box_tests = 0;    ///< the boxes among them; not in the record
   std::uint64_t nanoseconds = 0;  ///< duration, measured once; not in the record, because it is not
                                   ///< reproducible
 };
@@ -71,6 +72,9 @@ struct ContactStep {
 std::vector<ContactStep> run_collision(const LrbRep& a, const LrbRep& x, const std::string& object,
                                        std::uint32_t collision, const PaperProtocol& protocol,
                                        Workspace& workspace, bool scalable_only = false);
+
+/// Returns the protocol of at most this many collisions, of which only the first contact counts.
+PaperProtocol first_contacts(PaperProtocol protocol, std::uint32_t most);
 
 /// Returns the body with its coordinates multiplied by `by`.
 LrbRep scaled(const LrbRep& rep, double by);

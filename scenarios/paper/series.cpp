@@ -379,10 +379,11 @@ std::vector<report::Table> add_series(const SeriesReport& report, report::Docume
   return tables;
 }
 
-report::Table accelerator_table(std::span<const Mesh> bodies, PaperProtocol protocol) {
+report::Table accelerator_table(std::span<const Mesh> bodies, const PaperProtocol& experiment,
+                                const BuildOptions& building,
+                                const std::function<void(const Mesh&)>& progress) {
   constexpr std::uint32_t kLids = 12;
-  protocol.steps_after = 0;
-  protocol.collisions = std::min(protocol.collisions, 10U);
+  const PaperProtocol protocol = first_contacts(experiment, kAcceleratorCollisions);
   const std::string small = ", " + std::to_string(kLids) + " lids";
   report::Table t{
       "LRB-reps as an accelerator, at first contact",
@@ -395,16 +396,17 @@ report::Table accelerator_table(std::span<const Mesh> bodies, PaperProtocol prot
       "; their missed pairs are those of both recursions.";
   Workspace workspace;
   for (const Mesh& body : bodies) {
-    BuildOptions options;
-    const LrbRep usual = build_lrb(body, options);
-    options.max_lids = kLids;
-    const LrbRep few_lids = build_lrb(body, options);
+    const LrbRep usual = build_lrb(body, building);
+    BuildOptions small_regions = building;
+    small_regions.max_lids = kLids;
+    const LrbRep few_lids = build_lrb(body, small_regions);
     struct Query {
       const LrbRep& rep;
       Recursion recursion;
+      std::optional<std::size_t> counts = {};  ///< of run_collision(), which asks this query
       double tests = 0;
-    } queries[] = {{usual, Recursion::complete},
-                   {usual, Recursion::paper},
+    } queries[] = {{usual, Recursion::complete, kRecursions.size() - 1},
+                   {usual, Recursion::paper, kPaper},
                    {usual, Recursion::paper_boxes},
                    {few_lids, Recursion::paper_boxes},
                    {few_lids, Recursion::paper_wrapper_boxes}};
@@ -412,6 +414,10 @@ report::Table accelerator_table(std::span<const Mesh> bodies, PaperProtocol prot
     for (std::uint32_t i = 0; i < protocol.collisions; ++i)
       for (const ContactStep& s : run_collision(usual, usual, body.name, i, protocol, workspace, true))
         for (Query& q : queries) {
+          if (q.counts) {
+            q.tests += static_cast<double>(s.counts[*q.counts].comparisons + s.counts[*q.counts].box_tests);
+            continue;
+          }
           CollideRequest request;
           request.recursion = q.recursion;
           const CollideResult& found = collide(q.rep, s.pose_a, q.rep, s.pose_x, request, workspace).value();
@@ -428,6 +434,7 @@ report::Table accelerator_table(std::span<const Mesh> bodies, PaperProtocol prot
     for (std::size_t i = 1; i < std::size(queries); ++i)
       t.rows.back().push_back(fixed(queries[i].tests / queries[0].tests, 1));
     t.rows.back().push_back(render::group_digits(missed) + " of " + render::group_digits(pairs));
+    if (progress) progress(body);
   }
   return t;
 }

@@ -99,8 +99,12 @@ std::vector<SeriesFit> series_fits(std::span<const SeriesRow> rows);
 /// series_times.jsonl and series.json (rows and fits, without times). Returns the tables.
 std::vector<report::Table> add_series(const SeriesReport& report, report::Document& doc);
 
-/// Returns the tests of queries on LRB-reps, and of the default, at first contact of each body with itself.
-report::Table accelerator_table(std::span<const Mesh> bodies, PaperProtocol protocol);
+/// Returns the tests of queries on LRB-reps, and of the default, at first contact of each body with itself in
+/// at most kAcceleratorCollisions collisions. Calls `progress` after each body, on this one thread.
+inline constexpr std::uint32_t kAcceleratorCollisions = 10;
+report::Table accelerator_table(std::span<const Mesh> bodies, const PaperProtocol& protocol,
+                                const BuildOptions& building,
+                                const std::function<void(const Mesh&)>& progress);
 
 /// Returns a fitted power as text, such as "n^0.52 ± 0.01".
 std::string power_text(const resolutions::PowerFit& fit);
