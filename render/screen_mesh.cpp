@@ -10,8 +10,8 @@
 
 #include <glm/common.hpp>
 
-#include "engine/core/polygon.hpp"
 #include "render/face_look.hpp"
+#include <lrbscope/core/polygon.hpp>
 #include <lrbscope/render/rasterize.hpp>
 
 namespace lrb::render {

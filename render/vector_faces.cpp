@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "engine/core/polygon.hpp"
+#include <lrbscope/core/polygon.hpp>
 
 namespace lrb::render {
 namespace {

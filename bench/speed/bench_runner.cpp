@@ -7,10 +7,10 @@
 #include "bench/methods/triangles.hpp"
 #include "bench/speed/metrics.hpp"
 #include "bench/workers/worker_json.hpp"
-#include "engine/exact/pair_distance.hpp"
 #include "engine/mesh/face_pairs.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/pair_distance.hpp>
 namespace lrb::speed {
 
 void sweep_caches() {

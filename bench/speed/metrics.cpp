@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/methods/triangles.hpp"
-#include "engine/exact/pair_distance.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
+#include <lrbscope/pair_distance.hpp>
 
 namespace lrb::speed {
 namespace {

@@ -15,8 +15,8 @@
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/clash/minkowski.hpp"
 #include "engine/core/geometry.hpp"
-#include "engine/core/polygon.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
+#include <lrbscope/core/polygon.hpp>
 
 namespace lrb::penetration {
 namespace {

@@ -48,7 +48,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/clash/clash_parts.hpp"
-#include "engine/core/polygon.hpp"
+#include <lrbscope/core/polygon.hpp>
 
 namespace lrb::penetration {
 namespace {

@@ -12,12 +12,12 @@
 #include "engine/core/tolerances.hpp"
 #include "engine/distance/near_kernel.hpp"
 #include "engine/distance/near_pairs_context.hpp"
-#include "engine/exact/pair_distance.hpp"
 #include "engine/tree/kernel_setup.hpp"
 #include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/near_pairs.hpp>
+#include <lrbscope/pair_distance.hpp>
 
 namespace lrb {
 namespace {

@@ -14,8 +14,8 @@
 #include "engine/collide/collide_into.hpp"
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
-#include "engine/exact/pair_distance.hpp"
 #include "engine/tree/kernel_setup.hpp"
+#include <lrbscope/pair_distance.hpp>
 #include <lrbscope/world_box.hpp>
 
 namespace lrb {

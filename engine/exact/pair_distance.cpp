@@ -5,14 +5,14 @@
 // Each squared distance is a fraction of two integers; every comparison is a sign of an integer.
 // 3. Take the least squared distance, and enclose its root in two neighbouring doubles.
 
-#include "engine/exact/pair_distance.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include <boost/multiprecision/cpp_int.hpp>
+
+#include <lrbscope/pair_distance.hpp>
 
 namespace lrb::exact {
 namespace {

@@ -7,9 +7,9 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/axes.hpp"
-#include "engine/exact/pair_distance.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/distance.hpp>
+#include <lrbscope/pair_distance.hpp>
 
 namespace lrb::profile {
 namespace {

@@ -10,7 +10,7 @@
 #include <Eigen/LU>
 
 #include "engine/core/geometry.hpp"
-#include "engine/core/polygon.hpp"
+#include <lrbscope/core/polygon.hpp>
 #include <lrbscope/error.hpp>
 
 namespace lrb::profile {

@@ -1,6 +1,4 @@
 // Distances of two simplices, in doubles and in integers, against rational arithmetic.
-#include "engine/exact/pair_distance.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 #include "engine/distance/near_kernel.hpp"
 #include "engine/distance/pair_bounds.hpp"
 #include "tests/support/random_simplices.hpp"
+#include <lrbscope/pair_distance.hpp>
 
 using namespace lrb;
 using oracle::Rational;

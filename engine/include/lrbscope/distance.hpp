@@ -9,7 +9,7 @@
 /// Objects", 1994). The distance of two boxes bounds that of their contents from below (Larsen, Gottschalk,
 /// Lin and Manocha, "Fast Distance Queries with Rectangular Swept Sphere Volumes", 2000; here with OBBs
 /// instead of swept rectangles). Simplices are compared in floats first, then in doubles with proven errors
-/// (pair_bounds.hpp), and finally in integers (exact/pair_distance.hpp) where the previous stage cannot
+/// (pair_bounds.hpp), and finally in integers (pair_distance.hpp) where the previous stage cannot
 /// decide.
 
 #include <array>

@@ -10,7 +10,7 @@
 /// 1. One traversal of both BVHs drops boxes, and triangles by slabs, that floats prove to be farther apart
 ///    than the given distance. The other pairs of triangles are the candidates (near_kernel.inl).
 /// 2. The candidates are measured in doubles with proven errors, eight at a time (pair_bounds_kernel.inl).
-/// 3. Where the interval contains 0 or `within`, integers decide (exact/pair_distance.hpp).
+/// 3. Where the interval contains 0 or `within`, integers decide (pair_distance.hpp).
 
 #include <cstdint>
 #include <vector>
