@@ -1,6 +1,12 @@
 #pragma once
-/// The distance of two simplices, computed in integers: slow (tens of microseconds) and exact. For pairs
-/// whose interval in doubles is too wide, and for comparison with a given distance.
+/// The distance of two triangles or segments, computed in integers: slow (tens of microseconds) and exact.
+/// For pairs whose interval in doubles is too wide, and for comparison with a given distance.
+///
+/// Both functions take two disjoint simplices: their corners in the world frame, as pointers to their
+/// coordinates, which must be finite: `a` and `b` have n each, in any order. n = 3: triangles in 3D. n = 2:
+/// segments in the plane z = 0, of which only x and y are read. Collinear or coincident corners count as the
+/// segment or point that they span. Distances are in the unit of the coordinates. Nothing is checked or
+/// thrown.
 
 #include <Eigen/Core>
 
@@ -19,9 +25,7 @@ struct PairDistance {
   Feature on[2];  ///< exact: features that contain the points on the simplices of A and of B
 };
 
-/// Returns the distance of two triangles (n = 3) in 3D, or of two segments (n = 2) in the plane z = 0, of
-/// which only x and y are read. They must be disjoint. Collinear or coincident corners count as the segment
-/// or point that they span.
+/// Returns the distance of two simplices.
 PairDistance distance_of_simplices(const double* const* a, const double* const* b, int n);
 
 /// Returns the sign (-1, 0, 1) of the distance minus `distance`, which must be finite and at least 0.

@@ -5,10 +5,11 @@
 
 namespace lrb {
 
-/// Clips a convex polygon to value(x) >= 0, where `value` is linear (Sutherland and Hodgman 1974). Calls
-/// add(x, i, is_new, along_cut) for each corner of the result, in order. is_new: x is a point of the edge
-/// from corner i to the next, else it is corner i. along_cut: the edge that begins at x is the cut, else a
-/// part of the edge from corner i.
+/// Clips a convex polygon to value(x) >= 0, where `value` is linear (Sutherland and Hodgman 1974). `corners`:
+/// a range of points of any dimension, in order. Calls add(x, i, is_new, along_cut) for each corner of the
+/// result, in the same order, and not at all if nothing is left. is_new: x is a point of the edge from corner
+/// i to the next, rounded, else it is corner i. along_cut: the edge that begins at x is the cut, else a part
+/// of the edge from corner i.
 template <class Points, class Value, class Add>
 void clip_polygon(const Points& corners, const Value& value, const Add& add) {
   const std::size_t n = std::size(corners);
