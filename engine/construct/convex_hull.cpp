@@ -309,40 +309,7 @@ Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points) {
   return mesh;
 }
 
-}  // namespace lrb
-
-namespace lrb::construct {
-
-// Convex polygons in 2D.
-// - convex_outline(): monotone chains (Andrew 1979). Sort the points, then build the lower and the upper
-//   chain.
-// - enclosing_polygon(): move the convex hull of the points outward; then remove sides greedily, always the
-//   one that adds the least area; finally confirm the result exactly, with a box as the fallback.
-
-namespace {
-
-using Vector3 = Eigen::Vector3d;
-
-/// The intersection of two sides p0 -> p1 and q0 -> q1 when extended, and the area that this adds beyond p1,
-/// q0; the area is infinite if they do not converge.
-struct MeetingPoint {
-  Vector3 x;
-  double area;
-};
-
-MeetingPoint meet(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Vector3& q1) {
-  const Vector3 p = p1 - p0, q = q1 - q0;
-  // Extended beyond p1 and q0, the sides converge if and only if they turn left by less than 180 degrees.
-  const double turn = cross_2d(p, q);
-  if (!(turn > 0)) return {p1, std::numeric_limits<double>::infinity()};
-  // Cramer's rule. The area is twice that of the triangle q0, p1, x; it is only compared.
-  const Vector3 x = p1 + p * (cross_2d(q0 - p1, q) / turn);
-  return {x, cross_2d(p1 - q0, x - q0)};
-}
-
-}  // namespace
-
-std::vector<std::uint32_t> convex_outline(std::span<const Vector3> points) {
+std::vector<std::uint32_t> convex_outline(std::span<const Eigen::Vector3d> points) {
   // Step 1: sort by x, then y, then index. Equal points become adjacent, and the lowest index remains.
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -378,6 +345,39 @@ std::vector<std::uint32_t> convex_outline(std::span<const Vector3> points) {
   outline.insert(outline.end(), upper.begin() + 1, upper.end() - 1);
   return outline;
 }
+
+}  // namespace lrb
+
+namespace lrb::construct {
+
+// Convex polygons in 2D.
+// - convex_outline(): monotone chains (Andrew 1979). Sort the points, then build the lower and the upper
+//   chain.
+// - enclosing_polygon(): move the convex hull of the points outward; then remove sides greedily, always the
+//   one that adds the least area; finally confirm the result exactly, with a box as the fallback.
+
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+
+/// The intersection of two sides p0 -> p1 and q0 -> q1 when extended, and the area that this adds beyond p1,
+/// q0; the area is infinite if they do not converge.
+struct MeetingPoint {
+  Vector3 x;
+  double area;
+};
+
+MeetingPoint meet(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Vector3& q1) {
+  const Vector3 p = p1 - p0, q = q1 - q0;
+  // Extended beyond p1 and q0, the sides converge if and only if they turn left by less than 180 degrees.
+  const double turn = cross_2d(p, q);
+  if (!(turn > 0)) return {p1, std::numeric_limits<double>::infinity()};
+  // Cramer's rule. The area is twice that of the triangle q0, p1, x; it is only compared.
+  const Vector3 x = p1 + p * (cross_2d(q0 - p1, q) / turn);
+  return {x, cross_2d(p1 - q0, x - q0)};
+}
+
+}  // namespace
 
 std::vector<Vector3> enclosing_polygon(std::span<const Vector3> points, std::uint32_t max_sides,
                                        double distance) {

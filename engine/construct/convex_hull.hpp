@@ -12,11 +12,6 @@
 
 namespace lrb::construct {
 
-/// Returns the indices of the points on the boundary of the convex hull, counter-clockwise, including points
-/// inside its sides; coincident points are returned once. Ignores z. Exact. Returns fewer than three if all
-/// points are collinear. (Monotone chains: Andrew 1979.)
-std::vector<std::uint32_t> convex_outline(std::span<const Eigen::Vector3d> points);
-
 /// Returns the corners, counter-clockwise, of a convex polygon of at most max(max_sides, 4) sides that
 /// contains the points, or an empty list if coordinates are too large. The points keep a distance of at least
 /// half of `distance` times their largest extent from its sides (up to rounding; confirm with holds_2d()).

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "render/pictures/marks.hpp"
+#include <lrbscope/build.hpp>
 #include <lrbscope/core/file.hpp>
 
 namespace lrb::run {
@@ -207,29 +208,6 @@ Eigen::AlignedBox3d box_of(const LrbRep& rep, const Pose& pose) {
 
 namespace {
 
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
-}
-
-/// Returns the convex hull of points, counterclockwise (Andrew 1979).
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
-    return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y();
-  });
-  std::vector<Eigen::Vector2d> out;
-  // The lower chain from left to right, then the upper one back.
-  for (const bool back : {false, true}) {
-    const std::size_t first = out.size();
-    for (const Eigen::Vector2d& p : points) {
-      while (out.size() >= first + 2 && turn(out[out.size() - 2], out.back(), p) <= 0) out.pop_back();
-      out.push_back(p);
-    }
-    if (!out.empty()) out.pop_back();
-    if (!back) std::reverse(points.begin(), points.end());
-  }
-  return out;
-}
-
 /// Returns the centre of mass of the solid, or of the vertices if it has no volume.
 Vector3d centre_of_mass(const LrbRep& rep) {
   const std::vector<Vector3d> corners = real_corners(rep);
@@ -263,15 +241,15 @@ std::optional<int> likely_up(const LrbRep& rep) {
   double most = 0;
   for (const int axis : {2, 1, 0}) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    std::vector<Eigen::Vector2d> ground;
+    std::vector<Vector3d> ground;  // relative to the point below the centre of mass
     for (const Vector3d& x : corners)
-      if (x[axis] - box.min()[axis] <= kBase * size[axis]) ground.emplace_back(x[u], x[v]);
-    const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(ground));
-    const Eigen::Vector2d below(centre[u], centre[v]);
+      if (x[axis] - box.min()[axis] <= kBase * size[axis])
+        ground.emplace_back(x[u] - centre[u], x[v] - centre[v], 0);
+    const std::vector<std::uint32_t> hull = convex_outline(ground);
     double area = 0;
     bool stable = hull.size() > 2;
     for (std::size_t i = 0; i < hull.size(); ++i) {
-      const double part = turn(below, hull[i], hull[(i + 1) % hull.size()]) / 2;
+      const double part = ground[hull[i]].cross(ground[hull[(i + 1) % hull.size()]]).z() / 2;
       area += part;
       stable = stable && part > 0;
     }

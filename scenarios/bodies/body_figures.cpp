@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/geometry.hpp"
-#include "engine/exact/predicates.hpp"
 #include <lrbscope/validate.hpp>
 namespace lrb::bodies {
 
@@ -23,21 +22,11 @@ double hull_volume(std::span<const Eigen::Vector3d> points) {
 }
 
 double hull_area(std::span<const Eigen::Vector3d> points) {
-  std::vector<Eigen::Vector3d> p(points.begin(), points.end());
-  std::sort(p.begin(), p.end(),
-            [](const auto& a, const auto& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  const std::vector<std::uint32_t> outline = convex_outline(points);
   double twice = 0;
-  for (int half = 0; half < 2; ++half) {  // Andrew's monotone chain: the lower half, then the upper one
-    std::vector<Eigen::Vector3d> chain;
-    for (const Eigen::Vector3d& x : p) {
-      while (chain.size() > 1 &&
-             exact::orient2d(chain[chain.size() - 2].data(), chain.back().data(), x.data()) <= 0)
-        chain.pop_back();
-      chain.push_back(x);
-    }
-    for (std::size_t i = 0; i + 1 < chain.size(); ++i)
-      twice += chain[i].x() * chain[i + 1].y() - chain[i].y() * chain[i + 1].x();
-    std::reverse(p.begin(), p.end());
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector3d &p = points[outline[i]], &q = points[outline[(i + 1) % outline.size()]];
+    twice += p.x() * q.y() - p.y() * q.x();
   }
   return twice / 2;
 }

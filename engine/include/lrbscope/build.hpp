@@ -203,4 +203,9 @@ std::vector<std::array<std::uint32_t, 3>> convex_hull(std::span<const Eigen::Vec
 /// Returns the convex hull as a mesh that contains only the hull's vertices.
 Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points);
 
+/// Returns the indices of the points on the boundary of the convex hull in 2D, counter-clockwise, including
+/// points inside its sides; coincident points are returned once. Ignores z. Exact. Returns none if all points
+/// are collinear. (Monotone chains: Andrew 1979.) Coordinates must be finite.
+std::vector<std::uint32_t> convex_outline(std::span<const Eigen::Vector3d> points);
+
 }  // namespace lrb
