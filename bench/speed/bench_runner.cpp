@@ -7,7 +7,7 @@
 #include "bench/methods/triangles.hpp"
 #include "bench/speed/metrics.hpp"
 #include "bench/workers/worker_json.hpp"
-#include "engine/mesh/face_pairs.hpp"
+#include "engine/mesh/box_tree.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/pair_distance.hpp>
@@ -117,61 +117,33 @@ Reply BenchRunner::ask(const Question& q, Mode mode, Errors* errors) {
   return r;
 }
 
-namespace {
-
-struct WorldBody {
-  WorldBody(const LrbRep& r, const Pose& pose) : rep(r) {
-    for (const Eigen::Vector3d& v : r.vertices()) x.push_back(pose.apply(v));
-    for (SimplexId s = 0; s < r.real_simplex_count(); ++s) whole.extend(box(s));
-  }
-  void corners(SimplexId s, const double* out[3]) const {
-    VertexId v[3] = {};
-    rep.simplex(s, v);
-    for (int k = 0; k < 3; ++k) out[k] = x[v[k]].data();
-  }
-  Box box(SimplexId s) const {
-    VertexId v[3] = {};
-    rep.simplex(s, v);
-    Box b;
-    for (const VertexId i : v) b.extend(x[i]);
-    return {b.min() - margin, b.max() + margin};
-  }
-  const LrbRep& rep;
-  std::vector<Eigen::Vector3d> x;
-  Box whole;
-  Eigen::Vector3d margin{0, 0, 0};  ///< of the triangles' boxes
-};
-
-}  // namespace
-
 std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                      double within) {
-  WorldBody wa(a, pose_a);
-  const WorldBody wb(b, pose_b);
-  // Boxes of A grow by more than the distance, so that rounding loses no candidate.
-  const double size = wa.whole.merged(wb.whole).diagonal().norm();
-  wa.margin.setConstant(within > 0 ? within + 1e-12 * (size + within) : 0);
-  const std::uint32_t first_of_b = a.real_simplex_count();
-  std::vector<Box> boxes(first_of_b + b.real_simplex_count());
-  const auto add = [&](const WorldBody& body, const Box& other, std::uint32_t first) {
-    for (SimplexId s = 0; s < body.rep.real_simplex_count(); ++s)
-      if (const Box box = body.box(s); box.intersects(other)) boxes[first + s] = box;
+  if (!(within > 0)) return brute_force(a, pose_a, b, pose_b).pairs;
+  std::vector<WorldTriangle> of_b;
+  std::vector<Box> boxes;
+  const auto box_of = [](const WorldTriangle& t) {
+    Box box(t.x[0]);
+    return box.extend(t.x[1]).extend(t.x[2]);
   };
-  add(wa, wb.whole, 0);
-  add(wb, {wa.whole.min() - wa.margin, wa.whole.max() + wa.margin}, first_of_b);
+  for (SimplexId t = 0; t < b.real_simplex_count(); ++t)
+    boxes.push_back(box_of(of_b.emplace_back(b, pose_b, t)));
+  const BoxTree tree(boxes);
   std::vector<SimplexPair> pairs;
-  Workers alone;
-  const auto test = [&](std::uint32_t i, std::uint32_t j) {
-    if (i >= first_of_b || j < first_of_b) return;
-    const double *ca[3], *cb[3];
-    const SimplexPair pair{SimplexId(i), SimplexId(j - first_of_b)};
-    wa.corners(pair.a, ca);
-    wb.corners(pair.b, cb);
-    if (exact::meet_triangles(ca, cb) != exact::Meet::disjoint ||
-        (within > 0 && exact::compare_distance(ca, cb, 3, within) <= 0))
-      pairs.push_back(pair);
-  };
-  BoxTree(boxes).for_each_pair(test, alone);
+  for (SimplexId s = 0; s < a.real_simplex_count(); ++s) {
+    const WorldTriangle of_a(a, pose_a, s);
+    Box box = box_of(of_a);
+    // Grown by more than the distance, so that rounding loses no candidate.
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(within * (1 + 1e-12)) +
+                                   1e-12 * box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs());
+    box.min() -= margin;
+    box.max() += margin;
+    tree.for_each_in(box, [&](std::uint32_t t) {
+      if (exact::meet_triangles(of_a.corners().data(), of_b[t].corners().data()) != exact::Meet::disjoint ||
+          exact::compare_distance(of_a.corners().data(), of_b[t].corners().data(), 3, within) <= 0)
+        pairs.push_back({s, SimplexId(t)});
+    });
+  }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

@@ -45,9 +45,7 @@ class BenchRunner {
   std::map<std::size_t, LrbRep> reps_;                          ///< by body; for judging
 };
 
-/// Returns every pair of real triangles that intersect or are at most `within` apart: by a sweep over world
-/// AABBs, and exact tests of the candidates. Shares with the engine's query only the predicates and the
-/// definition of world coordinates.
+/// Returns every pair of real triangles that intersect or are at most `within` apart, as brute_force() does.
 std::vector<SimplexPair> exact_pairs(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                      double within = 0);
 

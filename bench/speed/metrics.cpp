@@ -9,10 +9,10 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "bench/methods/triangles.hpp"
-#include <lrbscope/contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pair_distance.hpp>
+#include <lrbscope/point_distance.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::speed {
 namespace {
@@ -57,36 +57,28 @@ Eigen::Vector3d centroid_of(const std::vector<Eigen::Vector3d>& points) {
   return points.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points.size()));
 }
 
-/// A triangle of a posed body, as input of the exact predicates.
-struct WorldTriangle {
-  WorldTriangle(const LrbRep& rep, const Pose& pose, SimplexId s) : x(methods::corners_of(rep, pose, s)) {}
-  std::array<Eigen::Vector3d, 3> x;  ///< world frame
-  const double* corners[3] = {x[0].data(), x[1].data(), x[2].data()};
-};
-
 }  // namespace
 
-RegionMaker::RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b)
-    : a_(a), b_(b), pose_a_(pose_a), pose_b_(pose_b) {}
-
-Region RegionMaker::of_pairs(const std::vector<SimplexPair>& pairs) {
+Region region_of(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                 const std::vector<SimplexPair>& pairs) {
   CollideResult result;
   CollideRequest request;
   request.contacts = true;
   Region out;
   for (const SimplexPair& p : pairs) {
-    const WorldTriangle a(a_, pose_a_, p.a), b(b_, pose_b_, p.b);
-    const exact::Meet meet = exact::meet_triangles(a.corners, b.corners);
+    const WorldTriangle s(a, pose_a, p.a), t(b, pose_b, p.b);
+    const exact::Meet meet = exact::meet_triangles(s.corners().data(), t.corners().data());
     if (meet != exact::Meet::disjoint) {
       result.pairs.push_back(p);
       result.meets.push_back(meet);
       continue;
     }
     Eigen::Vector3d sum(0, 0, 0);
-    for (int k = 0; k < 3; ++k) sum += a.x[k] + b.x[k];
+    for (int k = 0; k < 3; ++k) sum += s.x[k] + t.x[k];
     out.points.push_back(sum / 6);
   }
-  describe_contact(a_, pose_a_, b_, pose_b_, request, workspace_, result).value();
+  Workspace workspace;
+  describe_contact(a, pose_a, b, pose_b, request, workspace, result).value();
   double largest = -1;
   for (const exact::PairContact& c : result.contacts)
     for (std::uint8_t i = 0; i < c.corner_count; ++i) out.points.push_back(c.corners[i].x);
@@ -102,21 +94,13 @@ Region RegionMaker::of_pairs(const std::vector<SimplexPair>& pairs) {
   return out;
 }
 
-BodyDistance::BodyDistance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b)
-    : a_(a, pose_a), b_(b, pose_b) {}
-
-BodyDistance::Side::Side(const LrbRep& rep, const Pose& p)
-    : unit(rep.tree().unit()), pose(p), simplices(real_simplices(rep)), nearest(rep, simplices) {}
-
-/// For rigid poses, as in data sets.
-double BodyDistance::Side::distance(const Eigen::Vector3d& world) {
-  const Eigen::Vector3d x = pose.r.transpose() * (world - pose.t);
-  return nearest.find(x / unit).distance * unit;
-}
-
-double BodyDistance::deviation(const std::vector<Eigen::Vector3d>& points) {
+double deviation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                 const std::vector<Eigen::Vector3d>& points) {
+  const PointDistanceRequest request{.relative_tolerance = 1e-6, .side = false};
+  const std::vector<PointDistance> to_a = point_distances(a, pose_a, points, request, 1),
+                                   to_b = point_distances(b, pose_b, points, request, 1);
   double most = 0;
-  for (const Eigen::Vector3d& p : points) most = std::max(most, a_.distance(p) + b_.distance(p));
+  for (std::size_t i = 0; i < points.size(); ++i) most = std::max(most, to_a[i].upper + to_b[i].upper);
   return most;
 }
 
@@ -238,7 +222,7 @@ class Judge {
       if (answer.pairs == q_.expected)
         set_region(e, info, {}, 0);
       else
-        set_region(e, info, maker().of_pairs(answer.pairs));
+        set_region(e, info, region_of(answer.pairs));
     } else if (gives_points(info)) {
       set_region(e, info, of_points(answer.points));
     }
@@ -246,11 +230,13 @@ class Judge {
   }
 
  private:
-  RegionMaker maker() const { return {a_, q_.pose_a, b_, q_.pose_b}; }
+  Region region_of(const std::vector<SimplexPair>& pairs) const {
+    return speed::region_of(a_, q_.pose_a, b_, q_.pose_b, pairs);
+  }
 
   void set_region(Errors& e, const methods::MethodInfo& info, const Region& found) const {
-    set_region(e, info, region_error(maker().of_pairs(q_.expected), found, diagonal_),
-               std::min(1.0, BodyDistance(a_, q_.pose_a, b_, q_.pose_b).deviation(found.points) / diagonal_));
+    set_region(e, info, region_error(region_of(q_.expected), found, diagonal_),
+               std::min(1.0, deviation(a_, q_.pose_a, b_, q_.pose_b, found.points) / diagonal_));
   }
 
   static void set_region(Errors& e, const methods::MethodInfo& info, const RegionError& r, double offset) {
@@ -452,8 +438,9 @@ Errors errors_of_answer(const DataSet& set, const Question& question, const LrbR
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const WorldTriangle s(a, Pose{}, pairs[i].a), t(b, Pose{}, pairs[i].b);
     double least = 0, most = 0;
-    if (exact::meet_triangles(s.corners, t.corners) == exact::Meet::disjoint) {
-      const exact::PairDistance exact = exact::distance_of_simplices(s.corners, t.corners, 3);
+    if (exact::meet_triangles(s.corners().data(), t.corners().data()) == exact::Meet::disjoint) {
+      const exact::PairDistance exact =
+          exact::distance_of_simplices(s.corners().data(), t.corners().data(), 3);
       least = exact.lower;
       most = exact.upper;
     }

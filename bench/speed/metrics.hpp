@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "bench/methods/method.hpp"
+#include "bench/methods/triangles.hpp"
 #include "bench/speed/data_set.hpp"
-#include "engine/lrb/thickness.hpp"
-#include <lrbscope/workspace.hpp>
+#include <lrbscope/contact.hpp>
 
 namespace lrb::speed {
 
@@ -104,41 +104,21 @@ struct RegionError {
   double depth = 0;                    ///< over the diagonal
 };
 
-/// Computes the regions of lists of pairs of two bodies at given poses.
-class RegionMaker {
- public:
-  /// Keeps references to the bodies.
-  RegionMaker(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
-  /// Computes the region of these pairs. Pairs that do not intersect contribute only to the points, by the
-  /// centroids of their triangles.
-  Region of_pairs(const std::vector<SimplexPair>& pairs);
-
- private:
-  const LrbRep &a_, &b_;
-  Pose pose_a_, pose_b_;
-  Workspace workspace_;
+/// A triangle of a posed body, as input of the exact predicates.
+struct WorldTriangle {
+  WorldTriangle(const LrbRep& rep, const Pose& pose, SimplexId s) : x(methods::corners_of(rep, pose, s)) {}
+  std::array<const double*, 3> corners() const { return {x[0].data(), x[1].data(), x[2].data()}; }
+  std::array<Eigen::Vector3d, 3> x;  ///< world frame
 };
 
-/// Measures the distance of world points from two posed bodies.
-class BodyDistance {
- public:
-  BodyDistance(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
-  BodyDistance(const BodyDistance&) = delete;  // its members refer to each other
-  BodyDistance& operator=(const BodyDistance&) = delete;
-  /// Returns the maximum over the points of the sum of the distances from both surfaces, or 0 without points.
-  double deviation(const std::vector<Eigen::Vector3d>& points);
+/// Returns the region of pairs of two bodies at given poses. Pairs that do not intersect contribute only to
+/// the points, by the centroids of their triangles.
+Region region_of(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                 const std::vector<SimplexPair>& pairs);
 
- private:
-  struct Side {
-    Side(const LrbRep& rep, const Pose& pose);
-    double distance(const Eigen::Vector3d& world);
-    double unit;
-    Pose pose;
-    std::vector<RealSimplex> simplices;
-    NearestFace nearest;
-  };
-  Side a_, b_;
-};
+/// Returns the maximum over the points of the sum of the distances from both surfaces, or 0 without points.
+double deviation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+                 const std::vector<Eigen::Vector3d>& points);
 
 Region of_points(const std::vector<Eigen::Vector3d>& points);
 

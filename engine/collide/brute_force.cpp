@@ -1,8 +1,7 @@
 #include <algorithm>
 
-#include <Eigen/Geometry>
-
 #include "engine/exact/locate.hpp"
+#include "engine/mesh/box_tree.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/core/float_mode.hpp>
 
@@ -13,6 +12,13 @@ struct WorldBody {
   WorldBody(const LrbRep& r, const Pose& pose) : rep(r) {
     // World coordinates by the same function as in the query: the exact tests get the same doubles.
     for (const auto& v : r.vertices()) x.push_back(pose.apply(v));
+    for (SimplexId s = 0; s < r.real_simplex_count(); ++s) {
+      VertexId v[3];
+      r.simplex(s, v);
+      Box& box = boxes.emplace_back();
+      for (int k = 0; k < r.simplex_size(); ++k) box.extend(x[v[k]]);
+      whole.extend(box);
+    }
   }
   void corners(SimplexId s, const double* out[3]) const {
     VertexId v[3];
@@ -31,14 +37,10 @@ struct WorldBody {
     }
     return crossings % 2 != 0;
   }
-  Eigen::AlignedBox3d box() const {
-    Eigen::AlignedBox3d out;
-    for (FaceId f = 0; f < rep.real_face_count(); ++f)
-      for (const VertexId v : rep.face(f)) out.extend(x[v]);
-    return out;
-  }
   const LrbRep& rep;
   std::vector<Eigen::Vector3d> x;
+  std::vector<Box> boxes;  ///< (real simplices)
+  Box whole;
 };
 
 /// Returns how many of the components of `inner` lie in `outer`.
@@ -51,7 +53,7 @@ std::size_t held(const WorldBody& inner, const WorldBody& outer) {
 Relation relation_without_contact(const WorldBody& a, const WorldBody& b) {
   // A surface that is not closed has no inside: only disjoint boxes decide.
   if (!a.rep.closed() || !b.rep.closed())
-    return a.box().intersects(b.box()) ? Relation::undefined : Relation::separate;
+    return a.whole.intersects(b.whole) ? Relation::undefined : Relation::separate;
   const std::size_t a_in_b = held(a, b), b_in_a = held(b, a);
   // A body that is entirely enclosed takes precedence: A is inside B unless all of B, but not all of A, is
   // enclosed.
@@ -65,18 +67,25 @@ Relation relation_without_contact(const WorldBody& a, const WorldBody& b) {
 
 BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
   const FloatMode float_mode;
+  check_query(a, pose_a, b, pose_b);
   const WorldBody wa(a, pose_a), wb(b, pose_b);
   BruteForceResult result;
   bool crosses = false;
   const double *ca[3], *cb[3];
-  // Every pair is tested exactly, without culling: quadratic time.
+  // Exact tests of all pairs but those whose boxes are disjoint, which cannot intersect: the boxes are those
+  // of the very doubles that the tests get.
+  const BoxTree tree(wb.boxes);
+  std::vector<std::uint32_t> near;
   for (SimplexId s = 0; s < a.real_simplex_count(); ++s) {
     wa.corners(s, ca);
-    for (SimplexId t = 0; t < b.real_simplex_count(); ++t) {
-      wb.corners(t, cb);
+    near.clear();
+    tree.for_each_in(wa.boxes[s], [&](std::uint32_t t) { near.push_back(t); });
+    std::sort(near.begin(), near.end());
+    for (const std::uint32_t t : near) {
+      wb.corners(SimplexId(t), cb);
       const exact::Meet meet = a.dim() == 3 ? exact::meet_triangles(ca, cb) : exact::meet_segments(ca, cb);
       if (meet == exact::Meet::disjoint) continue;
-      result.pairs.push_back({s, t});
+      result.pairs.push_back({s, SimplexId(t)});
       result.meets.push_back(meet);
       if (result.pairs.size() > kMaxPairs) reject_pairs(kMaxPairs);
       crosses |= meet == exact::Meet::cross;

@@ -10,6 +10,7 @@
 #include "tests/support/affine_maps.hpp"
 #include "tests/support/bodies.hpp"
 #include "tests/support/hard_bodies.hpp"
+#include "tests/support/simplex_distance.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/collide.hpp>
@@ -225,6 +226,25 @@ void check_every(int part) {
 
 TEST_CASE("every variant of the query agrees with brute force, for all kinds of bodies and poses") {
   check_every(3);
+}
+
+TEST_CASE("brute force omits no pair: it finds those of all tests of two simplices") {
+  RandomEngine random(20261130);
+  std::size_t found = 0;
+  for (const Bodies& x : all_bodies()) {
+    if (x.a.real_simplex_count() * x.b.real_simplex_count() > 200'000) continue;
+    CAPTURE(x.name);
+    Pose pose_a, pose_b;
+    place(random, x, Class::both_move, 0, pose_a, pose_b);
+    const auto of_a = test::real_simplices(x.a, pose_a), of_b = test::real_simplices(x.b, pose_b);
+    std::vector<SimplexPair> pairs;
+    for (SimplexId s = 0; s < of_a.size(); ++s)
+      for (SimplexId t = 0; t < of_b.size(); ++t)
+        if (test::meet_of(of_a[s], of_b[t]) != exact::Meet::disjoint) pairs.push_back({s, t});
+    CHECK(brute_force(x.a, pose_a, x.b, pose_b).pairs == pairs);
+    found += pairs.size();
+  }
+  CHECK(found > 500);
 }
 
 TEST_CASE("every variant of the query agrees with brute force at all poses" * doctest::test_suite("long")) {

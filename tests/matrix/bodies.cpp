@@ -10,7 +10,6 @@
 #include "tests/support/hard_bodies.hpp"
 #include "tests/support/noisy_quads.hpp"
 #include "tests/support/simplex_distance.hpp"
-#include "tests/torture/sweep_oracle.hpp"
 #include <lrbscope/motion.hpp>
 
 namespace lrb::matrix {
@@ -141,17 +140,11 @@ Pose times(Pose pose, int exponent) {
   return pose;
 }
 
-/// The answer, from the surfaces alone; bodies whose boxes are apart are separate, solid or not.
+/// The answer, from the surfaces alone.
 Step step_at(const LrbRep& a, const LrbRep& b, const Pose& pose) {
-  Step step{pose, torture::swept_brute_force(a, Pose{}, b, pose), 0};
-  if (!step.truth.pairs.empty()) return step;
-  Eigen::AlignedBox3d box[2];
-  const std::vector<test::Points> surface[2] = {test::real_simplices(a, {}), test::real_simplices(b, pose)};
-  for (const int side : {0, 1})
-    for (const test::Points& simplex : surface[side])
-      for (const Vector3d& x : simplex) box[side].extend(x);
-  if (!box[0].intersects(box[1])) step.truth.relation = Relation::separate;
-  step.distance = test::surface_distance(surface[0], surface[1]);
+  Step step{pose, brute_force(a, Pose{}, b, pose), 0};
+  if (step.truth.pairs.empty())
+    step.distance = test::surface_distance(test::real_simplices(a, {}), test::real_simplices(b, pose));
   return step;
 }
 
@@ -190,7 +183,7 @@ Cell make_cell(const std::vector<Kind>& kinds, std::size_t a, std::size_t b) {
   constexpr int kTimes = 24;
   for (int i = 0; i <= kTimes && !cell.meets; ++i) {
     const double t = static_cast<double>(i) / kTimes;
-    if (torture::swept_brute_force(rep_a, Pose{}, rep_b, motion.at(t)).pairs.empty())
+    if (brute_force(rep_a, Pose{}, rep_b, motion.at(t)).pairs.empty())
       cell.free = t;
     else
       cell.meets = t;

@@ -77,20 +77,6 @@ TEST_CASE("quantiles are observed values, means of ratios are geometric") {
   CHECK(speed::geometric_mean({2, 8}) == doctest::Approx(4));
 }
 
-TEST_CASE("the fast oracle of data sets agrees with brute force") {
-  shapes::RandomEngine random(3);
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 1)), b = build_lrb(shapes::torus(12, 8));
-  std::size_t met = 0;
-  for (int i = 0; i < 20; ++i) {
-    const Pose p = shapes::random_pose(random, a, b, 0.5);
-    const auto expected = brute_force(a, Pose{}, b, p).pairs;
-    CHECK(speed::exact_pairs(a, Pose{}, b, p) == expected);
-    met += expected.size();
-  }
-  CHECK(met > 100);
-  CHECK(speed::exact_pairs(a, Pose{}, a, Pose{}) == brute_force(a, Pose{}, a, Pose{}).pairs);
-}
-
 TEST_CASE("a data set contains poses of its classes, and is read back unchanged") {
   const Folder folder;
   const speed::DataSet set = speed::make_data_set(small_pair(), few(), folder.path.string());

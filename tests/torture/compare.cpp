@@ -6,7 +6,6 @@
 #include "tests/support/rational_oracle.hpp"
 #include "tests/torture/cgal_oracle.hpp"
 #include "tests/torture/parity_oracle.hpp"
-#include "tests/torture/sweep_oracle.hpp"
 #include "tests/torture/torture.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
@@ -44,7 +43,7 @@ class Comparison {
       check_refusal(e.what());
       return t_;
     }
-    ask_brute_force();
+    brute_ = brute_force(*c_.a, c_.pose_a, *c_.b, c_.pose_b);
     t_.in_contact += !brute_.pairs.empty();
     t_.inside += holds_each_other(brute_.relation);
     compare_pairs();
@@ -87,18 +86,6 @@ class Comparison {
 
   std::uint64_t simplex_pairs() const {
     return std::uint64_t{c_.a->real_simplex_count()} * std::uint64_t{c_.b->real_simplex_count()};
-  }
-
-  void ask_brute_force() {
-    const bool small = simplex_pairs() <= effort_.brute_force_pairs;
-    if (small) brute_ = brute_force(*c_.a, c_.pose_a, *c_.b, c_.pose_b);
-    const bool both = small && random_() % 8 == 0;
-    if (small && !both) return;
-    const BruteForceResult swept = swept_brute_force(*c_.a, c_.pose_a, *c_.b, c_.pose_b);
-    if (both &&
-        (swept.pairs != brute_.pairs || swept.meets != brute_.meets || swept.relation != brute_.relation))
-      complain(t_.wrong_lists, "the two brute forces disagree");
-    brute_ = swept;
   }
 
   void compare_pairs() {

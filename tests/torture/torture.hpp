@@ -49,8 +49,6 @@ struct Effort {
   /// regions_most_simplices.
   std::uint64_t regions_every = 4;
   std::uint32_t regions_most_simplices = 700;
-  /// Above this number of simplex pairs brute force sorts boxes first (sweep_oracle.hpp).
-  std::uint64_t brute_force_pairs = 20000;
   /// Overlap of interiors is tested in every case with at most small_pairs pairs of simplices, and in every
   /// interiors_every-th one above, unless it is known.
   std::uint64_t small_pairs = 200;

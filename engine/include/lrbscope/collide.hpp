@@ -239,8 +239,9 @@ struct BruteForceResult {
   Relation relation = Relation::separate;
 };
 
-/// Tests every pair of real simplices exactly, as the reference for collide(). It shares only the predicates
-/// and the definition of world coordinates with it, no tree or boxes. Throws InputError beyond kMaxPairs.
+/// Tests all pairs of real simplices with intersecting world AABBs, as the reference for collide(), with
+/// which it shares only predicates and world coordinates. Throws InputError as collide(), or beyond
+/// kMaxPairs.
 BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 }  // namespace lrb
