@@ -25,27 +25,6 @@ using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
 using View = render::FrameSpec::View;
 
-/// Returns a caption without its redundant parts.
-std::string shortened(std::string text) {
-  const std::string none = ": 0 intersecting pairs of faces";
-  if (text.ends_with(none)) text.resize(text.size() - none.size());
-  if (const std::size_t at = text.find(">="); at != std::string::npos) text.replace(at, 2, "\u2265");
-  return text;
-}
-
-/// Returns a caption for the narrow space below a panel: "step 12: 54 pairs", "step 12: touching, 2 pairs".
-std::string title_of(std::string caption) {
-  constexpr std::string_view kLong = " intersecting", kFaces = " of faces", kUsual = "crossing, ";
-  const std::size_t number_end = caption.find(kLong);
-  if (number_end == std::string::npos) return caption;
-  if (const std::size_t at = caption.find(kFaces, number_end); at != std::string::npos)
-    caption.erase(at, kFaces.size());
-  caption.erase(number_end, kLong.size());
-  caption.replace(caption.rfind(": ", number_end), 2, ", ");
-  if (const std::size_t at = caption.find(kUsual); at != std::string::npos) caption.erase(at, kUsual.size());
-  return caption;
-}
-
 /// Returns the frames' spec with widths in points: a thin line, of width 1, gets the figure's line width.
 render::FrameSpec in_points(render::FrameSpec frames, const FigureSpec& figure) {
   // The figure sets the line width, whatever the style.
@@ -137,18 +116,14 @@ class FigureJob {
 
   bool shows_values() const { return render::is_value(frames_.colour_by); }
 
-  /// Returns true if a panel's content extends beyond the view, as in a close-up.
-  static bool runs_over(const Block& block) {
-    constexpr double kRim = 1e-3 * kViewSide;
-    return std::any_of(block.seen.begin(), block.seen.end(), [](const AlignedBox2d& seen) {
-      return seen.min().minCoeff() < kRim || seen.max().maxCoeff() > kViewSide - kRim;
-    });
-  }
-
   render::Camera camera(const View& view, std::size_t moment) const {
     const double progress =
         moments() > 1 ? static_cast<double>(moment) / (static_cast<double>(moments()) - 1) : 0;
     return run::camera_for(view, framing_, kViewSide, kViewSide, progress);
+  }
+
+  render::Projection projection(const render::DrawList& list, const View& view, std::size_t moment) const {
+    return {camera(view, moment), kViewSide, kViewSide, render::bounds(list)};
   }
 
   render::Scene scene(const View& view, std::size_t moment) {
@@ -214,54 +189,6 @@ class FigureJob {
     return pose;
   }
 
-  /// Returns the boxes of the largest contacts in a view of the current state, from left to right. Those that
-  /// overlap are one. Of the others it returns none, because the insets would be too small.
-  std::vector<AlignedBox2d> contact_boxes(const Inset& inset, const render::Projection& projection) const {
-    constexpr std::size_t kMax = 3;
-    std::vector<AlignedBox2d> out;
-    for (const ContactRegion& region : state_.contacts()) {
-      AlignedBox2d box;
-      for (const Eigen::Vector3d& x : render::contact_points({&region, 1}))
-        if (const auto at = projection.to_pixel(x)) box.extend(*at);
-      const auto joins = [&](const AlignedBox2d& other) {
-        const bool joined = other.intersects(box);
-        if (joined) box.extend(other);
-        return joined;
-      };
-      while (std::erase_if(out, joins) > 0) {  // a larger box may overlap others
-      }
-      if (!box.isEmpty()) out.push_back(box);
-    }
-    if (out.empty()) throw InputError(inset.option + ": expected a panel with a contact, found none in it");
-    const auto sort_by = [&out](const auto& value) {
-      std::sort(out.begin(), out.end(), [&](const auto& p, const auto& q) { return value(p) < value(q); });
-    };
-    sort_by([](const AlignedBox2d& box) { return -box.diagonal().norm(); });
-    if (out.size() > kMax) out.resize(kMax);
-    sort_by([](const AlignedBox2d& box) { return box.center().x(); });
-    return out;
-  }
-
-  /// Returns the boxes of a target's insets in a view of the current state.
-  std::vector<AlignedBox2d> boxes_of(const Inset& inset, const render::DrawList& list,
-                                     const render::Camera& camera) const {
-    const Target& target = inset.target;
-    const render::Projection projection(camera, kViewSide, kViewSide, render::bounds(list));
-    if (target.kind == Target::Kind::contact) return contact_boxes(inset, projection);
-    std::vector<Eigen::Vector3d> points;
-    if (target.kind == Target::Kind::face) {
-      points = run::corners_of(rep_of(target), FaceId(target.number), pose_of(target));
-    } else {
-      for (const Eigen::Vector3d& x : run::region_corners(rep_of(target), RegionId(target.number)))
-        points.push_back(pose_of(target).apply(x));
-    }
-    AlignedBox2d out;
-    for (const Eigen::Vector3d& x : points)
-      if (const auto at = projection.to_pixel(x)) out.extend(*at);
-    if (out.isEmpty()) throw InputError(inset.option + ": is behind the camera of its panel");
-    return {out};
-  }
-
   /// A panel or an inset.
   struct Piece {
     const View* view;
@@ -319,37 +246,24 @@ class FigureJob {
   /// callouts. Returns the callouts with their anchors in the view. A callout whose anchor is in an inset of
   /// the panel is in the inset, not in the panel.
   std::vector<std::pair<const Callout*, Vector2d>> add_marks(render::DrawList& list, const Piece& piece) {
-    const render::Projection projection(camera(*piece.view, piece.moment), kViewSide, kViewSide,
-                                        render::bounds(list));
-    const auto add_outlines = [&](const Target& target) {
-      const double thin = figure_.line_width;
-      for (std::vector<Eigen::Vector3d>& chain : outlines(target, rep_of(target), pose_of(target))) {
-        render::DrawLine line;
-        line.closed = chain.size() > 2 && chain.front() == chain.back();
-        if (line.closed) chain.pop_back();
-        line.points = std::move(chain);
-        line.colour = style().ink;
-        line.width = static_cast<float>(2 * thin);
-        line.halo = style().paper;
-        line.halo_width = static_cast<float>(thin);
-        line.layer = render::Layer::on_top;
-        list.lines.push_back(std::move(line));
-      }
+    const render::Projection view = projection(list, *piece.view, piece.moment);
+    const auto outline = [&](const Target& target) {
+      add_outlines(list, target, rep_of(target), pose_of(target), figure_.line_width, style());
     };
     if (piece.inset != nullptr && piece.inset->target.kind != Target::Kind::contact)
-      add_outlines(piece.inset->target);
+      outline(piece.inset->target);
     std::vector<std::pair<const Callout*, Vector2d>> out;
     for (std::size_t i = 0; i < figure_.callouts.size(); ++i) {
       const Callout& callout = figure_.callouts[i];
       if (!callout.panel.empty() && callout.panel != letter_of(piece.panel)) continue;
       const Eigen::Vector3d point = anchor(callout.target, rep_of(callout.target), pose_of(callout.target));
-      const auto at = projection.to_pixel(point);
+      const auto at = view.to_pixel(point);
       if (!at || !piece.shown.contains(*at)) continue;
       const bool in_inset = std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& p) {
         return p.inset != nullptr && p.panel == piece.panel && p.shown.contains(*at);
       });
       if (piece.inset == nullptr && in_inset) continue;
-      add_outlines(callout.target);
+      outline(callout.target);
       render::DrawPoint dot;
       dot.x = point;
       dot.colour = style().ink;
@@ -486,15 +400,7 @@ class FigureJob {
         seen[moment].push_back(in_print(*view, moment, layout_.blocks[b].scale));
       }
     std::vector<trace::EventId> kept;
-    std::size_t last_kept = 0;
-    for (std::size_t i = 0; i < moments(); ++i) {
-      if (i > 0 && alike(seen[last_kept], seen[i])) {
-        if (i + 1 < moments() || kept.size() == 1) continue;
-        kept.pop_back();
-      }
-      kept.push_back(chosen_.events[i]);
-      last_kept = i;
-    }
+    for (const std::size_t i : distinct_states(seen)) kept.push_back(chosen_.events[i]);
     const std::size_t removed = moments() - kept.size();
     if (removed == 0) return false;
     chosen_.left_out = render::counted(removed, "state is", "states are") +
@@ -502,11 +408,6 @@ class FigureJob {
                        "--faces, --steps and --events show any state";
     chosen_.events = std::move(kept);
     return true;
-  }
-
-  static bool alike(const std::vector<render::Image>& a, const std::vector<render::Image>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const render::Image& x, const render::Image& y) { return alike_in_grey(x, y); });
   }
 
   /// Draws the whole view of a state as large as in the figure, with the resolution of the eye.
@@ -538,7 +439,9 @@ class FigureJob {
         inset_boxes_.emplace_back();
         for (const Inset& inset : figure_.insets)
           if (inset.panel == letter_of(captions_.size()))
-            for (const AlignedBox2d& box : boxes_of(inset, shown.list, camera(view, i)))
+            for (const AlignedBox2d& box :
+                 target_boxes(inset, projection(shown.list, view, i), rep_of(inset.target),
+                              pose_of(inset.target), state_.contacts()))
               inset_boxes_.back().emplace_back(&inset, box);
         blocks_.back().insets.push_back(inset_boxes_.back().size());
         const std::string text = shortened(state_.short_caption());
@@ -549,18 +452,9 @@ class FigureJob {
       }
       if (panels_.back().empty()) blocks_.pop_back(), panels_.pop_back();
     }
-    name_bodies_only();
+    name_bodies_only(key_);
     if (blocks_.empty()) throw InputError("figure of contacts: expected a panel with a contact, found none");
     letter();
-  }
-
-  /// Without pseudo faces in the figure, the legend need not say that faces are real.
-  void name_bodies_only() {
-    constexpr std::string_view kReal = ", real faces", kPseudo = ", pseudo faces";
-    if (std::any_of(key_.begin(), key_.end(), [&](const auto& k) { return k.text.ends_with(kPseudo); }))
-      return;
-    for (render::LegendItem& k : key_)
-      if (k.text.ends_with(kReal)) k.text.resize(k.text.size() - kReal.size());
   }
 
   /// Returns false for a close-up of a contact without contacts, beside other views.

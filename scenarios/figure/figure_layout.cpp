@@ -32,6 +32,21 @@ double parse_length(const std::string& text, const std::string& option, double l
   return length;
 }
 
+bool runs_over(const Block& block) {
+  constexpr double kRim = 1e-3 * kViewSide;
+  return std::any_of(block.seen.begin(), block.seen.end(), [](const Eigen::AlignedBox2d& seen) {
+    return seen.min().minCoeff() < kRim || seen.max().maxCoeff() > kViewSide - kRim;
+  });
+}
+
+void name_bodies_only(std::vector<render::LegendItem>& legend) {
+  constexpr std::string_view kReal = ", real faces", kPseudo = ", pseudo faces";
+  if (std::any_of(legend.begin(), legend.end(), [&](const auto& k) { return k.text.ends_with(kPseudo); }))
+    return;
+  for (render::LegendItem& k : legend)
+    if (k.text.ends_with(kReal)) k.text.resize(k.text.size() - kReal.size());
+}
+
 std::string length_text(double points) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g mm", points / kPointsPerMm);

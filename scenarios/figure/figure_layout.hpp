@@ -28,6 +28,13 @@ struct Block {
   std::vector<Space> spaces;              ///< around each panel; empty: none
 };
 
+/// The side of the square, in units of the view, to which the camera of panels is fitted once, for
+/// everything. Panels show parts of it.
+inline constexpr double kViewSide = 1000;
+
+/// Returns true if a panel's content extends beyond the view, as in a close-up.
+bool runs_over(const Block& block);
+
 struct LayoutOptions {
   double width = 0;
   double font_size = 8;
@@ -79,6 +86,9 @@ double parse_length(const std::string& text, const std::string& option, double l
 
 /// Returns a length in points as text: "85 mm".
 std::string length_text(double points);
+
+/// Without pseudo faces in the figure, the legend need not say that faces are real.
+void name_bodies_only(std::vector<render::LegendItem>& legend);
 
 /// Paints legend and colour bar at their positions in the layout; both must be those that it was made for.
 void paint_key(render::Canvas& canvas, const FigureLayout& layout,

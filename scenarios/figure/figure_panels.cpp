@@ -158,6 +158,10 @@ Chosen choose(const run::RecordedRun& recorded, const Choice& choice) {
   return chosen;
 }
 
+namespace {
+
+/// Returns true if two panels of the same size cannot be distinguished when printed in grey: almost no pixel
+/// of their content has a visibly different lightness.
 bool alike_in_grey(const render::Image& a, const render::Image& b) {
   constexpr double kVisible = 24;  // difference of luma that the eye sees between areas of a few pixels
   // Of the content. Figures at 85 mm: 0.014 between the fourth and the fifth panel of figure2, where a few
@@ -172,6 +176,42 @@ bool alike_in_grey(const render::Image& a, const render::Image& b) {
     if (std::abs(x - y) > kVisible) ++different;
   }
   return static_cast<double>(different) < kShare * static_cast<double>(content);
+}
+
+}  // namespace
+
+std::vector<std::size_t> distinct_states(const std::vector<std::vector<render::Image>>& seen) {
+  std::vector<std::size_t> kept;
+  std::size_t last_kept = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto &a = seen[last_kept], &b = seen[i];
+    if (i > 0 && std::equal(a.begin(), a.end(), b.begin(), b.end(), alike_in_grey)) {
+      if (i + 1 < seen.size() || kept.size() == 1) continue;
+      kept.pop_back();
+    }
+    kept.push_back(i);
+    last_kept = i;
+  }
+  return kept;
+}
+
+std::string shortened(std::string text) {
+  const std::string none = ": 0 intersecting pairs of faces";
+  if (text.ends_with(none)) text.resize(text.size() - none.size());
+  if (const std::size_t at = text.find(">="); at != std::string::npos) text.replace(at, 2, "\u2265");
+  return text;
+}
+
+std::string title_of(std::string caption) {
+  constexpr std::string_view kLong = " intersecting", kFaces = " of faces", kUsual = "crossing, ";
+  const std::size_t number_end = caption.find(kLong);
+  if (number_end == std::string::npos) return caption;
+  if (const std::size_t at = caption.find(kFaces, number_end); at != std::string::npos)
+    caption.erase(at, kFaces.size());
+  caption.erase(number_end, kLong.size());
+  caption.replace(caption.rfind(": ", number_end), 2, ", ");
+  if (const std::size_t at = caption.find(kUsual); at != std::string::npos) caption.erase(at, kUsual.size());
+  return caption;
 }
 
 Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera& camera) {

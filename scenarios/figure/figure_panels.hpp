@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "scenarios/figure/figure_layout.hpp"
 #include "scenarios/frames/frames.hpp"
 #include <lrbscope/render/camera.hpp>
 #include <lrbscope/render/draw_list.hpp>
@@ -38,18 +39,17 @@ Chosen choose(const run::RecordedRun& recorded, const Choice& choice);
 /// The resolution of the eye at reading distance, in pixels per inch.
 inline constexpr double kEyeDpi = 150;
 
-/// Returns true if two panels of the same size cannot be distinguished when printed in grey: almost no pixel
-/// of their content has a visibly different lightness.
-bool alike_in_grey(const render::Image& a, const render::Image& b);
+/// Returns the states whose panels can be distinguished in print from those of the state before; the first
+/// and the last state stay. `seen`: by state, its panels in order of the views.
+std::vector<std::size_t> distinct_states(const std::vector<std::vector<render::Image>>& seen);
 
-// The camera of a figure's panels: fitted to everything once, in a square with its own units; panels show
-// parts of this square.
+/// Returns a caption without its redundant parts.
+std::string shortened(std::string text);
+/// Returns a caption for the narrow space below a panel: "step 12: 54 pairs", "step 12: touching, 2 pairs".
+std::string title_of(std::string caption);
 
-/// The side of that square, in units of the view.
-inline constexpr double kViewSide = 1000;
-
-/// Returns the bounding box of a list's content, inside the square. Returns the whole square if something
-/// reaches behind the camera, or nothing is visible.
+/// Returns the bounding box of a list's content, inside the square of kViewSide. Returns the whole square if
+/// something reaches behind the camera, or nothing is visible.
 Eigen::AlignedBox2d seen_box(const render::DrawList& list, const render::Camera& camera);
 
 /// Returns the camera that shows a part of the square.

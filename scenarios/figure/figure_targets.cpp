@@ -9,6 +9,7 @@
 
 #include "render/pictures/panel.hpp"
 #include <lrbscope/error.hpp>
+#include <lrbscope/render/scene.hpp>
 
 namespace lrb::figure {
 namespace {
@@ -188,6 +189,71 @@ std::vector<std::vector<Vector3d>> outlines(const Target& target, const LrbRep& 
     out.push_back(std::move(chain));
   }
   return out;
+}
+
+void add_outlines(render::DrawList& list, const Target& target, const LrbRep& rep, const Pose& pose,
+                  double thin, const render::Style& style) {
+  for (std::vector<Vector3d>& chain : outlines(target, rep, pose)) {
+    render::DrawLine line;
+    line.closed = chain.size() > 2 && chain.front() == chain.back();
+    if (line.closed) chain.pop_back();
+    line.points = std::move(chain);
+    line.colour = style.ink;
+    line.width = static_cast<float>(2 * thin);
+    line.halo = style.paper;
+    line.halo_width = static_cast<float>(thin);
+    line.layer = render::Layer::on_top;
+    list.lines.push_back(std::move(line));
+  }
+}
+
+namespace {
+
+std::vector<AlignedBox2d> contact_boxes(const Inset& inset, const render::Projection& projection,
+                                        std::span<const ContactRegion> contacts) {
+  constexpr std::size_t kMax = 3;
+  std::vector<AlignedBox2d> out;
+  for (const ContactRegion& region : contacts) {
+    AlignedBox2d box;
+    for (const Vector3d& x : render::contact_points({&region, 1}))
+      if (const auto at = projection.to_pixel(x)) box.extend(*at);
+    const auto joins = [&](const AlignedBox2d& other) {
+      const bool joined = other.intersects(box);
+      if (joined) box.extend(other);
+      return joined;
+    };
+    while (std::erase_if(out, joins) > 0) {  // a larger box may overlap others
+    }
+    if (!box.isEmpty()) out.push_back(box);
+  }
+  if (out.empty()) throw InputError(inset.option + ": expected a panel with a contact, found none in it");
+  const auto sort_by = [&out](const auto& value) {
+    std::sort(out.begin(), out.end(), [&](const auto& p, const auto& q) { return value(p) < value(q); });
+  };
+  sort_by([](const AlignedBox2d& box) { return -box.diagonal().norm(); });
+  if (out.size() > kMax) out.resize(kMax);
+  sort_by([](const AlignedBox2d& box) { return box.center().x(); });
+  return out;
+}
+
+}  // namespace
+
+std::vector<AlignedBox2d> target_boxes(const Inset& inset, const render::Projection& projection,
+                                       const LrbRep& rep, const Pose& pose,
+                                       std::span<const ContactRegion> contacts) {
+  const Target& target = inset.target;
+  if (target.kind == Target::Kind::contact) return contact_boxes(inset, projection, contacts);
+  std::vector<Vector3d> points;
+  if (target.kind == Target::Kind::face)
+    points = run::corners_of(rep, FaceId(target.number), pose);
+  else
+    for (const Vector3d& x : run::region_corners(rep, RegionId(target.number)))
+      points.push_back(pose.apply(x));
+  AlignedBox2d out;
+  for (const Vector3d& x : points)
+    if (const auto at = projection.to_pixel(x)) out.extend(*at);
+  if (out.isEmpty()) throw InputError(inset.option + ": is behind the camera of its panel");
+  return {out};
 }
 
 Vector3d anchor(const Target& target, const LrbRep& rep, const Pose& pose) {

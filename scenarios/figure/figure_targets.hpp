@@ -9,9 +9,13 @@
 
 #include <Eigen/Geometry>
 
+#include <lrbscope/contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
+#include <lrbscope/render/camera.hpp>
+#include <lrbscope/render/draw_list.hpp>
 #include <lrbscope/render/image.hpp>
+#include <lrbscope/render/style.hpp>
 
 namespace lrb::figure {
 
@@ -51,6 +55,17 @@ std::string name_of(const Target& target, std::size_t bodies);
 /// Returns the outline of a face, or the border of a region's lids (2D: the whole region), as chains of
 /// points that close if the last is the first.
 std::vector<std::vector<Eigen::Vector3d>> outlines(const Target& target, const LrbRep& rep, const Pose& pose);
+
+/// Adds these outlines to a list, on top of all else, with a halo. `thin`: the width of a thin line.
+void add_outlines(render::DrawList& list, const Target& target, const LrbRep& rep, const Pose& pose,
+                  double thin, const render::Style& style);
+
+/// Returns the boxes of an inset's target in a view. Contacts: those of the largest, from left to right; ones
+/// that overlap are one. Of the others it returns none, because the insets would be too small. Throws
+/// InputError if nothing is in view.
+std::vector<Eigen::AlignedBox2d> target_boxes(const Inset& inset, const render::Projection& projection,
+                                              const LrbRep& rep, const Pose& pose,
+                                              std::span<const ContactRegion> contacts);
 
 /// Returns the point of a face or region that a callout points to: the centroid of the face, or of the lid
 /// closest to the lids' centre.
