@@ -20,8 +20,6 @@
 namespace lrb {
 namespace {
 
-using penetration::UnitBodies;
-
 /// Adapters that forward bounds to a probe, which may be null if no bounds are reported.
 struct GapProbeAdapter final : BoundsProbe {
   explicit GapProbeAdapter(ClashProbe* p) : probe(p) {}
@@ -90,8 +88,7 @@ void decide_kind(QueryContext& query, const CollideResult& found, ClashResult& r
   const bool is_proven =
       found.relation == Relation::crossing && crossing_interiors_overlap(query, found) == Answer::yes;
   bool solid_inside = true;
-  const auto pieces =
-      penetration::surface_pieces(query, found, result.reason, is_proven ? nullptr : &solid_inside);
+  const auto pieces = surface_pieces(query, found, result.reason, is_proven ? nullptr : &solid_inside);
   if (!pieces) return;
   result.pieces = *pieces;
   const bool enters = (*pieces)[0].inside + (*pieces)[1].inside > 0;
@@ -130,16 +127,16 @@ void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
                      const ClashRequest& request, QueryContext& query, const CollideResult& found,
                      ClashProbe* probe, ClashResult& result) {
   // In one common frame, in which no coordinate exceeds 1/2.
-  const UnitBodies bodies = penetration::unit_bodies(query);
+  const UnitBodies bodies = unit_bodies(query);
   if (request.depth || request.along) {
     DepthProbeAdapter on_depth(probe);
     BoundsProbeAdapter adapter(on_depth);
-    penetration::measure_depth(a, pose_a, b, pose_b, request, query, found, bodies,
-                               probe != nullptr ? &adapter : nullptr, result);
+    measure_depth(a, pose_a, b, pose_b, request, query, found, bodies, probe != nullptr ? &adapter : nullptr,
+                  result);
   }
   // The faces of a body that intersects itself do not bound a single solid.
   if (request.volume && !a.overlaps_itself() && !b.overlaps_itself())
-    result.volume = world_volume(penetration::shared_volume(bodies), bodies.frame.exponent);
+    result.volume = world_volume(shared_volume(bodies), bodies.frame.exponent);
 }
 
 void write_no_overlap(const ClashRequest& request, ClashResult& result) {

@@ -25,7 +25,7 @@ ClashResult clash(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Po
 
 }  // namespace lrb
 
-namespace lrb::penetration {
+namespace lrb {
 
 // The triangles of two bodies in the world, relative to the centre of their common box and in a unit in
 // which no coordinate exceeds 1/2.
@@ -169,4 +169,4 @@ void measure_depth(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
 /// orientations as sign. No configuration is degenerate; only rounding has to be bounded.
 ProvedInterval shared_volume(const UnitBodies& bodies);
 
-}  // namespace lrb::penetration
+}  // namespace lrb

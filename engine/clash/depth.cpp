@@ -33,7 +33,7 @@
 #include <lrbscope/clash.hpp>
 #include <lrbscope/contact.hpp>
 
-namespace lrb::penetration {
+namespace lrb {
 namespace {
 
 /// Bounds depths. Lower bounds come from overlapping sets inside the bodies, upper bounds from translations
@@ -520,4 +520,4 @@ void measure_depth(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const P
   result.finished = finder.finished();
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

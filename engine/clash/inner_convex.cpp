@@ -18,7 +18,7 @@
 #include "engine/mesh/nearest_on_simplex.hpp"
 #include <lrbscope/core/polygon.hpp>
 
-namespace lrb::penetration {
+namespace lrb {
 namespace {
 
 Vector3d nearest_point(const Vector3d& x, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
@@ -391,4 +391,4 @@ std::optional<ConvexPoints> convex_about(const UnitBody& body, const Vector3d& i
   return Inflation(body, inside).run(whole);
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

@@ -19,7 +19,7 @@
 #include "engine/distance/pair_bounds.hpp"
 #include "engine/exact/predicates.hpp"
 
-namespace lrb::penetration {
+namespace lrb {
 namespace {
 
 const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
@@ -238,4 +238,4 @@ bool PointHull::holds_inside(const Vector3d& point) const {
   return std::all_of(facets_.begin(), facets_.end(), [&](const Facet& f) { return side(f, point) < 0; });
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

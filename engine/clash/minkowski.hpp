@@ -10,7 +10,7 @@
 
 #include "engine/clash/clash_parts.hpp"
 
-namespace lrb::penetration {
+namespace lrb {
 
 class PointHull {
  public:
@@ -93,4 +93,4 @@ class MinkowskiDifference {
   double upper_ = std::numeric_limits<double>::infinity();
 };
 
-}  // namespace lrb::penetration
+}  // namespace lrb

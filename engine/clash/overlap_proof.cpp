@@ -26,7 +26,7 @@
 #include "engine/clash/clash_parts.hpp"
 #include "engine/clash/clash_tolerances.hpp"
 
-namespace lrb::penetration {
+namespace lrb {
 namespace {
 
 /// At least sqrt(3).
@@ -208,4 +208,4 @@ unsigned OverlapProof::grow(unsigned max_points) {
   return points_ - before;
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

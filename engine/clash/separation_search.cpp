@@ -8,7 +8,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/core/tolerances.hpp"
 
-namespace lrb::penetration {
+namespace lrb {
 
 SeparationSearch::SeparationSearch(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                                    const UnitBodies& bodies)
@@ -111,4 +111,4 @@ double SeparationSearch::least_separation(const Vector3d& n, double most, int sa
   return apart;
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

@@ -8,7 +8,7 @@
 #include "engine/clash/clash_parts.hpp"
 #include "engine/distance/distance_context.hpp"
 
-namespace lrb::penetration {
+namespace lrb {
 
 /// A translation after which two bodies are separate.
 struct SeparatingTranslation {
@@ -58,4 +58,4 @@ class SeparationSearch {
   DistanceContext distance_;
 };
 
-}  // namespace lrb::penetration
+}  // namespace lrb

@@ -50,7 +50,7 @@
 #include "engine/clash/clash_parts.hpp"
 #include <lrbscope/core/polygon.hpp>
 
-namespace lrb::penetration {
+namespace lrb {
 namespace {
 
 using Eigen::Vector2d;
@@ -350,4 +350,4 @@ ProvedInterval shared_volume(const UnitBodies& bodies) {
   return volume;
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

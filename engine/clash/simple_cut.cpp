@@ -7,7 +7,7 @@
 #include "engine/core/geometry.hpp"
 #include <lrbscope/core/disjoint_sets.hpp>
 
-namespace lrb::penetration {
+namespace lrb {
 
 /// The point is within 1e-13 of the extent of the edge that is cut, plus two roundings, of the exact point
 /// (pair_contact.cpp). That edge is the face's own: at this end an edge of the face pierces the other
@@ -130,4 +130,4 @@ std::pair<int, double> SimpleCut::place_on_border(std::uint32_t cell) const {
   return {0, 0};  // every cell has a part of the border
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

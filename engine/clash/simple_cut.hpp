@@ -10,7 +10,7 @@
 
 #include <lrbscope/ids.hpp>
 
-namespace lrb::penetration {
+namespace lrb {
 
 /// A face that the other surface cuts along disjoint chains from border to border, the usual case. Steps:
 /// 1. Link the segments to chains, by the identifiers of their ends.
@@ -63,4 +63,4 @@ class SimpleCut {
   std::uint32_t cell_count_ = 1;
 };
 
-}  // namespace lrb::penetration
+}  // namespace lrb

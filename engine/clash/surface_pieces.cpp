@@ -29,7 +29,7 @@
 #include <lrbscope/contact.hpp>
 #include <lrbscope/core/disjoint_sets.hpp>
 
-namespace lrb::penetration {
+namespace lrb {
 namespace {
 
 /// The use of an edge by a triangle.
@@ -447,4 +447,4 @@ std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context
   return out;
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

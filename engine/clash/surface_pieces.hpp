@@ -7,7 +7,7 @@
 #include "engine/collide/query_context.hpp"
 #include <lrbscope/clash.hpp>
 
-namespace lrb::penetration {
+namespace lrb {
 
 /// Counts the pieces, exactly. Returns nullopt, and sets `reason`, if a body is not closed or intersects
 /// itself, if a face that intersects the other body is degenerate, or if exact::CutFace fails. `result`: all
@@ -21,4 +21,4 @@ namespace lrb::penetration {
 std::optional<std::array<SurfacePieces, 2>> surface_pieces(QueryContext& context, const CollideResult& result,
                                                            ClashReason& reason, bool* solid_inside);
 
-}  // namespace lrb::penetration
+}  // namespace lrb

@@ -13,7 +13,7 @@
 #include "engine/core/geometry.hpp"
 #include "engine/mesh/nearest_on_simplex.hpp"
 
-namespace lrb::penetration {
+namespace lrb {
 
 // Distance from a point to a surface by a tree traversed depth-first with the nearer child first. Distances
 // of boxes prune; triangles yield proven lower bounds of their distance.
@@ -153,4 +153,4 @@ UnitBodies unit_bodies(QueryContext& context) {
   return out;
 }
 
-}  // namespace lrb::penetration
+}  // namespace lrb

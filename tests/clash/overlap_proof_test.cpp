@@ -12,7 +12,6 @@
 #include "tests/support/bodies.hpp"
 
 using namespace lrb;
-using namespace lrb::penetration;
 using shapes::RandomEngine;
 
 namespace {
