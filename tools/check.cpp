@@ -32,7 +32,7 @@ struct CheckOptions {
 capture::Capture open_capture(const std::string& path, const QueryRange& range) {
   const bool is_run = std::filesystem::is_directory(path) || path.ends_with(".json");
   if (!is_run) return capture::read_capture(path, range.first, range.last);
-  capture::Capture out = profile::captured(run::open_run(path));
+  capture::Capture out = profile::captured(record::open_run(path));
   std::erase_if(out.queries, [&](const capture::Query& q) { return !range.contains(q.number); });
   return out;
 }

@@ -31,7 +31,7 @@ struct CollideOptions {
 /// Returns a motion that moves B's centre towards A's, from a separate position until some distance past the
 /// first contact.
 spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, const LrbRep& b) {
-  const Eigen::AlignedBox3d box_a = run::box_of(a), box_b = run::box_of(b);
+  const Eigen::AlignedBox3d box_a = pictures::box_of(a), box_b = pictures::box_of(b);
   spec::Motion m;
   m.kind = spec::Motion::Kind::approach;
   m.target = box_a.center() - box_b.center();
@@ -59,7 +59,7 @@ std::string choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBod
     return {};
   }
   for (const bodies::LoadedBody& body : bodies) {
-    const std::optional<int> guess = run::likely_up(body.rep);
+    const std::optional<int> guess = pictures::likely_up(body.rep);
     if (!guess) continue;
     const bool along_view =
         !camera.from.empty() &&
@@ -104,7 +104,7 @@ spec::Scenario make_scenario(const TwoMeshes& o, const std::vector<bodies::Loade
   if (o.clock) s.clock = *o.clock;
   s.gzip = o.gzip;
   s.frames.montage = 6;
-  s.frames.views = run::whole_and_contact();
+  s.frames.views = frames::whole_and_contact();
   if (!o.poses.empty()) {
     s.motion.kind = spec::Motion::Kind::poses;
     s.motion.poses = std::move(poses);
@@ -134,7 +134,7 @@ spec::Scenario make_scenario(const TwoMeshes& o, const std::vector<bodies::Loade
 }
 
 int run_collide(const CollideOptions& o, const Globals& globals) {
-  if (!o.picture.animation.empty()) run::check_animation(o.picture.animation);
+  if (!o.picture.animation.empty()) frames::check_animation(o.picture.animation);
   const auto [scenario, recording] = record_meshes(o.meshes, o.picture, globals);
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   const run::RunOutcome outcome =
@@ -153,10 +153,11 @@ void add_motion_options(App& app, TwoMeshes& meshes) {
       ->excludes(poses);
 }
 
-std::pair<spec::Scenario, run::Recording> record_meshes(const TwoMeshes& meshes, const PictureOptions& given,
-                                                        const Globals& globals) {
+std::pair<spec::Scenario, record::Recording> record_meshes(const TwoMeshes& meshes,
+                                                           const PictureOptions& given,
+                                                           const Globals& globals) {
   // Check everything before an expensive build. Pipes are read once, because they are empty the second time.
-  check_view(given, run::whole_and_contact().size());
+  check_view(given, frames::whole_and_contact().size());
   std::vector<Pose> poses;
   if (!meshes.poses.empty()) poses = io::open_poses(meshes.poses).poses;
   if (!meshes.steps.empty()) poses = some_of(poses, meshes.steps);
@@ -173,7 +174,7 @@ std::pair<spec::Scenario, run::Recording> record_meshes(const TwoMeshes& meshes,
   PictureOptions picture = given;
   const std::string up_note = choose_up(picture.camera, bodies, globals);
   spec::Scenario scenario = make_scenario(meshes, bodies, std::move(poses), picture);
-  run::Recording recording = run::record(scenario, std::move(bodies), progress_report(globals.quiet));
+  record::Recording recording = record::record(scenario, std::move(bodies), progress_report(globals.quiet));
   choose_views(picture.camera, scenario, recording);
   if (!up_note.empty()) recording.notes.insert(recording.notes.begin(), up_note);
   return {std::move(scenario), std::move(recording)};

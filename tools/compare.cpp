@@ -17,7 +17,7 @@ struct CompareOptions {
 };
 
 /// Returns the scenario for the pictures of a run: its name, and the view direction.
-spec::Scenario scenario_of(const run::Recording& recording, const std::string& up) {
+spec::Scenario scenario_of(const record::Recording& recording, const std::string& up) {
   spec::Scenario s;
   s.name = recording.trace.header.scenario;
   s.frames.views.emplace_back();
@@ -44,7 +44,7 @@ std::string page_of(const std::string& run) {
 }
 
 int run_compare(const CompareOptions& o, const Globals& globals) {
-  const std::array<run::Recording, 2> recordings = {run::open_run(o.first), run::open_run(o.second)};
+  const std::array<record::Recording, 2> recordings = {record::open_run(o.first), record::open_run(o.second)};
   const std::array<spec::Scenario, 2> scenarios = {scenario_of(recordings[0], o.up),
                                                    scenario_of(recordings[1], o.up)};
   const compare::Runs runs{{&recordings[0], &recordings[1]},

@@ -113,7 +113,7 @@ int run_doctor(bool json) {
   findings.push_back(optional("gnuplot", report::has_gnuplot(),
                               "needed by charts in print (--chart, chart, paper); install gnuplot-nox"));
   findings.push_back(
-      optional("ffmpeg", run::has_ffmpeg(), "needed by --animate; install ffmpeg or set LRB_FFMPEG"));
+      optional("ffmpeg", frames::has_ffmpeg(), "needed by --animate; install ffmpeg or set LRB_FFMPEG"));
 #ifdef LRB_BUILD_BENCH
   for (render::Finding& f : check_engines()) findings.push_back(std::move(f));
 #endif

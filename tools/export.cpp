@@ -58,16 +58,16 @@ Input kind_of(const ExportOptions& o) {
   return o.asks_for("poses") ? Input::poses : Input::body;
 }
 
-run::Recording open_recording(const ExportOptions& o, Input kind, const Globals& globals) {
+record::Recording open_recording(const ExportOptions& o, Input kind, const Globals& globals) {
   if (kind == Input::scenario) {
     spec::Scenario scenario = spec::open_scenario(o.input);
     scenario.events =
         std::max(scenario.events,
                  o.picture.colour_by ? render::needed_level(*o.picture.colour_by) : EventLevel::faces);
-    return run::record(scenario, progress_report(globals.quiet));
+    return record::record(scenario, progress_report(globals.quiet));
   }
-  const std::string path = run::trace_of(o.input);
-  return run::open_run(trace::load_trace(path), path, o.bodies);
+  const std::string path = record::trace_of(o.input);
+  return record::open_run(trace::load_trace(path), path, o.bodies);
 }
 
 /// Returns the event after which the run is shown: --event, or the last event of --step or of the run.
@@ -87,11 +87,11 @@ trace::EventId event_of(const ExportOptions& o, const trace::Trace& trace) {
                      ": no such step in the trace; expected one from " +
                      std::to_string(trace.steps.front().index) + " to " +
                      std::to_string(trace.steps.back().index));
-  return run::last_event(trace, static_cast<std::size_t>(at - trace.steps.begin()));
+  return record::last_event(trace, static_cast<std::size_t>(at - trace.steps.begin()));
 }
 
 /// Returns the contact regions of two bodies, independent of the run's request.
-std::vector<ContactRegion> contacts_of(const run::Recording& run, const trace::Step& step) {
+std::vector<ContactRegion> contacts_of(const record::Recording& run, const trace::Step& step) {
   CollideRequest request;
   request.contacts = true;
   return collide(run.bodies[0].rep, step.pose_a, run.bodies[1].rep, step.pose_b, request).regions;
@@ -169,7 +169,7 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
   ExportOptions o = given;
   reject(o.chooses_wrapper(), "--faces, --layer and --tolerance",
          "need a body file; choose a run's wrappers with --event");
-  const run::Recording run = open_recording(o, kind, globals);
+  const record::Recording run = open_recording(o, kind, globals);
   note(globals, run.notes);
   const bool two = run.bodies.size() == 2;
   if (o.what.empty()) {
@@ -210,7 +210,7 @@ int export_poses(const ExportOptions& o, Input kind, const Globals& globals) {
   if (kind == Input::poses) {
     poses = io::open_poses(o.input).poses;
   } else {
-    const run::Recording run = open_recording(o, kind, globals);
+    const record::Recording run = open_recording(o, kind, globals);
     const bool of_a = o.of == "a" || run.bodies.size() == 1;
     for (const trace::Step& step : run.trace.steps) poses.push_back(of_a ? step.pose_a : step.pose_b);
   }

@@ -41,7 +41,7 @@ struct FigureOptions {
 /// The input of a figure, with default picture options.
 struct Source {
   std::string name, purpose;
-  run::Recording recording;
+  record::Recording recording;
   render::FrameSpec frames;
   bool own_view = false;    ///< no view was given
   bool up_applied = false;  ///< the views already follow --up
@@ -56,30 +56,30 @@ bool is_mesh_name(const std::string& path) {
 
 /// Returns the run in which the wrapper of a user's body is refined down to the body.
 Source refine_body(const std::string& path, const std::vector<Eigen::Vector3d>& towards,
-                   const run::ProgressReport& progress) {
+                   const record::ProgressReport& progress) {
   spec::Scenario s;
   s.towards = towards;
   s.name = std::filesystem::path(path).stem().string();
   s.show = spec::Show::refinement;
   s.bodies.resize(1);
   s.bodies[0].file = path;
-  return {s.name, {}, run::record(s, progress), {}, true};
+  return {s.name, {}, record::record(s, progress), {}, true};
 }
 
 Source run_of_scenario(const std::string& name, const std::vector<Eigen::Vector3d>& towards,
-                       EventLevel events, const run::ProgressReport& progress) {
+                       EventLevel events, const record::ProgressReport& progress) {
   spec::Scenario s = spec::open_scenario(name);
   if (!towards.empty()) {
     if (s.show != spec::Show::refinement) throw InputError(kTowardsWhat);
     s.towards = towards;
   }
   s.events = std::max(s.events, events);
-  return {s.name, s.purpose, run::record(s, progress), s.frames, false};
+  return {s.name, s.purpose, record::record(s, progress), s.frames, false};
 }
 
 Source open_trace(const std::string& path, const std::vector<std::string>& bodies) {
   Source out;
-  out.recording = run::open_run(trace::load_trace(path), path, bodies);
+  out.recording = record::open_run(trace::load_trace(path), path, bodies);
   out.name = out.recording.trace.header.scenario;
   out.frames = spec::read_pictures(out.recording.trace.header.pictures, printable_name(path));
   return out;
@@ -92,7 +92,7 @@ bool is_trace_name(const std::string& path) {
 }
 
 Source open_source(const FigureOptions& o, const Globals& globals) {
-  const run::ProgressReport progress = progress_report(globals.quiet);
+  const record::ProgressReport progress = progress_report(globals.quiet);
   std::vector<Eigen::Vector3d> towards;
   for (const std::string& point : o.towards) towards.push_back(io::parse_vector(point, "--towards"));
   std::error_code error;
@@ -111,7 +111,7 @@ Source open_source(const FigureOptions& o, const Globals& globals) {
   }
   if (!o.meshes.poses.empty() || !o.meshes.approach.empty())
     throw InputError("--poses or --approach: expected two meshes, found one source");
-  if (is_trace) return open_trace(run::trace_of(o.source), o.bodies);
+  if (is_trace) return open_trace(record::trace_of(o.source), o.bodies);
   if (!o.bodies.empty())
     throw InputError("--bodies: expected a trace, but " + printable_name(o.source) + " is not one");
   if (is_mesh_name(o.source)) return refine_body(o.source, towards, progress);
@@ -156,7 +156,7 @@ std::vector<render::FrameSpec::View> views_to_try(const std::string& up, const L
     render::FrameSpec::View view;
     view.directed = true;
     view.up = turned_up({view.from, view.up}, axis - 'x').up;
-    const Eigen::Vector3d side = run::broadside(run::box_of(rep), view.up);
+    const Eigen::Vector3d side = pictures::broadside(pictures::box_of(rep), view.up);
     const int turns = up.empty() ? 2 : 6;
     for (int i = 0; i < turns; ++i) {
       const Eigen::Vector3d flat = side - view.up * side.dot(view.up);
@@ -176,7 +176,7 @@ std::vector<render::FrameSpec::View> views_to_try(const std::string& up, const L
 
 render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const Globals& globals) {
   render::FrameSpec frames = source.frames;
-  if (o.close_up) frames.views = run::whole_and_contact(frames.views);
+  if (o.close_up) frames.views = frames::whole_and_contact(frames.views);
   // Two bodies: one view by default, so that the figure takes at most half a page.
   const std::size_t views = o.views > 0                                         ? o.views
                             : source.recording.bodies.size() == 1 || o.close_up ? 26
@@ -207,11 +207,11 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
       if (!o.try_views) view.title.clear();  // it may speak of wrappers
     }
   }
-  run::check_views(frames.views, source.recording.bodies[0].rep.dim());
+  frames::check_views(frames.views, source.recording.bodies[0].rep.dim());
   if (source.own_view && picture.camera.from.empty() && !o.try_views) {
     if (frames.views.empty()) frames.views.emplace_back();
     for (render::FrameSpec::View& view : frames.views)
-      view.from = run::broadside(run::box_of(source.recording.bodies[0].rep), view.up);
+      view.from = pictures::broadside(pictures::box_of(source.recording.bodies[0].rep), view.up);
   }
   const trace::TraceHeader& header = source.recording.trace.header;
   if (const EventLevel needed = render::needed_level(frames); needed > header.level)
@@ -234,13 +234,13 @@ int run_proof_map(const FigureOptions& o, const Source& source, const std::strin
   render::Look look;
   look.style = o.picture.style.value_or(render::StyleName::print);
   look.transparent = o.picture.transparent;
-  const run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
+  const frames::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
   write_figure(figure::draw_proof_map(recorded, look, figure_spec(o, file)), file);
   return kOk;
 }
 
 int run_figure(const FigureOptions& o, const Globals& globals) {
-  const run::ProgressReport progress = progress_report(globals.quiet);
+  const record::ProgressReport progress = progress_report(globals.quiet);
   if (!o.file.empty()) static_cast<void>(figure_spec(o, o.file));  // check the file before an expensive run
   const Source source = open_source(o, globals);
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
@@ -250,11 +250,11 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   if (o.try_views && source.recording.trace.events.size() > 0)
     spec.choice = {figure::Choice::By::events,
                    {static_cast<std::uint32_t>(source.recording.trace.events.size() - 1)}};
-  run::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
+  frames::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
   for (const trace::EventId event : figure::choose(recorded, spec.choice).events)
     recorded.close_up_steps.push_back(recorded.trace->step_of(event));
   if (o.close_up) {
-    run::widen_close_ups(recorded, frames.views);
+    frames::widen_close_ups(recorded, frames.views);
     // A close-up of the whole bodies shows the same as the first view.
     if (frames.views.size() == 2 && frames.views[1].camera != render::FrameSpec::Camera::contact &&
         !frames.views[0].wrapper) {

@@ -125,7 +125,7 @@ double seconds_since(Clock::time_point began) {
 
 /// Loads a golden and runs its scenario. A damaged or rejected golden fails alone; the others are still
 /// tested.
-Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressReport& progress) {
+Tried try_one(const GoldenOptions& o, const NamedGolden& g, const record::ProgressReport& progress) {
   const auto began = Clock::now();
   Tried out;
   try {
@@ -146,7 +146,7 @@ Tried try_one(const GoldenOptions& o, const NamedGolden& g, const run::ProgressR
 class Trials {
  public:
   Trials(const GoldenOptions& o, const Globals& globals, const std::vector<NamedGolden>& todo)
-      : o_(o), todo_(todo), progress_(o.jobs > 1 ? run::kSilent : progress_report(globals.quiet)) {}
+      : o_(o), todo_(todo), progress_(o.jobs > 1 ? record::kSilent : progress_report(globals.quiet)) {}
 
   Tried take(std::size_t i) {
     if (o_.jobs <= 1) return try_one(o_, todo_[i], progress_);
@@ -159,7 +159,7 @@ class Trials {
  private:
   const GoldenOptions& o_;
   const std::vector<NamedGolden>& todo_;
-  run::ProgressReport progress_;
+  record::ProgressReport progress_;
   std::vector<std::future<Tried>> begun_;
 };
 

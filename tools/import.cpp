@@ -31,7 +31,7 @@ struct Imported {
 
 Imported import_pair(const ImportOptions& o, const Globals& globals, const capture::Capture& c,
                      const profile::TreePair& pair, const std::string& folder) {
-  const run::ProgressReport progress = progress_report(globals.quiet);
+  const record::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> bodies = profile::captured_bodies(c, pair);
   note(globals, bodies[0].notes);
   if (c.trees[pair.trees[0]].mesh != c.trees[pair.trees[1]].mesh) note(globals, bodies[1].notes);
@@ -40,7 +40,7 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
   scenario.gzip = true;  // an engine's events are many; viewers read compressed traces as well
   profile::CapturedRunSettings settings = profile::captured_settings(scenario, c, pair, o.file);
   settings.check = !o.no_check;
-  const run::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, progress);
+  const record::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, progress);
   const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
   note(globals, outcome.notes);
   return {{}, scenario.name, profile::totals_of(recording)};

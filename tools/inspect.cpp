@@ -148,13 +148,13 @@ render::Look sheet_look(const InspectOptions& o, int width, int height) {
   frames.width = width;
   frames.height = height;
   apply(o.pictures, frames);
-  run::to_pixels(frames);
+  pictures::to_pixels(frames);
   return frames;
 }
 
 /// Prints a JSON line for each pair of faces that intersect.
 int list_self_intersections(const InspectOptions& o, const Globals& globals) {
-  const render::Look look = sheet_look(o, run::kAnswerWidth, run::kAnswerHeight);
+  const render::Look look = sheet_look(o, pictures::kAnswerWidth, pictures::kAnswerHeight);
   std::vector<std::string> notes;
   SelfIntersections found;
   std::optional<LrbRep> body;  // to be drawn
@@ -166,7 +166,7 @@ int list_self_intersections(const InspectOptions& o, const Globals& globals) {
     found = self_intersections(mesh);
     if (!o.drawing.empty()) body.emplace(bodies::faces_of_mesh(mesh.mesh()).rep);
   }
-  if (!o.drawing.empty()) run::check_views(look.views, body->dim());
+  if (!o.drawing.empty()) frames::check_views(look.views, body->dim());
   note(globals, notes);
   std::string lines;
   for (const SelfIntersection& pair : found.pairs) {
@@ -183,7 +183,8 @@ int list_self_intersections(const InspectOptions& o, const Globals& globals) {
   print(lines);
   note(globals, {render::counted(found.pairs.size(), "pair", "pairs") + " of faces, " +
                  render::counted(found.curves, "curve", "curves")});
-  if (!o.drawing.empty()) run::write_picture(run::picture_of(found, *body, look), o.drawing, look.dpi);
+  if (!o.drawing.empty())
+    pictures::write_picture(pictures::picture_of(found, *body, look), o.drawing, look.dpi);
   return found.pairs.empty() ? kOk : kMismatch;
 }
 
@@ -309,14 +310,14 @@ Json layers_json(const LrbRep& rep) {
   return out;
 }
 
-void draw_findings(const run::FaultyMesh& faulty, const InspectOptions& o, Json& j,
+void draw_findings(const pictures::FaultyMesh& faulty, const InspectOptions& o, Json& j,
                    std::vector<std::string>& notes) {
   const std::string& path = o.drawing;
-  const render::Look look = sheet_look(o, run::kFindingsSheetWidth, 0);
-  run::check_views(look.views, faulty.mesh.dim);
+  const render::Look look = sheet_look(o, pictures::kFindingsSheetWidth, 0);
+  frames::check_views(look.views, faulty.mesh.dim);
   j["drawing"] = nullptr;
-  if (const auto picture = run::picture_of(faulty, look)) {
-    run::write_picture(*picture, path, look.dpi);
+  if (const auto picture = pictures::picture_of(faulty, look)) {
+    pictures::write_picture(*picture, path, look.dpi);
     j["drawing"] = path;
     return;
   }
@@ -335,11 +336,11 @@ void report_regions(const LrbRep& rep, const InspectOptions& o, const render::Lo
   j["region_figures"] = regions_json(regions);
   if (!picture.empty()) {
     constexpr std::size_t kWorst = 10;
-    std::vector<run::ShownRegion> shown;
+    std::vector<pictures::ShownRegion> shown;
     for (std::size_t i = 0; i < std::min(kWorst, regions.size()); ++i)
       shown.push_back({regions[i].region, region_caption(regions[i])});
-    run::write_picture(
-        run::region_sheet(rep, bodies::waste_over_faces(rep, regions), "waste per face", shown, look),
+    pictures::write_picture(
+        pictures::region_sheet(rep, bodies::waste_over_faces(rep, regions), "waste per face", shown, look),
         picture, look.dpi);
   }
   if (!o.tried) return;
@@ -350,7 +351,7 @@ void report_regions(const LrbRep& rep, const InspectOptions& o, const render::Lo
 
 void look_broadside(const LrbRep& rep, render::Look& look) {
   if (look.views.empty()) look.views.emplace_back();
-  look.views[0].from = run::broadside(run::box_of(rep), look.views[0].up);
+  look.views[0].from = pictures::broadside(pictures::box_of(rep), look.views[0].up);
 }
 
 std::string as_text(const Json& j) {
@@ -383,7 +384,7 @@ std::string as_text(const Json& j) {
 int run_inspect(const InspectOptions& o, const Globals& globals) {
   if (o.self_intersections) return list_self_intersections(o, globals);
   if (o.levels) return list_levels(o, globals);
-  render::Look look = sheet_look(o, run::kBodySheetWidth, run::kBodySheetHeight);
+  render::Look look = sheet_look(o, pictures::kBodySheetWidth, pictures::kBodySheetHeight);
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
@@ -439,12 +440,12 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
   }
   std::string picture;
   if (o.render) {
-    run::check_views(look.views, rep->dim());
+    frames::check_views(look.views, rep->dim());
     picture = o.picture.empty() ? "out/" + std::filesystem::path(o.file).stem().string() +
                                       (o.regions ? "-regions.png" : ".png")
                                 : o.picture;
     if (o.pictures.camera.from.empty()) look_broadside(*rep, look);
-    if (!o.regions) run::write_picture(run::body_sheet(*rep, look), picture, look.dpi);
+    if (!o.regions) pictures::write_picture(pictures::body_sheet(*rep, look), picture, look.dpi);
     j["picture"] = picture;
   }
   if (o.regions) report_regions(*rep, o, look, picture, j);

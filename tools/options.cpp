@@ -193,7 +193,7 @@ void check_view(const PictureOptions& options, std::size_t views) {
 }
 
 void apply(const PictureOptions& options, render::FrameSpec& spec) {
-  if (!options.animation.empty()) run::check_animation(options.animation);
+  if (!options.animation.empty()) frames::check_animation(options.animation);
   apply_size(options.size, spec);
   if (options.dpi) spec.dpi = *options.dpi;
   if (options.svg) spec.svg = *options.svg;
@@ -210,7 +210,7 @@ void apply(const PictureOptions& options, render::FrameSpec& spec) {
   if (options.colour_by) spec.colour_by = *options.colour_by;
   if (options.colour_per) spec.colour_per = *options.colour_per;
   if (options.node_boxes) spec.node_boxes = options.node_boxes;
-  run::check_frame_size(spec);
+  frames::check_frame_size(spec);
   check_view(options, std::max<std::size_t>(1, spec.views.size()));  // none named: one by default
   if (options.view && !spec.views.empty()) spec.views = {spec.views[*options.view - 1]};
   apply(options.camera, spec.views);
@@ -299,7 +299,7 @@ void add_animation_option(App& app, PictureOptions& options) {
 }
 
 void animate_frames(const PictureOptions& options, const std::string& folder) {
-  if (!options.animation.empty()) run::animate(folder, options.animation);
+  if (!options.animation.empty()) frames::animate(folder, options.animation);
 }
 
 std::uint32_t all_cores() {
@@ -308,22 +308,22 @@ std::uint32_t all_cores() {
 
 void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals) {
   if (camera.up != "auto") return;
-  const std::optional<int> guess = run::likely_up(rep);
+  const std::optional<int> guess = pictures::likely_up(rep);
   note(globals, {guess ? std::string("--up auto: the body is most stable with --up ") + "xyz"[*guess]
                        : "--up auto: the body would fall over whichever axis is up; z is up"});
   camera.up = {"xyz"[guess.value_or(2)]};
 }
 
-void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Recording& recording) {
-  const run::RecordedRun recorded = run::recorded_run_of(scenario, recording);
+void choose_views(const CameraOptions& given, spec::Scenario& scenario, record::Recording& recording) {
+  const frames::RecordedRun recorded = run::recorded_run_of(scenario, recording);
   std::vector<render::FrameSpec::View>& views = scenario.frames.views;
   const Eigen::Vector3d up = views[0].up;
   // Directions are compared in drawn pictures, which a run without frames must not need.
   if (given.from.empty() && scenario.frames.at != render::FrameSpec::At::none) {
-    const Eigen::Vector3d from = run::min_hidden(recorded, up, views[0].from);
+    const Eigen::Vector3d from = frames::min_hidden(recorded, up, views[0].from);
     for (render::FrameSpec::View& view : views) view.from = from;
   }
-  run::widen_close_ups(recorded, views);
+  frames::widen_close_ups(recorded, views);
   recording.trace.header.pictures = spec::pictures_text(scenario.frames);
 }
 

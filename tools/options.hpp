@@ -128,7 +128,7 @@ render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 
 /// Selects the view direction across the line from A to B from which the bodies hide least of the contacts,
 /// unless one was given. Omits a close-up that would show almost the entire scene.
-void choose_views(const CameraOptions& given, spec::Scenario& scenario, run::Recording& recording);
+void choose_views(const CameraOptions& given, spec::Scenario& scenario, record::Recording& recording);
 
 /// The run of two meshes: B at poses, or moved towards A past the first contact.
 struct TwoMeshes {
@@ -143,8 +143,9 @@ struct TwoMeshes {
 /// Adds --poses and --approach.
 void add_motion_options(App& app, TwoMeshes& meshes);
 /// Reads the poses and the meshes, chooses the axis that points up and the views, and records the run.
-std::pair<spec::Scenario, run::Recording> record_meshes(const TwoMeshes& meshes, const PictureOptions& given,
-                                                        const Globals& globals);
+std::pair<spec::Scenario, record::Recording> record_meshes(const TwoMeshes& meshes,
+                                                           const PictureOptions& given,
+                                                           const Globals& globals);
 
 /// Returns the number of hardware threads, at least 1.
 std::uint32_t all_cores();

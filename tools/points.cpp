@@ -38,7 +38,7 @@ int run_points(const PointsOptions& o, const Globals& globals) {
     note(globals, {"the body is not closed: it has no inside, and distances have no sign"});
   // Batches bound the memory, show progress and print the first answers early.
   constexpr std::size_t kBatch = 4096;
-  run::ShownPoints shown(points.size());
+  pictures::ShownPoints shown(points.size());
   Progress progress("points", points.size(), globals.quiet);
   for (std::size_t i = 0; i < points.size(); i += kBatch) {
     const auto batch = std::span(points).subspan(i, std::min(kBatch, points.size() - i));
@@ -50,7 +50,8 @@ int run_points(const PointsOptions& o, const Globals& globals) {
     progress.set(i + batch.size());
   }
   progress.finish();
-  if (!o.draw.picture.empty()) run::write_picture(run::picture_of(shown, body.rep, look), o.draw.picture);
+  if (!o.draw.picture.empty())
+    pictures::write_picture(pictures::picture_of(shown, body.rep, look), o.draw.picture);
   return kOk;
 }
 

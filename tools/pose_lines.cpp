@@ -75,8 +75,8 @@ report::Gnuplot contact_chart(const std::vector<ContactBounds>& history) {
 
 render::Look look_of(const DrawOptions& options) {
   render::FrameSpec look;
-  look.width = run::kAnswerWidth;
-  look.height = run::kAnswerHeight;
+  look.width = pictures::kAnswerWidth;
+  look.height = pictures::kAnswerHeight;
   apply(options.look, look);
   return look;
 }

@@ -74,7 +74,7 @@ struct PoseLines : Located {
   /// Throws InputError unless the bodies can be queried at every pose. Called before anything is printed.
   void check(const LrbRep& a, const LrbRep& b) const;
   std::size_t size() const { return poses.size(); }
-  run::PosedBodies bodies(std::size_t i, const LrbRep& a, const LrbRep& b) const {
+  pictures::PosedBodies bodies(std::size_t i, const LrbRep& a, const LrbRep& b) const {
     return {a, {}, b, poses[i]};
   }
 };
@@ -174,7 +174,7 @@ int answer_each(Q& q, const Globals& globals) {
       }));
     const auto file = [&](const std::string& name) { return picture_name(name, i, list.size()); };
     if (!q.draw.picture.empty() && q.has_picture(answer))
-      run::write_picture(q.picture(answer, bodies, look), file(q.draw.picture));
+      pictures::write_picture(q.picture(answer, bodies, look), file(q.draw.picture));
     if constexpr (requires { q.chart(); })
       if (!q.draw.chart.empty())
         if (const auto chart = q.chart()) report::draw(*chart, file(q.draw.chart));

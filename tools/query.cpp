@@ -53,14 +53,14 @@ struct PairsQuestion : PosedQuestion {
     }
   }
 
-  CollideResult ask(const run::PosedBodies& p, Workspace& workspace, bool /*watched*/) const {
+  CollideResult ask(const pictures::PosedBodies& p, Workspace& workspace, bool /*watched*/) const {
     return std::move(collide(p.a, p.pose_a, p.b, p.pose_b, request, workspace).value());
   }
   bool tells_overlap() const {
     return request.mode == Mode::all_pairs && request.recursion == Recursion::complete &&
            request.predicates == Predicates::exact && !request.is_coarse();
   }
-  void complete(CollideResult& result, const run::PosedBodies& p, Workspace& workspace) {
+  void complete(CollideResult& result, const pictures::PosedBodies& p, Workspace& workspace) {
     if (tells_overlap() && result.relation == Relation::touching &&
         result.pairs.size() <= kMaxPairsToDecide) {
       CollideRequest overlap = request;
@@ -82,7 +82,7 @@ struct PairsQuestion : PosedQuestion {
     for (const SimplexPair& pair : pairs) w.value(numbers(pair));
     w.end_array();
   }
-  void write(trace::JsonWriter& w, const CollideResult& result, const run::PosedBodies& p,
+  void write(trace::JsonWriter& w, const CollideResult& result, const pictures::PosedBodies& p,
              const auto& us) const {
     w.member("relation", name_of(result.relation)).member("pairs", std::uint64_t{result.pairs.size()});
     w.member("fingerprint", trace::to_hex(fingerprint(result.pairs)));
@@ -108,9 +108,9 @@ struct PairsQuestion : PosedQuestion {
   }
 
   static bool has_picture(const CollideResult& result) { return result.separation.has_value(); }
-  static auto picture(const CollideResult& result, const run::PosedBodies& p,
+  static auto picture(const CollideResult& result, const pictures::PosedBodies& p,
                       const render::Look& /*its own*/) {
-    return run::picture_of(*result.separation, p);
+    return pictures::picture_of(*result.separation, p);
   }
 };
 

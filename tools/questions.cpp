@@ -14,7 +14,7 @@
 namespace lrb::tools {
 namespace {
 
-using run::PosedBodies;
+using pictures::PosedBodies;
 using trace::JsonWriter;
 
 constexpr const char* kWorkOfDistance = "pairs of boxes expanded, pairs of faces measured";
@@ -68,7 +68,7 @@ struct DistanceQuestion : PosedQuestion {
   }
 
   static auto picture(const DistanceResult& result, const PosedBodies& p, const render::Look& look) {
-    return run::picture_of(result, p, look);
+    return pictures::picture_of(result, p, look);
   }
   std::optional<report::Gnuplot> chart() const {
     return bounds_chart(reported.history, "distance", kWorkOfDistance);
@@ -118,7 +118,7 @@ struct NearQuestion : PosedQuestion {
   }
 
   auto picture(const NearPairsResult& result, const PosedBodies& p, const render::Look& look) const {
-    return run::picture_of(result, request.within, p, look);
+    return pictures::picture_of(result, request.within, p, look);
   }
 };
 
@@ -182,7 +182,7 @@ struct ManifoldQuestion : PosedQuestion {
   }
 
   auto picture(const ManifoldResult& result, const PosedBodies& p, const render::Look& look) const {
-    return run::picture_of(result, request.margin, p, look);
+    return pictures::picture_of(result, request.margin, p, look);
   }
 };
 
@@ -284,7 +284,7 @@ struct ClashQuestion : PosedQuestion {
   }
 
   static auto picture(const ClashResult& result, const PosedBodies& p, const render::Look& look) {
-    return run::picture_of(result, p, look);
+    return pictures::picture_of(result, p, look);
   }
   std::optional<report::Gnuplot> chart() const {
     if (history().empty()) return std::nullopt;

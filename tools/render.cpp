@@ -94,7 +94,7 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
 /// Returns the drawing options: those of the run, `pictures`, overridden by the command line.
 render::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
   render::FrameSpec spec = spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
-  if (o.close_up) spec.views = run::whole_and_contact(spec.views);
+  if (o.close_up) spec.views = frames::whole_and_contact(spec.views);
   apply(o.picture, spec);
   if (!o.events.empty()) {
     spec.at = render::FrameSpec::At::events;
@@ -113,11 +113,11 @@ spec::Show show_of(const trace::Trace& trace, std::size_t bodies) {
 
 int run_render(const RenderOptions& given, const Globals& globals) {
   RenderOptions o = given;
-  o.trace = run::trace_of(given.trace);
-  const run::Recording recording = run::open_run(trace::load_trace(o.trace), o.trace, o.bodies);
+  o.trace = record::trace_of(given.trace);
+  const record::Recording recording = record::open_run(trace::load_trace(o.trace), o.trace, o.bodies);
   const trace::Trace& trace = recording.trace;
   const std::vector<bodies::LoadedBody>& bodies = recording.bodies;
-  const run::RecordedRun p = run::recorded_run_of(trace.header.scenario, {}, recording);
+  const frames::RecordedRun p = run::recorded_run_of(trace.header.scenario, {}, recording);
   const std::string folder = output_folder(o);
   render::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);
   isolate(o, bodies, spec);
@@ -134,9 +134,10 @@ int run_render(const RenderOptions& given, const Globals& globals) {
     throw InputError("--colour-by or --node-boxes: " + printable_name(o.trace) + " is of " +
                      trace.header.engine +
                      " and does not contain its trees; record them with `lrbscope import`");
-  run::check_frames(p, spec);  // throws before anything is written
+  frames::check_frames(p, spec);  // throws before anything is written
   const report::Folder locked(folder);
-  const run::DrawnFrames drawn = run::draw_frames(p, spec, folder, text, progress_report(globals.quiet));
+  const frames::DrawnFrames drawn =
+      frames::draw_frames(p, spec, folder, text, progress_report(globals.quiet));
   const std::string file = std::filesystem::relative(o.trace, folder).generic_string();
   run::ReportText report{trace.header.scenario,
                          "Drawn from a recorded run.",

@@ -25,16 +25,16 @@ struct CrowdOptions {
 /// Records two bodies of a crowd as a run of their own.
 int run_pair(const CrowdOptions& o, const spec::Crowd& crowd, const Globals& globals) {
   const lrb::BodyPair pair = crowd::find_pair(crowd, o.pair);
-  const run::ProgressReport progress = progress_report(globals.quiet);
+  const record::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> kinds = crowd::make_kinds(crowd, progress);
   const crowd::CrowdMotion motion(crowd, kinds);
   spec::Scenario scenario = crowd::scenario_of_pair(crowd, motion, pair);
   scenario.frames.montage = 6;
-  scenario.frames.views = run::whole_and_contact();
+  scenario.frames.views = frames::whole_and_contact();
   if (o.no_frames) scenario.frames.at = render::FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
-  run::Recording recording =
-      run::record(scenario, {kinds[motion.kind(pair.i)], kinds[motion.kind(pair.j)]}, progress);
+  record::Recording recording =
+      record::record(scenario, {kinds[motion.kind(pair.i)], kinds[motion.kind(pair.j)]}, progress);
   choose_views({}, scenario, recording);
   return report_outcome(run::write_run(scenario, recording, folder, globals.command_line, progress), folder,
                         o.json, globals);

@@ -278,7 +278,7 @@ int run_search(const StabilityOptions& o, const Globals& globals) {
   engines::SearchOptions options;
   options.budget = o.budget;
   options.seed = o.seed;
-  const run::ProgressReport progress = progress_report(globals.quiet);
+  const record::ProgressReport progress = progress_report(globals.quiet);
   const auto& [a, b] = *contest.bodies;
   const engines::Found found =
       o.goal == engines::Goal::wrong

@@ -95,7 +95,7 @@ void Progress::finish() {
   drawn_ = false;
 }
 
-run::ProgressReport progress_report(bool quiet) {
+record::ProgressReport progress_report(bool quiet) {
   struct Parts {
     std::string what;
     std::unique_ptr<Progress> bar;

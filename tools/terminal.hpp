@@ -41,7 +41,7 @@ class Progress {
 };
 
 /// Returns a function that draws the progress of a job of several parts, one bar per part.
-run::ProgressReport progress_report(bool quiet);
+record::ProgressReport progress_report(bool quiet);
 
 /// Returns the options with a progress bar for the build, removed when the last copy of them is destroyed.
 /// Bodies that are built at the same time share it.

@@ -36,26 +36,26 @@ Pose pose_of(const WhyOptions& o) {
   return poses[o.pose];
 }
 
-int explain(const WhyOptions& o, const run::PosedBodies& bodies) {
+int explain(const WhyOptions& o, const pictures::PosedBodies& bodies) {
   const auto& [a, pose_a, b, pose_b] = bodies;
   if (o.pair.empty()) {
     const WalkExplanation e = explain_walk(a, pose_a, b, pose_b);
     if (!o.picture.empty() && !e.result.pairs.empty())
       throw InputError(
           "-o: the bodies intersect, so there is no separation to draw; use --pair to draw two of their faces");
-    if (!o.picture.empty()) run::write_picture(run::picture_of(e, bodies), o.picture);
+    if (!o.picture.empty()) pictures::write_picture(pictures::picture_of(e, bodies), o.picture);
     print(o.json ? one_line(run::explanation_json(e)) : run::explanation_text(e));
     return kOk;
   }
   const PairExplanation e = explain_pair(a, pose_a, b, pose_b, {SimplexId(o.pair[0]), SimplexId(o.pair[1])});
-  if (!o.picture.empty()) run::write_picture(run::picture_of(e, bodies), o.picture);
+  if (!o.picture.empty()) pictures::write_picture(pictures::picture_of(e, bodies), o.picture);
   print(o.json ? one_line(run::explanation_json(e, a, b)) : run::explanation_text(e, a, b));
   return kOk;
 }
 
 int run_why(const WhyOptions& o, const Globals& globals) {
   if (!o.run.empty()) {
-    const run::OpenStep open = run::open_step(o.run, o.step);
+    const record::OpenStep open = record::open_step(o.run, o.step);
     return explain(o, {open.bodies[0].rep, open.step.pose_a, open.bodies[1].rep, open.step.pose_b});
   }
   if (o.b.empty()) throw InputError("why: expected two bodies A and B, or --run DIR");

@@ -68,7 +68,7 @@ std::string bytes_of(const capture::Query& q) {
 
 // Percentiles.
 
-Samples measure(Engine& engine, std::span<const Pose> poses, const run::ProgressReport& progress) {
+Samples measure(Engine& engine, std::span<const Pose> poses, const record::ProgressReport& progress) {
   Samples out;
   out.engine = engine.name();
   out.poses.assign(poses.begin(), poses.end());
@@ -207,7 +207,7 @@ double cost_of(const Answer& answer, Goal goal) {
 }  // namespace
 
 Found find_costly(Engine& engine, const PoseSpace& space, Goal goal, const SearchOptions& options,
-                  const run::ProgressReport& progress) {
+                  const record::ProgressReport& progress) {
   std::vector<Answer> all;  // in the order of the trials
   const auto costs = [&](std::span<const Placement> placements) {
     std::vector<Pose> poses;
@@ -338,7 +338,7 @@ std::vector<std::vector<std::string>> rows_by_kind(const std::vector<Judged>& al
 }  // namespace
 
 Found find_wrong(Engine& engine, const LrbRep& a, const LrbRep& b, const PoseSpace& space,
-                 const SearchOptions& options, const run::ProgressReport& progress) {
+                 const SearchOptions& options, const record::ProgressReport& progress) {
   const std::vector<HardPose> hard = hard_poses(a, b, space, options.budget, options.seed);
   std::vector<Pose> poses;
   for (const HardPose& h : hard) poses.push_back(h.pose);

@@ -35,7 +35,7 @@ inline constexpr int kRounds = 3;
 
 /// Queries every pose in kRounds separate rounds, so that a slow moment of the machine does not affect all
 /// repeats of a pose. Tests are counted in a round of their own, because counting may take time.
-Samples measure(Engine& engine, std::span<const Pose> poses, const run::ProgressReport& progress);
+Samples measure(Engine& engine, std::span<const Pose> poses, const record::ProgressReport& progress);
 
 /// Returns the queries of a capture that ended, with their times as captured. Equal queries (trees and poses)
 /// count as rounds of one. Throws InputError that names the file for a capture without a query that ended.
@@ -81,13 +81,13 @@ struct Found {
 /// failures. Texts have no times, unless these are the goal, so that equal seeds give equal texts. Throws
 /// InputError if the goal needs what the engine does not count.
 Found find_costly(Engine& engine, const PoseSpace& space, Goal goal, const SearchOptions& options,
-                  const run::ProgressReport& progress);
+                  const record::ProgressReport& progress);
 
 /// Asks an engine at hard poses and compares its pairs with the exact ones: wrong contacts first, then by the
 /// largest gap of a false pair or depth of a missed one, in units of the space. Throws InputError if it
 /// reports pairs of faces that the bodies do not have.
 Found find_wrong(Engine& engine, const LrbRep& a, const LrbRep& b, const PoseSpace& space,
-                 const SearchOptions& options, const run::ProgressReport& progress);
+                 const SearchOptions& options, const record::ProgressReport& progress);
 
 /// Returns a scenario, for regression tests, of B at some poses, with the exact relations, numbers of pairs
 /// and fingerprints as expectations, and lrbscope's numbers of tests as limits. `a` and `b`: the bodies'

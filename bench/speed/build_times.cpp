@@ -173,7 +173,7 @@ BuiltBody prepare(const Mesh& mesh, const std::string& folder) {
 
 }  // namespace
 
-BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport& progress) {
+BuildResults survey_builds(const BuildSurvey& survey, const record::ProgressReport& progress) {
   BuildResults out;
   out.rounds = survey.rounds;
   for (const BodyPair& pair : survey.bodies) {

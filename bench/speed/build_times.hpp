@@ -61,7 +61,7 @@ struct BuildResults {
 
 /// Builds every body with every method, each time in its own process: a round runs all methods one after the
 /// other, so that ratios within a round have the same load.
-BuildResults survey_builds(const BuildSurvey& survey, const run::ProgressReport& progress);
+BuildResults survey_builds(const BuildSurvey& survey, const record::ProgressReport& progress);
 
 /// Returns the tables for stdout: medians over rounds and their spans, and ratios to FCL.
 std::string build_text(const BuildResults& results);

@@ -295,7 +295,7 @@ std::string scenario_text(const DataSet& set, std::uint64_t k, const std::string
 
 std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
                                              const std::vector<Point>& points, const std::string& folder,
-                                             const run::ProgressReport& progress) {
+                                             const record::ProgressReport& progress) {
   std::map<SceneKey, std::string> pages;
   std::uint64_t done = 0;
   for (const DataSet& set : sets)
@@ -311,7 +311,7 @@ std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
       if (fs::exists(folder + "/" + page) && fs::exists(file) && io::read_text(file) == text) continue;
       io::write_text(file, text);
       run::run_scenario(spec::parse_scenario(text, file), folder + "/scenes/" + name, "lrbscope run " + file,
-                        run::kSilent);
+                        record::kSilent);
     }
   return pages;
 }

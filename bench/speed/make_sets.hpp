@@ -79,6 +79,6 @@ using SceneKey = std::pair<std::string, PoseClass>;
 /// their pages, relative to the folder.
 std::map<SceneKey, std::string> write_scenes(const std::vector<DataSet>& sets,
                                              const std::vector<Point>& points, const std::string& folder,
-                                             const run::ProgressReport& progress);
+                                             const record::ProgressReport& progress);
 
 }  // namespace lrb::speed

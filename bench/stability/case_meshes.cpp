@@ -27,7 +27,7 @@ cases::Case case_of(const CaseMeshes& meshes) {
 }
 
 PosedPair::PosedPair(const cases::Case& c, const SimplexPair& pair)
-    : x{run::corners_of(*c.a, c.pose_a, pair.a), run::corners_of(*c.b, c.pose_b, pair.b)} {}
+    : x{pictures::corners_of(*c.a, c.pose_a, pair.a), pictures::corners_of(*c.b, c.pose_b, pair.b)} {}
 
 exact::PairContact PosedPair::contact() const {
   const double* p[2][3] = {};

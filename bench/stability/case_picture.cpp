@@ -86,9 +86,9 @@ CasePicture::CasePicture(const cases::Case& c, const Verdict& verdict) : flat(c.
         is_whole[rep.face_of_simplex(s)] = false;
       }
     for (FaceId f = 0; f < is_whole.size(); ++f)
-      if (is_whole[f]) add(side, run::corners_of(rep, f, pose), Mark::none);
+      if (is_whole[f]) add(side, pictures::corners_of(rep, f, pose), Mark::none);
     for (SimplexId s = 0; s < marks.size(); ++s)
-      if (!is_whole[rep.face_of_simplex(s)]) add(side, run::corners_of(rep, pose, s), marks[s]);
+      if (!is_whole[rep.face_of_simplex(s)]) add(side, pictures::corners_of(rep, pose, s), marks[s]);
     all += marks.size();
     marked += marks.size() - static_cast<std::size_t>(std::count(marks.begin(), marks.end(), Mark::none));
   }
@@ -380,22 +380,24 @@ render::Image worst_case_picture(const cases::Case& c, std::span<const SimplexPa
   for (const auto& body : s.bodies)
     for (const CasePicture::Piece& piece : body)
       for (const Vector3d& x : whole.cut(piece.corners)) points.push_back(x);
-  std::vector<run::Panel> panels = {{draw_list(s, whole, 2, verdict.mark()),
-                                     run::fit_points(points, dim, fit), close ? "whole" : "", false}};
+  std::vector<pictures::Panel> panels = {{draw_list(s, whole, 2, verdict.mark()),
+                                          pictures::fit_points(points, dim, fit), close ? "whole" : "",
+                                          false}};
   if (close) {
     // A frame around the place of the close-up, at a minimum size.
     const Corners ends = whole.cut({close->box.min(), close->box.max()});
     const Vector3d half = ((ends[1] - ends[0]) / 2).cwiseMax(kDot);
-    run::add_box(panels[0].list, (ends[0] + ends[1]) / 2,
-                 {Vector3d(half.x(), 0, 0), Vector3d(0, half.y(), 0), Vector3d(0, 0, s.flat ? 0 : half.z())},
-                 {render::palette::kInk, 1.5F, 0, true});
+    pictures::add_box(
+        panels[0].list, (ends[0] + ends[1]) / 2,
+        {Vector3d(half.x(), 0, 0), Vector3d(0, half.y(), 0), Vector3d(0, 0, s.flat ? 0 : half.z())},
+        {render::palette::kInk, 1.5F, 0, true});
     Corners shown;
     for (int i = 0; i < 8; ++i)
       shown.push_back(near.cut({close->box.corner(static_cast<AlignedBox3d::CornerType>(i))})[0] * kContext /
                       std::numbers::sqrt3);
     const double extent = std::max(diagonal(close->box) * kContext, std::numeric_limits<double>::min());
     panels.push_back(
-        {draw_list(s, near, kReach, verdict.mark()), run::fit_points(shown, dim, fit),
+        {draw_list(s, near, kReach, verdict.mark()), pictures::fit_points(shown, dim, fit),
          close->caption + ", " + render::short_number(diagonal(box) / extent) + " times as large", false});
   }
   const render::Overlay overlay = overlay_of(s, verdict, text);
@@ -403,7 +405,7 @@ render::Image worst_case_picture(const cases::Case& c, std::span<const SimplexPa
   look.width = kWidth;
   look.height = kHeight;
   const render::PixelRect place = render::lay_out(overlay, kWidth, kHeight).picture;
-  return render::compose_frame(run::draw_row(rasterizer, panels, look, place), place, overlay, kWidth,
+  return render::compose_frame(pictures::draw_row(rasterizer, panels, look, place), place, overlay, kWidth,
                                kHeight);
 }
 

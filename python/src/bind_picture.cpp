@@ -70,17 +70,17 @@ Wanted wanted(const Given& given) {
 }
 
 /// Returns one frame. Pictures are drawn one at a time: fonts are shared.
-run::PaintedFrame paint(const Recorded& recorded, std::size_t step, Wanted wanted) {
+frames::PaintedFrame paint(const Recorded& recorded, std::size_t step, Wanted wanted) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
-  const run::RecordedRun shown = recorded.shown();
+  const frames::RecordedRun shown = recorded.shown();
   if (recorded.trace.events.empty()) throw InputError("nothing to draw: the trace contains no events");
-  wanted.frames.events = {run::last_event(recorded.trace, step)};
+  wanted.frames.events = {record::last_event(recorded.trace, step)};
   View& view = wanted.frames.views[0];
   if (!wanted.from_given && recorded.bodies.size() == 2 && !recorded.results->empty())
-    view.from = run::min_hidden(shown, view.up, view.from);
-  run::check_frames(shown, wanted.frames);
-  return run::paint_frames(shown, wanted.frames, run::kSilent).at(0);
+    view.from = frames::min_hidden(shown, view.up, view.from);
+  frames::check_frames(shown, wanted.frames);
+  return frames::paint_frames(shown, wanted.frames, record::kSilent).at(0);
 }
 
 py::array_t<std::uint8_t> pixels_of(const render::Image& image, bool alpha) {
@@ -102,7 +102,7 @@ py::array_t<std::uint8_t> pixels_of(const render::Image& image, bool alpha) {
 py::object draw(const Recorded& recorded, std::size_t step, const Given& given) {
   Wanted what = wanted(given);
   const bool alpha = what.frames.transparent;
-  run::PaintedFrame frame;
+  frames::PaintedFrame frame;
   {
     const py::gil_scoped_release unlocked;
     frame = paint(recorded, step, std::move(what));

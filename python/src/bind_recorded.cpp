@@ -205,7 +205,7 @@ struct Outcome {
 std::shared_ptr<Recorded> record_scenario(const spec::Scenario& scenario, const Given& given) {
   const Progress report(given["progress"].given);
   const py::gil_scoped_release unlocked;
-  return recorded_of(run::record(scenario, std::ref(report)), scenario);
+  return recorded_of(record::record(scenario, std::ref(report)), scenario);
 }
 
 Outcome run_into(const spec::Scenario& scenario, const Given& given) {
@@ -241,8 +241,8 @@ void bind_outcome(py::module_& m) {
 
 }  // namespace
 
-run::RecordedRun Recorded::shown() const {
-  run::RecordedRun out;
+frames::RecordedRun Recorded::shown() const {
+  frames::RecordedRun out;
   out.title = title;
   out.purpose = purpose;
   for (const auto& rep : bodies) out.reps.push_back(rep.get());
@@ -252,7 +252,7 @@ run::RecordedRun Recorded::shown() const {
   return out;
 }
 
-std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scenario& scenario) {
+std::shared_ptr<Recorded> recorded_of(record::Recording recording, const spec::Scenario& scenario) {
   auto out = std::make_shared<Recorded>();
   for (bodies::LoadedBody& body : recording.bodies)
     out->bodies.push_back(std::make_shared<const LrbRep>(std::move(body.rep)));

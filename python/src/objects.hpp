@@ -68,11 +68,11 @@ class Recorded {
   std::string title, purpose;
 
   /// Returns the data that frames are drawn from; this object must outlive it.
-  run::RecordedRun shown() const;
+  frames::RecordedRun shown() const;
 };
 
 /// Takes ownership of a recording.
-std::shared_ptr<Recorded> recorded_of(run::Recording recording, const spec::Scenario& scenario);
+std::shared_ptr<Recorded> recorded_of(record::Recording recording, const spec::Scenario& scenario);
 
 /// Draws the end of a step of a run as a lrbscope.Picture, with the options of render(). The GIL must be
 /// held, and is released while drawing.

@@ -10,7 +10,7 @@
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/wrapper.hpp>
 
-namespace lrb::run {
+namespace lrb::pictures {
 
 using namespace render;
 using Eigen::Vector3d;
@@ -553,4 +553,4 @@ Image picture_of(const Separation& separation, const PosedBodies& bodies) {
   return draw_sheet(panels, screen_of(900, 720));
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::pictures

@@ -13,7 +13,7 @@
 #include <lrbscope/near_pairs.hpp>
 #include <lrbscope/self_intersections.hpp>
 
-namespace lrb::run {
+namespace lrb::pictures {
 
 // `look` sets the size and the up direction. All throw EnvironmentError if this machine cannot render.
 
@@ -61,4 +61,4 @@ render::Image picture_of(const Separation& separation, const PosedBodies& bodies
 /// The size of all but the last three pictures, unless `look` sets another.
 inline constexpr int kAnswerWidth = 1200, kAnswerHeight = 750;
 
-}  // namespace lrb::run
+}  // namespace lrb::pictures

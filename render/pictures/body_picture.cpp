@@ -8,7 +8,7 @@
 
 #include <lrbscope/wrapper.hpp>
 
-namespace lrb::run {
+namespace lrb::pictures {
 
 using namespace render;
 using Eigen::Vector3d;
@@ -378,4 +378,4 @@ std::optional<Image> picture_of(const FaultyMesh& given, const Look& requested) 
   return compose_frame(picture, layout.picture, overlay, look.width, look.height, style.paper, scale);
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::pictures

@@ -12,7 +12,7 @@
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/mesh_repair.hpp>
 
-namespace lrb::run {
+namespace lrb::pictures {
 
 // Contact sheets: panels (a), (b), ... of the look's size, in pixels of the file, seen from its first view.
 
@@ -59,4 +59,4 @@ std::optional<render::Image> picture_of(const FaultyMesh& faulty, const render::
 /// The width of the picture unless one is requested.
 inline constexpr int kFindingsSheetWidth = 1600;
 
-}  // namespace lrb::run
+}  // namespace lrb::pictures

@@ -7,7 +7,7 @@
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/render/overlay.hpp>
-namespace lrb::run {
+namespace lrb::pictures {
 
 void add_box(render::DrawList& list, const Eigen::Vector3d& centre,
              const std::array<Eigen::Vector3d, 3>& half, const BoxStyle& style) {
@@ -594,4 +594,4 @@ std::vector<TreeBox> boxes_on_paths(const ObbTree& tree, std::uint32_t below,
   return out;
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::pictures

@@ -27,7 +27,7 @@
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/self_intersections.hpp>
 
-namespace lrb::run {
+namespace lrb::pictures {
 
 /// The style of the edges of a box.
 struct BoxStyle {
@@ -224,4 +224,4 @@ std::vector<std::uint32_t> nodes_by_depth(const ObbTree& tree);
 std::vector<TreeBox> boxes_on_paths(const ObbTree& tree, std::uint32_t below,
                                     const std::vector<SimplexId>& to, std::size_t most);
 
-}  // namespace lrb::run
+}  // namespace lrb::pictures

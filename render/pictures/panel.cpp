@@ -9,7 +9,7 @@
 #include <lrbscope/build.hpp>
 #include <lrbscope/core/file.hpp>
 
-namespace lrb::run {
+namespace lrb::pictures {
 
 using namespace render;
 using Eigen::Vector3d;
@@ -278,4 +278,4 @@ Vector3d broadside(const Eigen::AlignedBox3d& box, const Vector3d& up) {
   return out;
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::pictures

@@ -19,7 +19,7 @@
 #include <lrbscope/render/scene.hpp>
 #include <lrbscope/render/style.hpp>
 
-namespace lrb::run {
+namespace lrb::pictures {
 
 using Mark = render::LegendItem::Mark;
 
@@ -132,4 +132,4 @@ std::optional<int> likely_up(const LrbRep& rep);
 /// `up` is an axis.
 Eigen::Vector3d broadside(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& up);
 
-}  // namespace lrb::run
+}  // namespace lrb::pictures

@@ -30,7 +30,7 @@ struct RegionFacts {
   double bound = 0;   ///< proven maximum deviation of its lids from the body, mesh units
   double volume = 0;  ///< 2D: area
   std::uint32_t attempts = 0;
-  run::VerdictCounts verdicts{};  ///< of the attempts
+  record::VerdictCounts verdicts{};  ///< of the attempts
 
   bool operator==(const RegionFacts&) const = default;
 };
@@ -105,17 +105,17 @@ Below below_regions(const LrbRep& x, const LrbRep& y) {
   return out;
 }
 
-std::vector<RegionFacts> facts_of(const run::Recording& run, std::span<const run::Attempt> attempts) {
+std::vector<RegionFacts> facts_of(const record::Recording& run, std::span<const record::Attempt> attempts) {
   const LrbRep& rep = run.bodies[0].rep;
   std::vector<RegionFacts> out(rep.region_count());
-  const auto of_region = run::attempts_by_region(run.trace, rep, attempts);
+  const auto of_region = record::attempts_by_region(run.trace, rep, attempts);
   for (const bodies::RegionFigures& f : bodies::region_figures(rep, bodies::RegionOrder::waste, 1))
     out[f.region] = {f.lids,
                      f.floor,
                      f.thickness,
                      f.volume,
                      static_cast<std::uint32_t>(of_region[f.region].size()),
-                     run::verdicts_of(attempts, of_region[f.region])};
+                     record::verdicts_of(attempts, of_region[f.region])};
   return out;
 }
 
@@ -230,10 +230,10 @@ std::optional<RegionComparison> compare_regions(const Runs& runs) {
   out.matching = match_regions(x, y);
   out.has_attempts = true;
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::vector<run::Attempt> attempts = run::attempts_of(runs.of[i]->trace);
+    const std::vector<record::Attempt> attempts = record::attempts_of(runs.of[i]->trace);
     out.facts[i] = facts_of(*runs.of[i], attempts);
     out.rejected[i] = static_cast<std::uint32_t>(
-        std::count_if(attempts.begin(), attempts.end(), std::mem_fn(&run::Attempt::rejected)));
+        std::count_if(attempts.begin(), attempts.end(), std::mem_fn(&record::Attempt::rejected)));
     out.has_attempts = out.has_attempts && !attempts.empty();
   }
   const auto& pairs = out.matching.pairs;
@@ -323,8 +323,8 @@ report::Chart faces_chart(const Runs& runs) {
 }
 
 /// Draws both wrappers after the last event, coloured by region, through the same camera.
-render::Image draw_bodies(const Runs& runs, const run::ProgressReport& progress) {
-  run::Framing framing{{}, {}, rep_of(runs, 0).dim()};
+render::Image draw_bodies(const Runs& runs, const record::ProgressReport& progress) {
+  pictures::Framing framing{{}, {}, rep_of(runs, 0).dim()};
   for (std::size_t i = 0; i < 2; ++i)
     for (const Eigen::Vector3d& x : render::body_points(rep_of(runs, i), runs.of[i]->trace.steps[0].pose_a))
       framing.points.push_back(x);
@@ -417,7 +417,7 @@ std::vector<report::View> views_of(const Runs& runs, const std::string& folder) 
 }  // namespace
 
 Difference write_comparison(const Runs& runs, const std::string& command, const std::string& folder,
-                            const run::ProgressReport& progress) {
+                            const record::ProgressReport& progress) {
   check_runs(runs);
   reject_folder_of_run(folder);
   const bool alone = of_one_body(runs);

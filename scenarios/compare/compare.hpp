@@ -56,6 +56,6 @@ struct Difference {
 /// and the regions of both, matched by place. Throws InputError if one run is of one body and
 /// the other of two.
 Difference write_comparison(const Runs& runs, const std::string& command, const std::string& folder,
-                            const run::ProgressReport& progress);
+                            const record::ProgressReport& progress);
 
 }  // namespace lrb::compare

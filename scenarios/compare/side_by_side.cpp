@@ -21,16 +21,16 @@ using ColourBy = render::FrameSpec::ColourBy;
 using FaceValues = std::array<std::vector<double>, 2>;  ///< of A and of B
 
 /// Returns the face values that determine the colours in a step.
-FaceValues values_of(const run::Recording& r, ColourBy by, std::size_t step) {
+FaceValues values_of(const record::Recording& r, ColourBy by, std::size_t step) {
   FaceValues out;
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = run::face_values(by, r.bodies[i].rep, static_cast<Side>(i), r.trace.events_of(step),
-                              r.trees.empty() ? nullptr : &r.trees[i]);
+    out[i] = frames::face_values(by, r.bodies[i].rep, static_cast<Side>(i), r.trace.events_of(step),
+                                 r.trees.empty() ? nullptr : &r.trees[i]);
   return out;
 }
 
 double largest(const FaceValues& values) {
-  return run::scale_without_the_smallest(values)[1];
+  return frames::scale_without_the_smallest(values)[1];
 }
 
 /// Returns |x - y| for each real face; empty if the numbers of faces differ.
@@ -65,7 +65,7 @@ std::size_t busiest_step(const Runs& runs) {
   return *best;
 }
 
-bool is_whole(const run::Recording& run, std::size_t step) {
+bool is_whole(const record::Recording& run, std::size_t step) {
   return run.trace.steps[step].events_seen == run.trace.events_of(step).size();
 }
 
@@ -91,16 +91,16 @@ ColourBy common_colours(const Runs& runs) {
   return runs.of[0]->trees.empty() || runs.of[1]->trees.empty() ? ColourBy::face_tests : ColourBy::box_tests;
 }
 
-render::Panel panel_after(const run::RecordedRun& recorded, render::FrameSpec frame, trace::EventId event,
-                          const std::string& title, const run::Framing& framing,
-                          const run::ProgressReport& progress) {
+render::Panel panel_after(const frames::RecordedRun& recorded, render::FrameSpec frame, trace::EventId event,
+                          const std::string& title, const pictures::Framing& framing,
+                          const record::ProgressReport& progress) {
   frame.at = render::FrameSpec::At::events;
   frame.events = {event};
   frame.width = 900;
   frame.height = 700;
   frame.views = {frame.first_view()};
   frame.views[0].title = title;
-  return {std::move(run::paint_frames(recorded, frame, progress, &framing).front().image), ""};
+  return {std::move(frames::paint_frames(recorded, frame, progress, &framing).front().image), ""};
 }
 
 render::Image in_a_row(const std::vector<render::Panel>& panels) {
@@ -110,28 +110,28 @@ render::Image in_a_row(const std::vector<render::Panel>& panels) {
   return render::montage(panels, options);
 }
 
-render::Image draw(const Runs& runs, std::size_t step, const run::ProgressReport& progress) {
+render::Image draw(const Runs& runs, std::size_t step, const record::ProgressReport& progress) {
   const ColourBy by = common_colours(runs);
   const std::array<FaceValues, 2> values = {values_of(*runs.of[0], by, step),
                                             values_of(*runs.of[1], by, step)};
   const FaceValues& larger = largest(values[0]) > largest(values[1]) ? values[0] : values[1];
   const auto& bodies = runs.of[0]->bodies;
   const trace::Step& first = runs.of[0]->trace.steps[step];
-  const run::PosedBodies posed{bodies[0].rep, first.pose_a, bodies[1].rep, first.pose_b};
-  const run::Framing framing{posed.points(), {}, posed.dim()};
+  const pictures::PosedBodies posed{bodies[0].rep, first.pose_a, bodies[1].rep, first.pose_b};
+  const pictures::Framing framing{posed.points(), {}, posed.dim()};
   std::vector<render::Panel> panels;
   const auto add = [&](std::size_t i, const std::string& title, const FaceValues& shown,
                        const std::string& value_name) {
-    run::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[i], *runs.of[i]);
-    recorded.value_range = run::scale_without_the_smallest(shown);
+    frames::RecordedRun recorded = run::recorded_run_of(*runs.scenarios[i], *runs.of[i]);
+    recorded.value_range = frames::scale_without_the_smallest(shown);
     if (!value_name.empty()) recorded.face_values = &shown;
     recorded.value_name = value_name;
     render::FrameSpec frame = runs.scenarios[i]->frames;
     frame.colour_by = by;
     frame.views = {frame.first_view()};
     frame.views[0].wrapper = false;
-    panels.push_back(panel_after(recorded, std::move(frame), run::last_event(runs.of[i]->trace, step), title,
-                                 framing, progress));
+    panels.push_back(panel_after(recorded, std::move(frame), record::last_event(runs.of[i]->trace, step),
+                                 title, framing, progress));
   };
   for (std::size_t i = 0; i < 2; ++i) add(i, runs.names[i], larger, "");
   const FaceValues deviation = difference(runs, values);
@@ -157,13 +157,13 @@ void add_work_charts(report::Document& doc, const Runs& runs) {
   }
 }
 
-std::uint64_t sum_of(const run::Recording& run, std::uint64_t Counters::*counter) {
+std::uint64_t sum_of(const record::Recording& run, std::uint64_t Counters::*counter) {
   std::uint64_t out = 0;
   for (const trace::Step& s : run.trace.steps) out += s.result.counters.*counter;
   return out;
 }
 
-std::uint64_t pairs_of(const run::Recording& run) {
+std::uint64_t pairs_of(const record::Recording& run) {
   std::uint64_t out = 0;
   for (const trace::Step& s : run.trace.steps) out += s.result.pair_count;
   return out;
@@ -173,7 +173,7 @@ report::Table totals_of(const Runs& runs) {
   report::Table t{"All steps together",
                   {"run", "pairs of nodes", "box tests", "face tests", "refined regions", "pairs found"}};
   for (std::size_t i = 0; i < 2; ++i) {
-    const run::Recording& r = *runs.of[i];
+    const record::Recording& r = *runs.of[i];
     t.rows.push_back(
         {runs.names[i], group_digits(sum_of(r, &Counters::node_pairs)),
          group_digits(sum_of(r, &Counters::box_tests)), group_digits(sum_of(r, &Counters::face_tests)),

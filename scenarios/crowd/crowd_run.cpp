@@ -147,11 +147,11 @@ std::vector<std::string> body_names(const spec::Crowd& crowd) {
   return names;
 }
 
-std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const run::ProgressReport& progress) {
+std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const record::ProgressReport& progress) {
   std::vector<bodies::LoadedBody> kinds;
   for (const spec::CrowdKind& kind : crowd.kinds) {
     progress("build", kinds.size(), crowd.kinds.size());
-    kinds.push_back(run::make_body(kind.body));
+    kinds.push_back(record::make_body(kind.body));
     if (kinds.back().rep.dim() != kinds[0].rep.dim())
       throw InputError("crowd " + crowd.name + ": " + kind.name + " is " +
                        std::to_string(kinds.back().rep.dim()) + "D and " + crowd.kinds[0].name + " is " +
@@ -160,7 +160,7 @@ std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const run::
   return kinds;
 }
 
-CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::ProgressReport& progress) {
+CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const record::ProgressReport& progress) {
   std::vector<bodies::LoadedBody> kinds = make_kinds(crowd, progress);
   CrowdMotion motion(crowd, kinds);
   CrowdRun run{std::move(kinds), body_names(crowd), std::move(motion), {}, {}, threads};

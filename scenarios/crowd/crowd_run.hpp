@@ -76,10 +76,10 @@ struct CrowdRun {
 std::vector<std::string> body_names(const spec::Crowd& crowd);
 
 /// Builds one body for each kind. Throws InputError for bodies of different dimensions.
-std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const run::ProgressReport& progress);
+std::vector<bodies::LoadedBody> make_kinds(const spec::Crowd& crowd, const record::ProgressReport& progress);
 
 /// Builds the bodies and runs the crowd. The number of threads (at least 1) affects only times. Throws
 /// InputError for input that make_kinds() or collide() rejects.
-CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const run::ProgressReport& progress);
+CrowdRun run_crowd(const spec::Crowd& crowd, std::uint32_t threads, const record::ProgressReport& progress);
 
 }  // namespace lrb::crowd

@@ -108,8 +108,8 @@ class BodyParts {
     if (rep_.region_count() > 0) needed_ = rep_.levels(0).needed();
     if (moment.events) counts_ = trace::count_faces(rep_, side, *moment.events);
     if (has_values(moment) && moment.events)
-      values_ = run::grouped(run::face_values(moment.colour_by, rep_, side, *moment.events, body_.tree),
-                             moment.colour_per, rep_);
+      values_ = frames::grouped(frames::face_values(moment.colour_by, rep_, side, *moment.events, body_.tree),
+                                moment.colour_per, rep_);
   }
 
   const std::vector<double>& values() const { return values_; }
@@ -153,13 +153,13 @@ class BodyParts {
   }
 
   std::vector<double> row_of(FaceId f) const {
-    const std::uint32_t region = run::region_of(rep_, f);
+    const std::uint32_t region = frames::region_of(rep_, f);
     std::vector<double> row = {static_cast<double>(side_),
                                static_cast<double>(rep_.is_real(f) ? kReal : kPseudo),
                                static_cast<double>(f.value()),
                                or_none(region),
                                region == kNull ? kNone : rep_.layer(RegionId(region)),
-                               static_cast<double>(run::level_of(rep_, f)),
+                               static_cast<double>(frames::level_of(rep_, f)),
                                distance_of(rep_, f, needed_)};
     if (moment_.events)
       for (const auto* of :

@@ -35,13 +35,13 @@ render::FrameSpec in_points(render::FrameSpec frames, const FigureSpec& figure) 
 
 class FigureJob {
  public:
-  FigureJob(const run::RecordedRun& recorded, const render::FrameSpec& frames, const FigureSpec& figure)
+  FigureJob(const frames::RecordedRun& recorded, const render::FrameSpec& frames, const FigureSpec& figure)
       : recorded_(recorded),
         figure_(figure),
         frames_(in_points(frames, figure)),
         dpi_(figure.dpi > 0 ? figure.dpi : default_dpi(figure.format)),
         chosen_(choose(recorded, figure.choice)),
-        framing_(run::frame_sequence(recorded, frames_)),
+        framing_(frames::frame_sequence(recorded, frames_)),
         state_(in_common_range(), frames_, false),
         painter_(frames_, framing_.dim, margin()) {
     for (const Callout& c : figure.callouts) check_target(c.option, c.target, recorded.reps);
@@ -50,7 +50,7 @@ class FigureJob {
       throw InputError("--occlusion: would change the colours of --colour-by; omit one of them");
   }
 
-  Figure draw(const run::ProgressReport& progress) {
+  Figure draw(const record::ProgressReport& progress) {
     arrange();
     if (figure_.choice.by == Choice::By::changes && leave_out_alike(progress)) arrange();
     check_letters();
@@ -99,10 +99,10 @@ class FigureJob {
   }
 
   /// Returns the run with one colour scale for all panels, so that a single bar is valid for each.
-  run::RecordedRun in_common_range() {
-    run::RecordedRun out = recorded_;
+  frames::RecordedRun in_common_range() {
+    frames::RecordedRun out = recorded_;
     if (out.value_range || !shows_values()) return out;
-    run::FrameState state(recorded_, frames_, false);
+    frames::FrameState state(recorded_, frames_, false);
     std::optional<std::array<double, 2>>& range = out.value_range;
     for (const trace::EventId event : chosen_.events) {
       state.seek(event);
@@ -119,7 +119,7 @@ class FigureJob {
   render::Camera camera(const View& view, std::size_t moment) const {
     const double progress =
         moments() > 1 ? static_cast<double>(moment) / (static_cast<double>(moments()) - 1) : 0;
-    return run::camera_for(view, framing_, kViewSide, kViewSide, progress);
+    return pictures::camera_for(view, framing_, kViewSide, kViewSide, progress);
   }
 
   render::Projection projection(const render::DrawList& list, const View& view, std::size_t moment) const {
@@ -142,7 +142,7 @@ class FigureJob {
         texts[piece.panel] += " (inset: " + name_of(piece.inset->target, recorded_.reps.size()) + ", " +
                               render::short_number(std::round(10 * piece.magnification) / 10) +
                               " times as large)";
-    return run::caption_of(recorded_, texts);
+    return frames::caption_of(recorded_, texts);
   }
 
   void arrange() {
@@ -391,7 +391,7 @@ class FigureJob {
 
   /// Removes states whose panels cannot be distinguished in print from those of the state before; the first
   /// and the last state stay. Returns true if any were removed.
-  bool leave_out_alike(const run::ProgressReport& progress) {
+  bool leave_out_alike(const record::ProgressReport& progress) {
     std::vector<std::vector<render::Image>> seen(moments());  // by state: its panels, in order of the views
     std::size_t done = 0;
     for (std::size_t b = 0; b < panels_.size(); ++b)
@@ -431,7 +431,7 @@ class FigureJob {
       for (std::size_t i = 0; i < moments(); ++i) {
         const render::Scene shown = scene(view, i);
         if (!shows_anything(view)) continue;
-        run::merge_key(key_, shown.key);
+        pictures::merge_key(key_, shown.key);
         // The text may end with the panel's largest value. That of all is in the longest text, or the last.
         const auto order = [](const std::string& text) { return std::pair(text.size(), text); };
         if (shown.scale && (!bar_ || order(bar_->text) < order(shown.scale->text))) bar_ = shown.scale;
@@ -474,7 +474,7 @@ class FigureJob {
                               (figure_.titles ? title_of(captions_[panel]) : ""));
   }
 
-  void paint_all(render::Canvas& canvas, const run::ProgressReport& progress) {
+  void paint_all(render::Canvas& canvas, const record::ProgressReport& progress) {
     std::vector<render::DrawTriangle> shaded;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       progress("draw", i, pieces_.size());
@@ -525,7 +525,7 @@ class FigureJob {
   }
 
   /// Finds the visible faces of all panels in painting order, if none has too many.
-  void find_vector_faces(std::vector<std::string>& notes, const run::ProgressReport& progress) {
+  void find_vector_faces(std::vector<std::string>& notes, const record::ProgressReport& progress) {
     const auto draw_image = [&](const Piece& piece, std::size_t count, const std::string& why) {
       vector_faces_.clear();
       notes.push_back("faces are an image of " + render::short_number(dpi_) + " dpi: " +
@@ -562,13 +562,13 @@ class FigureJob {
     return painter_.deep_view(camera(*piece.view, piece.moment), piece.place, piece.scale, dpi_);
   }
 
-  const run::RecordedRun& recorded_;
+  const frames::RecordedRun& recorded_;
   const FigureSpec& figure_;
   render::FrameSpec frames_;
   double dpi_;
   Chosen chosen_;
-  run::Framing framing_;
-  run::FrameState state_;
+  pictures::Framing framing_;
+  frames::FrameState state_;
   PanelPainter painter_;
   struct ShownState {
     const View* view;
@@ -591,8 +591,8 @@ class FigureJob {
 
 }  // namespace
 
-Figure draw_figure(const run::RecordedRun& recorded, const render::FrameSpec& frames,
-                   const FigureSpec& figure, const run::ProgressReport& progress) {
+Figure draw_figure(const frames::RecordedRun& recorded, const render::FrameSpec& frames,
+                   const FigureSpec& figure, const record::ProgressReport& progress) {
   return FigureJob(recorded, frames, figure).draw(progress);
 }
 

@@ -21,12 +21,12 @@ struct States {
 
 /// Returns the events after which a figure may show a state. One body: those that change its wrapper or end a
 /// pass of its construction. Two bodies, or one that is refined several times: the ends of time steps.
-std::vector<EventId> candidates(const run::RecordedRun& recorded) {
+std::vector<EventId> candidates(const frames::RecordedRun& recorded) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.header.construction) {
     render::FrameSpec passes;
     passes.at = render::FrameSpec::At::pass;
-    return run::moments(passes, trace);
+    return record::moments(passes, trace);
   }
   std::vector<EventId> out;
   if (recorded.reps.size() == 1 && trace.steps.size() == 1) {
@@ -38,11 +38,11 @@ std::vector<EventId> candidates(const run::RecordedRun& recorded) {
     return out;
   }
   for (std::size_t step = 0; step < trace.steps.size(); ++step)
-    if (trace.steps[step].first_event < trace.events.size()) out.push_back(run::last_event(trace, step));
+    if (trace.steps[step].first_event < trace.events.size()) out.push_back(record::last_event(trace, step));
   return out;
 }
 
-States states(const run::RecordedRun& recorded) {
+States states(const frames::RecordedRun& recorded) {
   trace::Cursor cursor = recorded.reps.size() == 1
                              ? trace::Cursor(*recorded.trace, *recorded.reps[0])
                              : trace::Cursor(*recorded.trace, *recorded.reps[0], *recorded.reps[1]);
@@ -58,9 +58,9 @@ States states(const run::RecordedRun& recorded) {
 }
 
 /// Returns evenly spaced time steps; the one nearest to the first contact is replaced by it.
-std::vector<EventId> by_time(const run::RecordedRun& recorded, const States& all, std::size_t panels) {
+std::vector<EventId> by_time(const frames::RecordedRun& recorded, const States& all, std::size_t panels) {
   const std::vector<trace::Step>& steps = recorded.trace->steps;
-  std::vector<std::size_t> chosen = run::evenly(all.events.size(), panels);
+  std::vector<std::size_t> chosen = pictures::evenly(all.events.size(), panels);
   const auto contact = std::find_if(
       steps.begin(), steps.end(), [](const trace::Step& s) { return s.finished && s.result.pair_count > 0; });
   const auto first = static_cast<std::size_t>(contact - steps.begin());
@@ -74,7 +74,7 @@ std::vector<EventId> by_time(const run::RecordedRun& recorded, const States& all
   return out;
 }
 
-std::vector<EventId> by_layer(const run::RecordedRun& recorded) {
+std::vector<EventId> by_layer(const frames::RecordedRun& recorded) {
   if (recorded.reps.size() != 1)
     throw InputError("--layers: is for a run of one body; of two, --steps and --events choose panels");
   const LrbRep& rep = *recorded.reps[0];
@@ -92,7 +92,7 @@ void thin_layers(Chosen& chosen) {
   const std::vector<EventId> all = chosen.events;
   if (all.size() <= kMaxPanels) return;
   chosen.events.clear();
-  for (const std::size_t i : run::evenly(all.size(), kMaxPanels)) chosen.events.push_back(all[i]);
+  for (const std::size_t i : pictures::evenly(all.size(), kMaxPanels)) chosen.events.push_back(all[i]);
   chosen.left_out = std::to_string(kMaxPanels) + " of " + std::to_string(all.size()) +
                     " panels are shown, evenly chosen; --events shows others";
 }
@@ -106,7 +106,7 @@ std::vector<EventId> by_steps(const trace::Trace& trace, const std::vector<std::
       throw InputError("--steps: the run has no time step " + std::to_string(number) + ": it has " +
                        std::to_string(trace.steps.front().index) + " to " +
                        std::to_string(trace.steps.back().index));
-    out.push_back(run::last_event(trace, static_cast<std::size_t>(step - trace.steps.begin())));
+    out.push_back(record::last_event(trace, static_cast<std::size_t>(step - trace.steps.begin())));
   }
   return out;
 }
@@ -121,7 +121,7 @@ std::vector<EventId> by_events(const trace::Trace& trace, const std::vector<std:
 
 }  // namespace
 
-Chosen choose(const run::RecordedRun& recorded, const Choice& choice) {
+Chosen choose(const frames::RecordedRun& recorded, const Choice& choice) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.events.empty()) throw InputError("figure: expected a run with events, found one without");
   const std::size_t panels = choice.panels > 0 ? choice.panels : recorded.reps.size() == 1 ? 6 : 4;
@@ -131,7 +131,7 @@ Chosen choose(const run::RecordedRun& recorded, const Choice& choice) {
     case Choice::By::changes: {
       const States all = states(recorded);
       if (recorded.reps.size() == 1 && trace.steps.size() == 1)
-        for (const std::size_t i : run::by_ratio(all.faces, panels)) out.push_back(all.events[i]);
+        for (const std::size_t i : record::by_ratio(all.faces, panels)) out.push_back(all.events[i]);
       else
         out = by_time(recorded, all, panels);
       break;
@@ -142,7 +142,7 @@ Chosen choose(const run::RecordedRun& recorded, const Choice& choice) {
     case Choice::By::faces: {
       const States all = states(recorded);
       for (const std::uint32_t faces : choice.numbers)
-        out.push_back(all.events[run::nearest_by_ratio(all.faces, std::max(faces, 1U))]);
+        out.push_back(all.events[record::nearest_by_ratio(all.faces, std::max(faces, 1U))]);
       break;
     }
     case Choice::By::events:

@@ -34,7 +34,7 @@ struct Chosen {
 
 /// Chooses the states. Of more than kMaxPanels layers it takes kMaxPanels, evenly spaced, with the first and
 /// the last. Throws InputError for numbers that the run does not have, and for choices that it cannot offer.
-Chosen choose(const run::RecordedRun& recorded, const Choice& choice);
+Chosen choose(const frames::RecordedRun& recorded, const Choice& choice);
 
 /// The resolution of the eye at reading distance, in pixels per inch.
 inline constexpr double kEyeDpi = 150;

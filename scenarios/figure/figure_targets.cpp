@@ -151,7 +151,7 @@ std::string name_of(const Target& target, std::size_t bodies) {
 
 std::vector<std::vector<Vector3d>> outlines(const Target& target, const LrbRep& rep, const Pose& pose) {
   if (target.kind == Target::Kind::face) {
-    std::vector<Vector3d> loop = run::corners_of(rep, FaceId(target.number), pose);
+    std::vector<Vector3d> loop = pictures::corners_of(rep, FaceId(target.number), pose);
     if (rep.dim() == 3) loop.push_back(loop.front());
     return {loop};
   }
@@ -245,9 +245,9 @@ std::vector<AlignedBox2d> target_boxes(const Inset& inset, const render::Project
   if (target.kind == Target::Kind::contact) return contact_boxes(inset, projection, contacts);
   std::vector<Vector3d> points;
   if (target.kind == Target::Kind::face)
-    points = run::corners_of(rep, FaceId(target.number), pose);
+    points = pictures::corners_of(rep, FaceId(target.number), pose);
   else
-    for (const Vector3d& x : run::region_corners(rep, RegionId(target.number)))
+    for (const Vector3d& x : pictures::region_corners(rep, RegionId(target.number)))
       points.push_back(pose.apply(x));
   AlignedBox2d out;
   for (const Vector3d& x : points)
@@ -259,7 +259,7 @@ std::vector<AlignedBox2d> target_boxes(const Inset& inset, const render::Project
 Vector3d anchor(const Target& target, const LrbRep& rep, const Pose& pose) {
   const auto centre = [&](FaceId f) {
     Vector3d sum = Vector3d::Zero();
-    const std::vector<Vector3d> corners = run::corners_of(rep, f, pose);
+    const std::vector<Vector3d> corners = pictures::corners_of(rep, f, pose);
     for (const Vector3d& x : corners) sum += x;
     return Vector3d(sum / static_cast<double>(corners.size()));
   };

@@ -32,8 +32,8 @@ void PanelPainter::paint_flat(render::Canvas& canvas, const render::DrawList& li
   const render::Projection projection(camera, side, side, render::bounds(list));
   canvas.begin_clip(place.box);
   const Vector2d low = place.seen_from * scale - Vector2d(margin_, margin_);
-  render::paint_flat(canvas, run::with_leaders(list, projection, {low, low + place.box.sizes()}), projection,
-                     place.box.min() - low);
+  render::paint_flat(canvas, pictures::with_leaders(list, projection, {low, low + place.box.sizes()}),
+                     projection, place.box.min() - low);
   canvas.end_clip();
 }
 
@@ -52,7 +52,7 @@ void PanelPainter::paint(render::Canvas& canvas, const render::DrawList& list, c
     render::paint_visible_lines(canvas, list, on_paper, depths, origin);
   }
   const AlignedBox2d frame(Vector2d(0, 0), deep.paper);
-  render::paint_over(canvas, run::with_leaders(list, on_paper, frame), on_paper, depths, origin);
+  render::paint_over(canvas, pictures::with_leaders(list, on_paper, frame), on_paper, depths, origin);
   canvas.end_clip();
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
-using run::Argument;
-using run::MapCell;
+using frames::Argument;
+using frames::MapCell;
 
 /// Returns a share in per cent with two digits, without exponent.
 std::string share_text(double share) {
@@ -36,8 +36,8 @@ AlignedBox2d square(const Vector2d& corner, double side) {
 
 class MapFigure {
  public:
-  MapFigure(const run::RecordedRun& recorded, std::size_t step, run::ProofMap map, const render::Style& style,
-            const FigureSpec& figure)
+  MapFigure(const frames::RecordedRun& recorded, std::size_t step, frames::ProofMap map,
+            const render::Style& style, const FigureSpec& figure)
       : recorded_(recorded),
         step_(recorded.trace->steps[step]),
         map_(std::move(map)),
@@ -142,7 +142,7 @@ class MapFigure {
   /// Large cells are pale and small ones saturated, by the logarithm of their pairs, so that both are
   /// visible.
   render::Rgba colour(Argument argument, double pairs) const {
-    const run::ArgumentLook& look = run::look_of(argument);
+    const frames::ArgumentLook& look = frames::look_of(argument);
     return style_.pale(style_.of(look.colour),
                        look.pale * std::sqrt(std::log(pairs + 1) / std::log(all_ + 1)));
   }
@@ -205,15 +205,15 @@ class MapFigure {
       write(canvas, {figure_.width, y}, share_text(pairs / all_), bold, render::Align::right);
       y += line();
     };
-    for (std::size_t i = 0; i < run::kArguments; ++i) {
+    for (std::size_t i = 0; i < frames::kArguments; ++i) {
       if (map_.pairs[i] == 0) continue;
       const auto argument = static_cast<Argument>(i);
-      const int steps = run::look_of(argument).pale > 0 ? 6 : 1;  // from the colour of the largest cells
+      const int steps = frames::look_of(argument).pale > 0 ? 6 : 1;  // from the colour of the largest cells
       for (int k = 0; k < steps; ++k)
         canvas.fill({render::corners({Vector2d(swatch * k / steps, y - half),
                                       Vector2d(swatch * (k + 1) / steps, y + half)})},
                     colour(argument, std::pow(all_, 1 - (k + 0.5) / steps)));
-      row(run::argument_name(argument, recorded_, step_), static_cast<double>(map_.pairs[i]), false);
+      row(frames::argument_name(argument, recorded_, step_), static_cast<double>(map_.pairs[i]), false);
     }
     canvas.stroke({{0, y - 0.5 * line()}, {figure_.width, y - 0.5 * line()}}, false,
                   {style_.ink, figure_.line_width, 0});
@@ -221,9 +221,9 @@ class MapFigure {
     row("all pairs", all_, true);
   }
 
-  const run::RecordedRun& recorded_;
+  const frames::RecordedRun& recorded_;
   const trace::Step& step_;
-  run::ProofMap map_;
+  frames::ProofMap map_;
   const render::Style& style_;
   const FigureSpec& figure_;
   double all_, height_ = 0;
@@ -233,16 +233,17 @@ class MapFigure {
 
 }  // namespace
 
-Figure draw_proof_map(const run::RecordedRun& recorded, const render::Look& look, const FigureSpec& figure) {
+Figure draw_proof_map(const frames::RecordedRun& recorded, const render::Look& look,
+                      const FigureSpec& figure) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.header.engine.empty() && trace.header.level == EventLevel::faces)
     throw InputError(
         "--proof-map: expected pairs of tree nodes, found none in the run; record it with --events all");
   const std::vector<std::uint32_t>& wanted = figure.choice.numbers;
-  std::optional<run::ProofMap> map;
+  std::optional<frames::ProofMap> map;
   std::size_t step = trace.steps.size();
   while (!map && step-- > 0)
-    if (wanted.empty() || wanted.front() == trace.steps[step].index) map = run::proof_map(recorded, step);
+    if (wanted.empty() || wanted.front() == trace.steps[step].index) map = frames::proof_map(recorded, step);
   if (!map || map->size[0] == 0 || map->size[1] == 0)
     throw InputError(
         "--proof-map: expected a step with a traversal of two trees, found none; choose another by --steps");

@@ -23,7 +23,7 @@
 
 extern char** environ;
 
-namespace lrb::run {
+namespace lrb::frames {
 namespace {
 
 constexpr std::uint32_t kFramesPerSecond = 12;
@@ -245,4 +245,4 @@ void animate(const std::string& folder, const std::string& file) {
   if (error) throw EnvironmentError(file + ": cannot write the file: " + error.message());
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace lrb::run {
+namespace lrb::frames {
 
 /// Returns true if ffmpeg, or the program named by $LRB_FFMPEG, is installed.
 bool has_ffmpeg();
@@ -21,4 +21,4 @@ std::string animated_png(const std::vector<std::string>& frames);
 /// ffmpeg fails; an existing file is then unchanged.
 void animate(const std::string& folder, const std::string& file);
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

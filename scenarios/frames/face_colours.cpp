@@ -4,7 +4,7 @@
 
 #include "render/pictures/marks.hpp"
 #include <lrbscope/trace/counters.hpp>
-namespace lrb::run {
+namespace lrb::frames {
 
 std::uint32_t region_of(const LrbRep& rep, FaceId face) {
   const CellId cell = rep.is_real(face) ? rep.outer_cell(face) : rep.inner_cell(face);
@@ -79,7 +79,7 @@ std::array<double, 2> scale_without_the_smallest(std::span<const std::vector<dou
 namespace {
 
 struct LabelledStyle {
-  BoxStyle lines;
+  pictures::BoxStyle lines;
   const char* label;
 };
 
@@ -87,7 +87,8 @@ LabelledStyle style_of_boxes(Side side, bool met, const render::Style& style) {
   static constexpr const char* kWords[2][2] = {{"A: disjoint node boxes", "A: overlapping node boxes"},
                                                {"B: disjoint node boxes", "B: overlapping node boxes"}};
   const render::Rgba colour = style.edge_of(style.body(side));
-  return {met ? BoxStyle{colour, 2, 0} : BoxStyle{colour, 1, 4}, kWords[static_cast<int>(side)][met ? 1 : 0]};
+  return {met ? pictures::BoxStyle{colour, 2, 0} : pictures::BoxStyle{colour, 1, 4},
+          kWords[static_cast<int>(side)][met ? 1 : 0]};
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ void add_node_boxes(render::Scene& scene, const trace::TreeShape& tree, Side sid
     const trace::ShapeBox box = tree.box(n);
     std::array<Eigen::Vector3d, 3> half;
     for (std::size_t i = 0; i < half.size(); ++i) half[i] = pose.r * box.half[i];
-    add_box(scene.list, pose.apply(box.centre), half, style_of_boxes(side, met, style).lines);
+    pictures::add_box(scene.list, pose.apply(box.centre), half, style_of_boxes(side, met, style).lines);
     any[met ? 1 : 0] = true;
   }
   for (const bool met : {true, false})
@@ -112,4 +113,4 @@ void add_node_boxes(render::Scene& scene, const trace::TreeShape& tree, Side sid
                            style_of_boxes(side, met, style).label});
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

@@ -11,7 +11,7 @@
 #include <lrbscope/trace/trace.hpp>
 #include <lrbscope/trace/work.hpp>
 
-namespace lrb::run {
+namespace lrb::frames {
 
 /// Returns the region of a face: the one that covers a real face or is behind a pseudo face. Returns kNull if
 /// there is none.
@@ -41,4 +41,4 @@ std::array<double, 2> scale_without_the_smallest(std::span<const std::vector<dou
 void add_node_boxes(render::Scene& scene, const trace::TreeShape& tree, Side side, const Pose& pose,
                     std::uint32_t depth, std::span<const trace::Event> events, const render::Style& style);
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

@@ -7,7 +7,7 @@
 #include "scenarios/record/moments.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/render/style.hpp>
-namespace lrb::run {
+namespace lrb::frames {
 namespace {
 
 trace::Cursor make_cursor(const trace::Trace& trace, const std::vector<const LrbRep*>& reps) {
@@ -37,7 +37,7 @@ void FrameState::seek(trace::EventId event) {
 FrameState::Moment FrameState::moment() const {
   Moment m;
   const std::size_t step = cursor_.step_number();
-  m.is_step_end = cursor_.position() == last_event(trace_, step);
+  m.is_step_end = cursor_.position() == record::last_event(trace_, step);
   if (m.is_step_end) {
     if (const auto& results = results_of(run_); step < results.size()) m.result = &results[step];
     if (run_.wrong != nullptr && step < run_.wrong->size()) m.wrong = (*run_.wrong)[step];
@@ -193,19 +193,20 @@ void enlarge(render::DrawList& list, float factor) {
 
 void FrameState::add_marks(render::Scene& scene, bool plain) const {
   const render::Style& style = style_of(spec_.style);
-  if (now_.separating && !plain) add_separating_plane(scene.list, *now_.separating, bodies(), style);
-  if (now_.gap) add_gap(scene, *now_.gap, style);
+  if (now_.separating && !plain)
+    pictures::add_separating_plane(scene.list, *now_.separating, bodies(), style);
+  if (now_.gap) pictures::add_gap(scene, *now_.gap, style);
   if (now_.answer != nullptr && now_.answer->near)
-    add_near_pairs(scene, near_marks(*now_.answer->near), style);
+    pictures::add_near_pairs(scene, near_marks(*now_.answer->near), style);
   if (now_.answer != nullptr && now_.answer->manifold)
-    add_contact_points(scene, contact_marks(*now_.answer->manifold), now_.answer->manifold->margin,
-                       size_of(bodies()), style);
+    pictures::add_contact_points(scene, contact_marks(*now_.answer->manifold), now_.answer->manifold->margin,
+                                 pictures::size_of(bodies()), style);
   if (now_.answer != nullptr && now_.answer->points)
-    add_point_distances(scene, point_marks(*now_.answer->points), style);
+    pictures::add_point_distances(scene, point_marks(*now_.answer->points), style);
   if (now_.separation_vector)
-    add_separation_vector(scene, *now_.separation_vector, run_.reps[0]->dim(), style);
+    pictures::add_separation_vector(scene, *now_.separation_vector, run_.reps[0]->dim(), style);
   if (!plain && !now_.wrong.empty()) {
-    add_wrong_pairs(scene.list, now_.wrong, bodies(), style.paper);
+    pictures::add_wrong_pairs(scene.list, now_.wrong, bodies(), style.paper);
     scene.key.push_back({render::LegendItem::Mark::line, render::palette::kWrong, "wrong pair"});
   }
   for (const Side side : {Side::a, Side::b})
@@ -232,4 +233,4 @@ bool FrameState::is_shown(const trace::RefinedRegion& r) const {
   return std::find(of_side.begin(), of_side.end(), r.region) != of_side.end();
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

@@ -17,7 +17,7 @@
 #include <lrbscope/trace/trace.hpp>
 #include <lrbscope/trace/work.hpp>
 
-namespace lrb::run {
+namespace lrb::frames {
 
 /// Returns CollideResult::error_bound as a short text.
 std::string error_bound_text(double bound);
@@ -77,9 +77,9 @@ class FrameState {
     std::optional<WalkExplanation> separating;
     /// The segment between the closest points, and the separating translation of B, of a step that ends here;
     /// nullopt if they were not requested.
-    std::optional<MarkedSegment> gap, separation_vector;
+    std::optional<pictures::MarkedSegment> gap, separation_vector;
     /// The wrong pairs of another engine in the step; empty before the step's end.
-    std::span<const WrongPair> wrong;
+    std::span<const pictures::WrongPair> wrong;
     /// The pass of a construction that the event belongs to; null before the first, and for other runs.
     const trace::PassSummary* pass = nullptr;
     bool is_pass_end = false;     ///< the end of a pass that made regions
@@ -100,7 +100,7 @@ class FrameState {
 
   bool is_single() const { return run_.reps.size() == 1; }
   const LrbRep& rep(Side side) const { return *run_.reps[static_cast<std::size_t>(side)]; }
-  PosedBodies bodies() const { return {rep(Side::a), pose(Side::a), rep(Side::b), pose(Side::b)}; }
+  pictures::PosedBodies bodies() const { return {rep(Side::a), pose(Side::a), rep(Side::b), pose(Side::b)}; }
 
   // Pictures.
   SceneParts scene_parts(bool wrapper) const;
@@ -154,35 +154,35 @@ inline Eigen::Vector3d vector_of(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-inline std::optional<MarkedSegment> gap_of(const trace::MeasuredDistance& distance) {
-  return gap_of({distance.lower, distance.upper}, vector_of(distance.points[0]),
-                vector_of(distance.points[1]));
+inline std::optional<pictures::MarkedSegment> gap_of(const trace::MeasuredDistance& distance) {
+  return pictures::gap_of({distance.lower, distance.upper}, vector_of(distance.points[0]),
+                          vector_of(distance.points[1]));
 }
 
-inline std::optional<MarkedSegment> separation_vector_of(const trace::MeasuredClash& clash,
-                                                         const PosedBodies& bodies,
-                                                         std::span<const ContactRegion> contacts) {
+inline std::optional<pictures::MarkedSegment> separation_vector_of(const trace::MeasuredClash& clash,
+                                                                   const pictures::PosedBodies& bodies,
+                                                                   std::span<const ContactRegion> contacts) {
   std::optional<ProvedInterval> depth;
   if (clash.depth) depth = {(*clash.depth)[0], (*clash.depth)[1]};
-  return separation_vector_of(depth, vector_of(clash.translation), bodies, contacts);
+  return pictures::separation_vector_of(depth, vector_of(clash.translation), bodies, contacts);
 }
 
-inline std::vector<NearMark> near_marks(const trace::MeasuredNearPairs& near) {
-  std::vector<NearMark> out;
+inline std::vector<pictures::NearMark> near_marks(const trace::MeasuredNearPairs& near) {
+  std::vector<pictures::NearMark> out;
   for (const trace::MeasuredNearPairs::Pair& p : near.nearest)
     out.push_back({{vector_of(p.points[0]), vector_of(p.points[1])}, p.upper == 0});
   return out;
 }
 
-inline std::vector<ContactMark> contact_marks(const trace::MeasuredManifolds& manifolds) {
-  std::vector<ContactMark> out;
+inline std::vector<pictures::ContactMark> contact_marks(const trace::MeasuredManifolds& manifolds) {
+  std::vector<pictures::ContactMark> out;
   for (const trace::MeasuredManifolds::Point& p : manifolds.contacts)
     out.push_back({vector_of(p.points[1]), vector_of(p.normal), p.depth});
   return out;
 }
 
-inline std::vector<PointMark> point_marks(const trace::MeasuredPoints& points) {
-  std::vector<PointMark> out;
+inline std::vector<pictures::PointMark> point_marks(const trace::MeasuredPoints& points) {
+  std::vector<pictures::PointMark> out;
   for (const trace::MeasuredPoints::Point& p : points.smallest) {
     const Where where = p.upper < 0 ? Where::inside : p.upper > 0 ? Where::outside : Where::on_surface;
     const bool has_side = points.has_sides || where == Where::on_surface;
@@ -198,4 +198,4 @@ std::string text_of(const trace::MeasuredNearPairs& near);
 std::string text_of(const trace::MeasuredManifolds& manifolds);
 std::string text_of(const trace::MeasuredPoints& points);
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

@@ -8,7 +8,7 @@
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/trace.hpp>
 
-namespace lrb::run {
+namespace lrb::frames {
 namespace {
 
 std::string text_of(Relation r) {
@@ -87,7 +87,7 @@ std::string FrameState::isolated_text() const {
   for (std::size_t i = 0; i < run_.reps.size(); ++i) {
     if (spec_.isolate[i].empty()) continue;
     const std::string owner = is_single() ? "" : i == 0 ? " of A" : " of B";
-    out += (out.empty() ? "" : "; ") + region_text(*run_.reps[i], spec_.isolate[i], owner);
+    out += (out.empty() ? "" : "; ") + pictures::region_text(*run_.reps[i], spec_.isolate[i], owner);
   }
   return out;
 }
@@ -206,7 +206,8 @@ std::string text_of(const trace::MeasuredPoints& points) {
     out = render::group_digits(points.inside) + " of " + out + " inside" +
           (points.on_surface > 0 ? ", " + render::group_digits(points.on_surface) + " on the surface" : "");
   if (!points.smallest.empty())
-    out += ", smallest distance " + interval_text(points.smallest[0].lower, points.smallest[0].upper);
+    out +=
+        ", smallest distance " + pictures::interval_text(points.smallest[0].lower, points.smallest[0].upper);
   return out;
 }
 
@@ -215,7 +216,8 @@ std::string FrameState::measured_text() const {
   std::string out;
   if (now_.gap) out = "distance " + now_.gap->text;
   if (now_.answer->clash && now_.answer->clash->kind != ClashKind::apart)
-    out += (out.empty() ? "" : ", ") + kind_text(now_.answer->clash->kind, now_.answer->clash->reason);
+    out +=
+        (out.empty() ? "" : ", ") + pictures::kind_text(now_.answer->clash->kind, now_.answer->clash->reason);
   if (now_.separation_vector) out += ", depth " + now_.separation_vector->text;
   if (now_.answer->near) out += (out.empty() ? "" : ", ") + text_of(*now_.answer->near);
   if (now_.answer->manifold) out += (out.empty() ? "" : ", ") + text_of(*now_.answer->manifold);
@@ -249,7 +251,7 @@ std::string FrameState::relation_text() const {
                ? "unresolved: in contact, or at a distance of at most " + render::short_number(r.error_bound)
                : "unresolved: the limit was reached before the coarsest wrappers were compared";
   if (now_.separating) {
-    const std::string words = separating_plane_text(*now_.separating, bodies());
+    const std::string words = pictures::separating_plane_text(*now_.separating, bodies());
     if (!words.empty()) return "separated " + words;
   }
   const bool open = !run_.reps[0]->closed() || !run_.reps[1]->closed();
@@ -262,9 +264,9 @@ render::Overlay FrameState::overlay(const std::string& title) const {
   o.title = title;
   if (!is_single()) o.title += "  ·  step " + std::to_string(step());
   o.event = event_text();
-  o.event_colour = now_.separating ? kSeparationColour
+  o.event_colour = now_.separating ? pictures::kSeparationColour
                    : now_.separation_vector
-                       ? kSeparationColour
+                       ? pictures::kSeparationColour
                        : style_of(spec_.style).of(render::palette::event(cursor_.event().kind));
   o.style = spec_.style;
   if (trace_.header.construction) {
@@ -376,4 +378,4 @@ std::string FrameState::caption() const {
   return out;
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

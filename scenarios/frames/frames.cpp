@@ -14,7 +14,7 @@
 #include <lrbscope/render/rasterize.hpp>
 #include <lrbscope/render/svg.hpp>
 
-namespace lrb::run {
+namespace lrb::frames {
 
 namespace {
 
@@ -25,7 +25,7 @@ std::vector<render::Overlay> overlays_of(FrameState& state, const std::vector<tr
   for (const trace::EventId event : events) {
     state.seek(event);
     const render::Scene scene = state.scene();
-    merge_key(key, scene.key);
+    pictures::merge_key(key, scene.key);
     out.push_back(state.overlay(title));
     out.back().scale = scene.scale;
   }
@@ -39,7 +39,7 @@ class FrameJob {
   /// Lays out the texts of all frames, which determine the size of the pictures; `events` is not empty.
   /// Throws InputError if they do not fit.
   FrameJob(const RecordedRun& p, const render::FrameSpec& spec, const std::vector<trace::EventId>& events,
-           const Framing* framing = nullptr)
+           const pictures::Framing* framing = nullptr)
       : state(p, spec, spec.at != render::FrameSpec::At::step),
         look_(spec),
         framing_(framing != nullptr ? *framing : frame_sequence(p, spec)),
@@ -49,7 +49,7 @@ class FrameJob {
     std::vector<render::OverlayLayout> layouts;
     try {
       for (render::Overlay& overlay : overlays_) {
-        leave_out_texts(overlay, look_);
+        pictures::leave_out_texts(overlay, look_);
         layouts.push_back(render::lay_out(overlay, look_.width, look_.height, scale));
       }
     } catch (const InputError& e) {
@@ -61,7 +61,7 @@ class FrameJob {
 
   /// Draws the views of the current state as frame i. `plain`: see FrameState::scene().
   render::Image picture(std::size_t i, bool plain = false) {
-    std::vector<Panel> panels;
+    std::vector<pictures::Panel> panels;
     for (const render::Look::View& view : look_.views) {
       // A panel of a montage is looked at alone: without a contact it shows where the bodies are nearest.
       std::vector<Eigen::Vector3d> nearest;
@@ -70,14 +70,14 @@ class FrameJob {
         nearest =
             nearest_points({*state.reps()[0], state.pose(Side::a), *state.reps()[1], state.pose(Side::b)});
       const auto camera = [this, &view, nearest, i](double width, double height) {
-        if (nearest.empty()) return camera_for(view, framing_, width, height, progress(i));
-        Framing framing = framing_;
+        if (nearest.empty()) return pictures::camera_for(view, framing_, width, height, progress(i));
+        pictures::Framing framing = framing_;
         framing.contacts = nearest;
-        return camera_for(view, framing, width, height, progress(i));
+        return pictures::camera_for(view, framing, width, height, progress(i));
       };
       panels.push_back({list(view, plain), camera, view.title});
     }
-    return draw_row(rasterizer_, panels, look_, place_);
+    return pictures::draw_row(rasterizer_, panels, look_, place_);
   }
   /// Draws frame i with its texts.
   render::Image frame(std::size_t i) {
@@ -86,16 +86,18 @@ class FrameJob {
   }
   /// Returns the camera of each view.
   std::vector<render::Camera> cameras(std::size_t i) const {
-    const std::vector<render::PixelRect> places = panel_places(place_, look_.views.size(), look_.scale());
+    const std::vector<render::PixelRect> places =
+        pictures::panel_places(place_, look_.views.size(), look_.scale());
     std::vector<render::Camera> out;
     for (std::size_t view = 0; view < places.size(); ++view)
-      out.push_back(
-          camera_for(look_.views[view], framing_, places[view].width, places[view].height, progress(i)));
+      out.push_back(pictures::camera_for(look_.views[view], framing_, places[view].width, places[view].height,
+                                         progress(i)));
     return out;
   }
   /// Returns each view as SVG (2D).
   std::vector<std::string> svgs(std::size_t i, bool plain = false) {
-    const std::vector<render::PixelRect> places = panel_places(place_, look_.views.size(), look_.scale());
+    const std::vector<render::PixelRect> places =
+        pictures::panel_places(place_, look_.views.size(), look_.scale());
     const std::vector<render::Camera> all = cameras(i);
     std::vector<std::string> out;
     for (std::size_t view = 0; view < places.size(); ++view) {
@@ -108,7 +110,8 @@ class FrameJob {
       render::DrawList drawn = list(look_.views[view], plain);
       const render::Projection projection(all[view], options.width, options.height, render::bounds(drawn));
       const Eigen::AlignedBox2d frame(Eigen::Vector2d(0, 0), Eigen::Vector2d(options.width, options.height));
-      out.push_back(render::svg(with_leaders(std::move(drawn), projection, frame), all[view], options));
+      out.push_back(
+          render::svg(pictures::with_leaders(std::move(drawn), projection, frame), all[view], options));
     }
     return out;
   }
@@ -125,7 +128,7 @@ class FrameJob {
   }
 
   render::Look look_;
-  Framing framing_;
+  pictures::Framing framing_;
   std::vector<render::Overlay> overlays_;
   render::PixelRect place_;
   render::Rasterizer rasterizer_;
@@ -205,7 +208,7 @@ void check_views(const std::vector<render::Look::View>& views, int dim) {
 
 void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec) {
   check_views(spec.views, recorded.reps[0]->dim());
-  static_cast<void>(moments(spec, *recorded.trace));
+  static_cast<void>(record::moments(spec, *recorded.trace));
   if (spec.svg && recorded.reps[0]->dim() != 2)
     throw InputError("SVG frames: expected 2D bodies, found 3D bodies; leave svg out, or set a higher --dpi");
   check_colours(recorded, spec);
@@ -216,7 +219,7 @@ void check_frame_size(const render::Look& spec) {
   // Pictures are drawn in twice the width and height, in buffers that Mesa limits to less than 2 GiB.
   constexpr int kMax = 8192, kMaxPixels = 48'000'000;
   render::Look in_file = spec;
-  to_pixels(in_file);
+  pictures::to_pixels(in_file);
   if (in_file.width <= kMax && in_file.height <= kMax && in_file.width * in_file.height <= kMaxPixels) return;
   const auto text = [](const render::Look& of) {
     return std::to_string(of.width) + "x" + std::to_string(of.height);
@@ -232,7 +235,7 @@ namespace {
 
 /// Returns the specification with sizes in pixels and, if it gives none, the view that a thin body needs.
 render::FrameSpec completed(render::FrameSpec spec, const RecordedRun& recorded) {
-  to_pixels(spec);
+  pictures::to_pixels(spec);
   if (const auto from = view_of_thin_body(recorded, spec)) spec.views.emplace_back().from = *from;
   return spec;
 }
@@ -251,20 +254,21 @@ std::vector<std::size_t> panels_of(const RecordedRun& recorded, const std::vecto
       faces.push_back(static_cast<double>(recorded.reps[0]->outermost_faces().size()));
   }
   if (recorded.reps.size() == 1 && recorded.trace->steps.size() == 1 && faces.size() == events.size()) {
-    std::vector<std::size_t> chosen = by_ratio(faces, count);
+    std::vector<std::size_t> chosen = record::by_ratio(faces, count);
     if (std::adjacent_find(chosen.begin(), chosen.end(), std::greater_equal<>()) == chosen.end())
       return chosen;
   }
-  return evenly(events.size(), count);
+  return pictures::evenly(events.size(), count);
 }
 
 }  // namespace
 
 std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& given,
-                                       const ProgressReport& progress, const Framing* framing) {
+                                       const record::ProgressReport& progress,
+                                       const pictures::Framing* framing) {
   const render::FrameSpec spec = completed(given, recorded);
   std::vector<PaintedFrame> out;
-  const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
+  const std::vector<trace::EventId> events = record::moments(spec, *recorded.trace);
   if (events.empty()) return out;
   FrameJob job(recorded, spec, events, framing);
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -278,14 +282,14 @@ std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render
 DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& given,
                         const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
-                        const ProgressReport& progress) {
+                        const record::ProgressReport& progress) {
   const render::FrameSpec spec = completed(given, recorded);
   DrawnFrames out;
-  const std::vector<trace::EventId> events = moments(spec, *recorded.trace);
+  const std::vector<trace::EventId> events = record::moments(spec, *recorded.trace);
   std::optional<FrameJob> laid_out;  // before any file is written: frames may be too small
   if (!events.empty()) laid_out.emplace(recorded, spec, events);
   make_folder(folder + "/frames");
-  remove_old_frames(folder);
+  record::remove_old_frames(folder);
   if (events.empty()) return out;
 
   FrameJob& job = *laid_out;
@@ -296,15 +300,15 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
     state.seek(events[i]);
-    if (spec.svg) write_svgs(job.svgs(i), folder + "/" + numbered_frame(i));
+    if (spec.svg) write_svgs(job.svgs(i), folder + "/" + record::numbered_frame(i));
     render::PngOptions png{text, spec.dpi};
     png.text.emplace_back("lrbscope:event", std::to_string(events[i]));
-    writer.push(folder + "/" + frame_file(i), job.frame(i), png);
+    writer.push(folder + "/" + record::frame_file(i), job.frame(i), png);
     if (std::find(in_montage.begin(), in_montage.end(), i) != in_montage.end()) {
       together.panels.push_back({job.picture(i, true), state.short_caption()});
       if (spec.svg && spec.views.size() <= 1) together.svgs.push_back(job.svgs(i, true).front());
     }
-    out.frames.push_back({frame_file(i), state.caption(), events[i], state.step()});
+    out.frames.push_back({record::frame_file(i), state.caption(), events[i], state.step()});
   }
   if (!together.panels.empty())
     out.montage = together.write(recorded, spec, folder, {text, spec.dpi}, writer);
@@ -312,10 +316,11 @@ DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& gi
   for (const trace::Step& step : recorded.trace->steps)
     if (step.result.separation) out.proved = &step;
   if (out.proved != nullptr)
-    write_picture(picture_of(*out.proved->result.separation,
+    pictures::write_picture(
+        pictures::picture_of(*out.proved->result.separation,
                              {*recorded.reps[0], out.proved->pose_a, *recorded.reps[1], out.proved->pose_b}),
-                  folder + "/" + kSeparationFile);
+        folder + "/" + kSeparationFile);
   return out;
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

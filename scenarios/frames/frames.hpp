@@ -12,7 +12,7 @@
 #include <lrbscope/render/image.hpp>
 #include <lrbscope/trace/trace.hpp>
 
-namespace lrb::run {
+namespace lrb::frames {
 
 /// A recorded run with its LRB-reps, the input of frames. `render` makes one from a trace file, `run` from
 /// its recording.
@@ -21,9 +21,9 @@ struct RecordedRun {
   std::string purpose;  ///< expected content of the pictures; may be empty
   std::vector<const LrbRep*> reps;
   const trace::Trace* trace = nullptr;
-  const std::vector<CollideResult>* results = nullptr;         ///< one for each step, or null
-  const std::vector<trace::TreeShape>* trees = nullptr;        ///< A's and B's, or null: as Recording::trees
-  const std::vector<std::vector<WrongPair>>* wrong = nullptr;  ///< as Recording::wrong, or null
+  const std::vector<CollideResult>* results = nullptr;   ///< one for each step, or null
+  const std::vector<trace::TreeShape>* trees = nullptr;  ///< A's and B's, or null: as Recording::trees
+  const std::vector<std::vector<pictures::WrongPair>>* wrong = nullptr;  ///< as Recording::wrong, or null
   /// Ends of the scale of colours by value; nullopt: as in the frame.
   std::optional<std::array<double, 2>> value_range = {};
   /// Values to colour A's and B's faces by, instead of those computed for FrameSpec::colour_by, and their
@@ -74,12 +74,13 @@ void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec);
 /// Draws the same frames as draw_frames(), in memory, without montage or SVG. `framing` replaces the run's
 /// own framing.
 std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& spec,
-                                       const ProgressReport& progress, const Framing* framing = nullptr);
+                                       const record::ProgressReport& progress,
+                                       const pictures::Framing* framing = nullptr);
 
 /// Draws frames to folder/frames/ and, if requested, folder/montage.png with folder/caption.txt; if there are
 /// certificates of separation, the last one to folder/separation.png. Writes `text` into every frame's file.
 DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& spec, const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
-                        const ProgressReport& progress);
+                        const record::ProgressReport& progress);
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

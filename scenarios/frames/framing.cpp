@@ -8,7 +8,7 @@
 #include <lrbscope/render/rasterize.hpp>
 #include <lrbscope/render/scene.hpp>
 
-namespace lrb::run {
+namespace lrb::frames {
 namespace {
 
 using Eigen::Vector3d;
@@ -49,7 +49,8 @@ std::vector<Vector3d> contacts_of(const RecordedRun& p) {
       for (std::size_t body = 0; e.kind == EventKind::contact && body < 2; ++body) {
         const LrbRep& rep = *p.reps[body];
         const FaceId face = rep.face_of_simplex(e.simplex(static_cast<Side>(body)));
-        for (const Vector3d& x : corners_of(rep, face, step_pose(p.trace->steps[i], body))) out.push_back(x);
+        for (const Vector3d& x : pictures::corners_of(rep, face, step_pose(p.trace->steps[i], body)))
+          out.push_back(x);
       }
   }
   return out;
@@ -62,7 +63,7 @@ std::vector<Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId
   std::vector<Vector3d> out;
   if (alone) {
     for (const RegionId r : isolated)
-      for (const Vector3d& x : region_corners(rep, r)) out.push_back(x);
+      for (const Vector3d& x : pictures::region_corners(rep, r)) out.push_back(x);
     if (!spec.ghost_rest || out.empty()) return out;
     constexpr double kAround = 0.5;  // of the regions' size, on each side
     const Vector3d centre = render::bounds(out).center();
@@ -72,7 +73,7 @@ std::vector<Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId
   out = render::body_points(rep, Pose{});
   for (RegionId r = 0; spec.explode > 0 && r < rep.region_count(); ++r) {
     const Vector3d direction = render::exploded_way(rep, Pose{}, r, spec.explode);
-    for (const Vector3d& x : region_corners(rep, r)) out.push_back(x + direction);
+    for (const Vector3d& x : pictures::region_corners(rep, r)) out.push_back(x + direction);
   }
   return out;
 }
@@ -92,7 +93,8 @@ std::size_t last_contact(const RecordedRun& recorded) {
 std::vector<Vector3d> points_at(const RecordedRun& recorded, std::size_t step) {
   std::vector<Vector3d> out;
   for (std::size_t i = 0; i < recorded.reps.size(); ++i)
-    for (const Vector3d& x : real_corners(*recorded.reps[i], step_pose(recorded.trace->steps[step], i)))
+    for (const Vector3d& x :
+         pictures::real_corners(*recorded.reps[i], step_pose(recorded.trace->steps[step], i)))
       out.push_back(x);
   return out;
 }
@@ -158,7 +160,7 @@ Vector3d min_hidden_of(const RecordedRun& recorded, const std::vector<Vector3d>&
   const std::size_t step = last_contact(recorded);
   if (step >= recorded.trace->steps.size()) return like;
   const trace::Step& s = recorded.trace->steps[step];
-  const PosedBodies bodies{*recorded.reps[0], s.pose_a, *recorded.reps[1], s.pose_b};
+  const pictures::PosedBodies bodies{*recorded.reps[0], s.pose_a, *recorded.reps[1], s.pose_b};
   const render::DrawList list = render::build_scene(bodies.in_scene()).list;
   const std::vector<Vector3d> contact = render::contact_points((*recorded.results)[step].regions);
   const std::vector<Vector3d> points = points_at(recorded, step);
@@ -182,14 +184,14 @@ bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& cl
   const std::size_t step = last_contact(recorded);
   if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return false;
   constexpr double kCloser = 1.8;  // minimum magnification of a close-up
-  Framing framing;
+  pictures::Framing framing;
   framing.points = points_at(recorded, step);
   framing.contacts = contacts_of(recorded);
   render::Look::View whole = close_up;
   whole.camera = render::Look::Camera::scene;
   const Eigen::AlignedBox3d box = render::bounds(framing.points);
   const auto unit = [&](const render::Look::View& view) {
-    const render::Camera camera = camera_for(view, framing, kWidth, kHeight, 0);
+    const render::Camera camera = pictures::camera_for(view, framing, kWidth, kHeight, 0);
     return render::Projection(camera, kWidth, kHeight, box).unit_per_pixel(camera.target);
   };
   return unit(whole) < kCloser * unit(close_up);
@@ -200,17 +202,17 @@ bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& cl
 std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& p, const render::Look& look) {
   if (!look.views.empty() || p.reps.size() != 1 || p.reps[0]->dim() != 3 || p.trace->steps.empty()) return {};
   constexpr double kThin = 0.25;
-  const Eigen::AlignedBox3d box = box_of(*p.reps[0], p.trace->steps[0].pose_a);
+  const Eigen::AlignedBox3d box = pictures::box_of(*p.reps[0], p.trace->steps[0].pose_a);
   if (box.isEmpty()) return {};
   const Eigen::Vector3d size = box.sizes(), up = render::Look::View{}.up;
   int thinnest = 0, vertical = 0;
   const double least = size.minCoeff(&thinnest);
   up.cwiseAbs().maxCoeff(&vertical);
   if (thinnest == vertical || !(least < kThin * size.maxCoeff())) return {};
-  return broadside(box, up);
+  return pictures::broadside(box, up);
 }
 
-std::vector<Vector3d> nearest_points(const PosedBodies& bodies) {
+std::vector<Vector3d> nearest_points(const pictures::PosedBodies& bodies) {
   DistanceRequest request;
   request.relative_tolerance = 0.01;  // enough for a camera
   request.relation = false;
@@ -220,9 +222,9 @@ std::vector<Vector3d> nearest_points(const PosedBodies& bodies) {
   return {found.witness[0].point, found.witness[1].point};
 }
 
-Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
+pictures::Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
   const bool regions_alone = !(spec.isolate[0].empty() && spec.isolate[1].empty());
-  Framing f;
+  pictures::Framing f;
   f.dim = p.reps[0]->dim();
   for (std::size_t i = 0; i < p.reps.size(); ++i) {
     const std::vector<Vector3d> body =
@@ -254,8 +256,8 @@ Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
 Vector3d min_hidden(const RecordedRun& recorded, const Vector3d& up, const Vector3d& like) {
   if (recorded.reps[0]->dim() != 3 || recorded.trace->steps.empty()) return like;
   const trace::Step& first = recorded.trace->steps.front();
-  const Eigen::AlignedBox3d a = box_of(*recorded.reps[0], first.pose_a),
-                            b = box_of(*recorded.reps[1], first.pose_b);
+  const Eigen::AlignedBox3d a = pictures::box_of(*recorded.reps[0], first.pose_a),
+                            b = pictures::box_of(*recorded.reps[1], first.pose_b);
   const Vector3d axis = b.center() - a.center();
   constexpr double kApart = 1e-3;  // of the bodies' size: closer centres give no direction
   if (!(axis.norm() > kApart * a.merged(b).diagonal().norm()))
@@ -286,4 +288,4 @@ void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View
   }
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

@@ -8,7 +8,7 @@
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/frames.hpp"
 
-namespace lrb::run {
+namespace lrb::frames {
 
 /// Collects the points that a sequence shows. If `spec` isolates regions, these regions, with a margin if the
 /// rest is shown as a ghost; if it explodes bodies, the displaced regions.
@@ -16,7 +16,7 @@ Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spe
 
 /// Returns the closest points of two bodies: what close-ups show without a contact. Returns
 /// none for 2D bodies, and for bodies that meet or have no faces.
-std::vector<Eigen::Vector3d> nearest_points(const PosedBodies& bodies);
+std::vector<Eigen::Vector3d> nearest_points(const pictures::PosedBodies& bodies);
 
 /// Returns the direction from which a single thin body in upright position fills its pictures: across its
 /// thinnest extent, if that is horizontal and less than a quarter of the largest. Returns nullopt for other
@@ -38,4 +38,4 @@ std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render:
 /// parts.
 void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views);
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

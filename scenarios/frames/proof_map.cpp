@@ -10,7 +10,7 @@
 #include <lrbscope/explain.hpp>
 #include <lrbscope/render/overlay.hpp>
 
-namespace lrb::run {
+namespace lrb::frames {
 
 namespace palette = render::palette;
 
@@ -224,4 +224,4 @@ std::optional<ProofMap> proof_map(const RecordedRun& recorded, std::size_t step)
   return MapMaker(recorded, step, begin, end).take();
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

@@ -14,7 +14,7 @@
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/work.hpp>
 
-namespace lrb::run {
+namespace lrb::frames {
 
 /// The argument that decided a pair of simplices, in the order of a query.
 enum class Argument : std::uint8_t {
@@ -75,4 +75,4 @@ std::optional<ProofMap> proof_map(const RecordedRun& recorded, std::size_t step)
 /// Returns the tree that a traversal descends; `walked`: as in trace::payload::PhaseBegin.
 trace::TreeShape walked_shape(const RecordedRun& recorded, std::size_t side, std::uint32_t walked);
 
-}  // namespace lrb::run
+}  // namespace lrb::frames

@@ -88,7 +88,7 @@ std::vector<std::string> approve_files(const std::string& goldens, const Golden&
   for (std::size_t i = 0; i < std::max(old ? old->frames.size() : 0, found.frames.size()); ++i) {
     const bool has_new = i < found.frames.size() && !found.frames[i].empty();
     if (old && has_new) {
-      run::PaintedFrame picture;
+      frames::PaintedFrame picture;
       picture.image = found.frames[i][0].png.image;
       if (check_frame(i < old->frames.size() ? old->frames[i] : none, picture, i, found.spec).passed)
         continue;

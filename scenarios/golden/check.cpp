@@ -227,7 +227,7 @@ std::string moved_text(const std::string& expected, const std::string& actual) {
 }
 
 /// Describes a picture's difference: another event, another camera, or other colours or shapes.
-std::string explain(const render::DecodedPng& expected, const run::PaintedFrame& actual) {
+std::string explain(const render::DecodedPng& expected, const frames::PaintedFrame& actual) {
   std::string out;
   const std::string event = text_of(expected, "lrbscope:event"), found = std::to_string(actual.event);
   if (!event.empty() && event != found) out += "drawn after event " + found + " instead of " + event + "; ";
@@ -262,7 +262,7 @@ bool differ_strongly(render::Rgba x, render::Rgba y) {
          render::ImageTolerance{}.large;
 }
 
-ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::PaintedFrame& actual,
+ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const frames::PaintedFrame& actual,
                          std::size_t frame, const GoldenSpec& spec) {
   const render::ImageTolerance& tolerance = spec.tolerance;
   ImageVerdict best;

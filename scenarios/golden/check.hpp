@@ -27,7 +27,7 @@ struct ImageVerdict {
 bool differ_strongly(render::Rgba x, render::Rgba y);
 
 /// Compares a picture with the approved variants of its frame.
-ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const run::PaintedFrame& actual,
+ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const frames::PaintedFrame& actual,
                          std::size_t frame, const GoldenSpec& spec);
 
 struct GoldenVerdict {

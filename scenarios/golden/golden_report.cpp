@@ -46,7 +46,7 @@ std::optional<std::size_t> step_of(const trace::Trace& x, const trace::Trace& y,
 /// Returns the event of a run to show: the step's end if its step ended before.
 trace::EventId event_to_show(const trace::Trace& trace, std::size_t step,
                              std::optional<trace::EventId> event) {
-  const trace::EventId last = run::last_event(trace, step);
+  const trace::EventId last = record::last_event(trace, step);
   return event ? std::min(*event, last) : last;
 }
 
@@ -64,12 +64,13 @@ std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector
   std::vector<Eigen::Vector3d> out;
   if (const auto pair = cursor.pair_under_test())
     for (const Side s : {Side::a, Side::b})
-      for (const Eigen::Vector3d& x : run::corners_of(*reps[static_cast<std::size_t>(s)], cursor.pose(s),
-                                                      s == Side::a ? pair->simplex_a : pair->simplex_b))
+      for (const Eigen::Vector3d& x : pictures::corners_of(*reps[static_cast<std::size_t>(s)], cursor.pose(s),
+                                                           s == Side::a ? pair->simplex_a : pair->simplex_b))
         out.push_back(x);
   const trace::Event& e = cursor.event();
   if (e.changes_wrapper())
-    for (const Eigen::Vector3d& x : run::region_corners(*reps[static_cast<std::size_t>(e.side)], e.region()))
+    for (const Eigen::Vector3d& x :
+         pictures::region_corners(*reps[static_cast<std::size_t>(e.side)], e.region()))
       out.push_back(cursor.pose(e.side).apply(x));
   return out;
 }
@@ -93,13 +94,13 @@ render::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
   return spec;
 }
 
-run::PaintedFrame paint(const GoldenRun& run, const SideShown& side, render::FrameSpec spec,
-                        const run::Framing& framing, const std::string& title) {
-  run::RecordedRun p = recorded_run_of(run);
+frames::PaintedFrame paint(const GoldenRun& run, const SideShown& side, render::FrameSpec spec,
+                           const pictures::Framing& framing, const std::string& title) {
+  frames::RecordedRun p = recorded_run_of(run);
   p.title = run.scenario.name + ", " + title;
   p.trace = &side.trace;
   spec.events = {side.event};
-  return run::paint_frames(p, spec, run::kSilent, &framing).at(0);
+  return frames::paint_frames(p, spec, record::kSilent, &framing).at(0);
 }
 
 bool same_bodies(const trace::Trace& x, const trace::Trace& y) {
@@ -129,15 +130,15 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
   const std::vector<const LrbRep*> reps = recorded_run_of(run).reps;
   try {
     // The cameras are fitted to this step alone: both runs' bodies, and the elements of both events.
-    run::Framing framing = run::frame_sequence(recorded_run_of(run), run.scenario.frames);
+    pictures::Framing framing = frames::frame_sequence(recorded_run_of(run), run.scenario.frames);
     framing.contacts.clear();
     for (const SideShown& side : sides)
       for (const Eigen::Vector3d& p : subject_of(side, reps)) framing.contacts.push_back(p);
     if (const CollideResult* result = find_result(run, *step); framing.contacts.empty() && result != nullptr)
       framing.contacts = render::contact_points(result->regions);
     const render::FrameSpec spec = spec_for(run, !framing.contacts.empty());
-    run::PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing, "approved"),
-                                     paint(run, sides[1], spec, framing, "found")};
+    frames::PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing, "approved"),
+                                        paint(run, sides[1], spec, framing, "found")};
     out.expected = std::move(pictures[0].image);
     out.actual = std::move(pictures[1].image);
     out.expected_caption = pictures[0].caption;

@@ -91,7 +91,7 @@ void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>&
 
 }  // namespace
 
-std::vector<double> contact_lengths(const run::Recording& recording) {
+std::vector<double> contact_lengths(const record::Recording& recording) {
   std::vector<double> out;
   if (!recording.trace.header.request.contacts) return out;
   for (const CollideResult& r : recording.results) {
@@ -206,19 +206,19 @@ std::string without_folder(const std::string& path) {
 }
 
 GoldenRun record_scenario(spec::Scenario scenario, const GoldenSpec& spec,
-                          const run::ProgressReport& progress) {
+                          const record::ProgressReport& progress) {
   GoldenRun run;
   run.scenario = std::move(scenario);
   run.scenario.clock = trace::Clock::event;
   set_pictures(run.scenario.frames, spec);
-  run.recording = run::record(run.scenario, progress);
+  run.recording = record::record(run.scenario, progress);
   for (trace::BodyInfo& body : run.recording.trace.header.bodies)
     if (body.source.find('/') != std::string::npos) body.source = without_folder(body.source);
   return run;
 }
 
 GoldenRun record_capture(const CapturedQueries& source, const GoldenSpec& spec,
-                         const run::ProgressReport& progress) {
+                         const record::ProgressReport& progress) {
   const std::string name = printable_name(source.file);
   const capture::Capture c = capture::read_capture(source.file);
   const profile::TreePairs found = profile::tree_pairs(c);
@@ -244,18 +244,19 @@ GoldenRun record_capture(const CapturedQueries& source, const GoldenSpec& spec,
 
 }  // namespace
 
-GoldenRun record_golden(const Source& source, const GoldenSpec& spec, const run::ProgressReport& progress) {
+GoldenRun record_golden(const Source& source, const GoldenSpec& spec,
+                        const record::ProgressReport& progress) {
   if (const auto* captured = std::get_if<CapturedQueries>(&source))
     return record_capture(*captured, spec, progress);
   return record_scenario(std::get<spec::Scenario>(source), spec, progress);
 }
 
-void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress) {
+void paint_golden(GoldenRun& run, const GoldenSpec& spec, const record::ProgressReport& progress) {
   if (spec.compares(Level::pictures))
-    run.frames = run::paint_frames(recorded_run_of(run), run.scenario.frames, progress);
+    run.frames = frames::paint_frames(recorded_run_of(run), run.scenario.frames, progress);
 }
 
-GoldenRun play_golden(const Source& source, const GoldenSpec& spec, const run::ProgressReport& progress) {
+GoldenRun play_golden(const Source& source, const GoldenSpec& spec, const record::ProgressReport& progress) {
   GoldenRun run = record_golden(source, spec, progress);
   paint_golden(run, spec, progress);
   return run;
@@ -271,8 +272,8 @@ GoldenFacts facts_of(const GoldenRun& run) {
   return facts;
 }
 
-run::RecordedRun recorded_run_of(const GoldenRun& run) {
-  run::RecordedRun p = run::recorded_run_of(run.scenario, run.recording);
+frames::RecordedRun recorded_run_of(const GoldenRun& run) {
+  frames::RecordedRun p = run::recorded_run_of(run.scenario, run.recording);
   p.purpose.clear();  // approved pictures omit the purpose
   return p;
 }

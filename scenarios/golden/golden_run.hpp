@@ -16,23 +16,23 @@ namespace lrb::golden {
 struct GoldenRun {
   spec::Scenario scenario;
   std::string text;  ///< its JSON, see scenario_text(); empty: not recorded in the golden
-  run::Recording recording;
-  std::vector<run::PaintedFrame> frames;
+  record::Recording recording;
+  std::vector<frames::PaintedFrame> frames;
 };
 
 /// Runs a scenario, always on the event clock, regardless of its setting, or reads a capture, without its
 /// times. Draws nothing. Thread-safe.
-GoldenRun record_golden(const Source& source, const GoldenSpec& spec, const run::ProgressReport& progress);
+GoldenRun record_golden(const Source& source, const GoldenSpec& spec, const record::ProgressReport& progress);
 /// Draws its pictures, if these are compared.
-void paint_golden(GoldenRun& run, const GoldenSpec& spec, const run::ProgressReport& progress);
+void paint_golden(GoldenRun& run, const GoldenSpec& spec, const record::ProgressReport& progress);
 /// Runs and draws.
-GoldenRun play_golden(const Source& source, const GoldenSpec& spec, const run::ProgressReport& progress);
+GoldenRun play_golden(const Source& source, const GoldenSpec& spec, const record::ProgressReport& progress);
 
 /// Returns the facts of a run for golden.json.
 GoldenFacts facts_of(const GoldenRun& run);
 
 /// Returns the run for its pictures.
-run::RecordedRun recorded_run_of(const GoldenRun& run);
+frames::RecordedRun recorded_run_of(const GoldenRun& run);
 
 /// Returns the metadata of an approved picture: scenario, event and camera, which explain a later difference.
 /// It contains no version and no folder, so that equal pictures are equal files.
@@ -67,6 +67,6 @@ std::vector<Effect> find_more_work(const Golden& golden, const GoldenRun& run);
 
 /// Returns the total length of the contact curves of each step, in the scenario's unit. Returns an empty list
 /// if the run did not request contacts.
-std::vector<double> contact_lengths(const run::Recording& recording);
+std::vector<double> contact_lengths(const record::Recording& recording);
 
 }  // namespace lrb::golden

@@ -104,7 +104,7 @@ PaperExperiment parse_experiment(const std::string& text, const std::string& fil
 std::vector<PaperObject> make_objects(const PaperExperiment& experiment, std::vector<std::string>& notes) {
   std::vector<PaperObject> objects;
   for (const PaperExperiment::Object& o : experiment.objects) {
-    bodies::LoadedBody body = run::make_body(o.body);
+    bodies::LoadedBody body = record::make_body(o.body);
     notes.insert(notes.end(), body.notes.begin(), body.notes.end());
     if (body.rep.dim() != 3)
       throw InputError("experiment " + experiment.name + ": object " + o.name +

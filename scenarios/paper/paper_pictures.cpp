@@ -72,11 +72,11 @@ std::vector<Eigen::Vector3d> largest_contact(const CollideResult& contact) {
   return render::contact_points(std::span(&*largest, 1));
 }
 
-run::CameraFit camera_of(const PaperPair& pair, const PanelView& view) {
+pictures::CameraFit camera_of(const PaperPair& pair, const PanelView& view) {
   const LrbRep& rep = pair.rep(view.side);
   render::FitOptions fit;
   fit.view = view_of(pair, view);
-  if (!view.near) return run::fit_points(render::body_points(rep, pose_of(view)), 3, fit);
+  if (!view.near) return pictures::fit_points(render::body_points(rep, pose_of(view)), 3, fit);
   return [points = largest_contact(*view.contact), box = whole_box(rep, pose_of(view)), fit](double width,
                                                                                              double height) {
     constexpr double kAround = 1.2, kLeast = 0.12;  // as shares of the contact's size and of the body's
@@ -103,7 +103,7 @@ render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, doub
     render::DrawTriangle t;
     t.colour = tests[f] > 0 ? render::palette::heat(share(tests[f], most)) : render::palette::kPaleFront;
     t.edges = 7;
-    list.add_polygon(run::corners_of(rep, f, pose_of(view)), t, {}, run::corners_of(rep, f));
+    list.add_polygon(pictures::corners_of(rep, f, pose_of(view)), t, {}, pictures::corners_of(rep, f));
   }
   for (const ContactRegion& region : view.contact->regions)
     for (const ContactLoop& loop : region.loops) {
@@ -120,12 +120,12 @@ render::DrawList wrapper_list(const PaperPair& pair, const PanelView& view, doub
   return list;
 }
 
-run::Panel panel_of(const PaperPair& pair, const PanelView& view, double most) {
+pictures::Panel panel_of(const PaperPair& pair, const PanelView& view, double most) {
   const std::string what = view.near ? ", close up"
                                      : ", " + std::string(view.which) + ": " +
                                            render::group_digits(view.collision->comparisons) + " face tests";
   return {wrapper_list(pair, view, most), camera_of(pair, view), pair.name(view.side) + what, false,
-          run::kScaleLighting};
+          pictures::kScaleLighting};
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, cons
     const std::vector<double> tests = tests_of(pair, view);
     most = std::max(most, *std::max_element(tests.begin(), tests.end()));
   }
-  std::vector<run::Panel> panels;
+  std::vector<pictures::Panel> panels;
   for (const PanelView& view : views) panels.push_back(panel_of(pair, view, most));
   render::Look look;
   look.width = kPanelWidth;
@@ -155,7 +155,7 @@ render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, cons
   overlay.key = {{render::LegendItem::Mark::line, render::palette::kContact, "contact at the last step"},
                  {render::LegendItem::Mark::dashed, render::palette::kContact, "contact, hidden"}};
   overlay.scale = render::ScaleBar{"face tests per face (log scale)", 0, most};
-  return run::with_overlay(run::draw_sheet(panels, look, options), overlay);
+  return pictures::with_overlay(pictures::draw_sheet(panels, look, options), overlay);
 }
 
 namespace {
@@ -350,7 +350,7 @@ std::string icicle_svg(const PaperPair& pair, const CloseUp& collision) {
   const std::size_t step = busiest_step(collision);
   const trace::Trace& t = collision.trace;
   trace::Cursor cursor(t, pair.a.rep, pair.x.rep);
-  const trace::EventId first = t.steps[step].first_event, last = run::last_event(t, step);
+  const trace::EventId first = t.steps[step].first_event, last = record::last_event(t, step);
   cursor.seek(last);
   const std::span events(t.events.data() + first, last - first + std::size_t{1});
   Writer writer;

@@ -54,7 +54,7 @@ std::vector<capture::Event> events_of(std::span<const trace::Event> events) {
 
 }  // namespace
 
-capture::Capture captured(const run::Recording& recording) {
+capture::Capture captured(const record::Recording& recording) {
   const trace::Trace& trace = recording.trace;
   const std::string who = trace.header.scenario.empty() ? "the run" : trace.header.scenario;
   if (recording.bodies.size() != 2 || recording.bodies[0].rep.dim() != 3)
@@ -268,10 +268,10 @@ trace::RecorderSettings recorder_settings(const capture::Capture& capture,
 
 }  // namespace
 
-run::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
-                            std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
-                            const run::ProgressReport& progress) {
-  run::Recording out;
+record::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
+                               std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
+                               const record::ProgressReport& progress) {
+  record::Recording out;
   out.bodies = std::move(bodies);
   std::vector<TreeIndex> indices;
   for (std::size_t side = 0; side < 2; ++side) {
@@ -296,14 +296,14 @@ run::Recording captured_run(const capture::Capture& capture, const TreePair& pai
     report->complete = report->complete && records_triangles;
     const CollideResult answer = replay.replay(query, *report);
     if (settings.check && !of_shapes) {
-      out.results.push_back(run::exact_answer(
+      out.results.push_back(record::exact_answer(
           {out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]}, {}, report, answer.pairs));
       if (report->query == trace::EngineQuery::distance)
         recorder.add(trace::measured(
             distance(out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]), {}));
     }
     if (i < out.results.size())
-      out.wrong.push_back(run::wrong_pairs(answer.pairs, out.results[i].pairs, report));
+      out.wrong.push_back(record::wrong_pairs(answer.pairs, out.results[i].pairs, report));
     recorder.add(std::move(*report));
     recorder.end_step(answer);
   }
@@ -350,7 +350,7 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
 
 render::FrameSpec captured_frames() {
   render::FrameSpec out;
-  out.views = run::whole_and_contact();
+  out.views = frames::whole_and_contact();
   out.views[0].wrapper = false;
   out.views[0].title = "Overview";
   out.views[1].title = "Contact";
@@ -417,7 +417,7 @@ CapturedTotals& CapturedTotals::operator+=(const CapturedTotals& o) {
   return *this;
 }
 
-CapturedTotals totals_of(const run::Recording& run) {
+CapturedTotals totals_of(const record::Recording& run) {
   CapturedTotals out;
   out.queries = run.trace.steps.size();
   out.checked = !run.results.empty();
@@ -426,7 +426,7 @@ CapturedTotals totals_of(const run::Recording& run) {
     out.events += answer.counters.node_pairs + answer.counters.face_tests;
     out.has_pairs = out.has_pairs || !answer.engine || answer.engine->complete;
     if (!out.checked) continue;
-    const run::AnswerScore score = run::score_of(answer, run.wrong[i], run.results[i]);
+    const record::AnswerScore score = record::score_of(answer, run.wrong[i], run.results[i]);
     out.right += score.right;
     out.missed += score.missed;
     out.false_pairs += score.false_pairs;

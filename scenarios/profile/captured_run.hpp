@@ -29,7 +29,7 @@ namespace lrb::profile {
 /// - Only the traversal of the bodies themselves is converted; traversals of levels of detail are not.
 ///
 /// Throws InputError for a recording of one body, of 2D bodies, or without pairs of nodes.
-capture::Capture captured(const run::Recording& recording);
+capture::Capture captured(const record::Recording& recording);
 
 /// The queries of a capture between two trees. A tree that was refitted is another tree.
 struct TreePair {
@@ -60,9 +60,9 @@ struct CapturedRunSettings : trace::RecorderSettings {
 /// A test of two bounding volumes becomes a node pair. Its `met` is the number of pairs that the engine
 /// descended to from there, and its predecessor is found by visits_of(). The results are the exact ones, so
 /// that pictures show the actual intersections; the engine's answer is in the trace.
-run::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
-                            std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
-                            const run::ProgressReport& progress);
+record::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
+                               std::vector<bodies::LoadedBody> bodies, const CapturedRunSettings& settings,
+                               const record::ProgressReport& progress);
 
 /// Returns sentences about the pictures of a pair's run: volumes drawn as boxes, queries of one body
 /// with itself, queries that were not kept or not compared. Empty if there is nothing to say.
@@ -93,7 +93,7 @@ struct CapturedTotals {
 
   CapturedTotals& operator+=(const CapturedTotals& o);
 };
-CapturedTotals totals_of(const run::Recording& run);
+CapturedTotals totals_of(const record::Recording& run);
 /// Returns "40 queries, 12 345 events; verdicts: 40 right, 0 wrong; pairs: 702 right, 0 missed, 0 false".
 std::string words(const CapturedTotals& totals);
 

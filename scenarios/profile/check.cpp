@@ -24,23 +24,24 @@ constexpr std::size_t kOwners = 10;
 /// Ratio of the ends of the scale: triangles with less than a thousandth of the maximum are pale.
 constexpr double kRange = 1000;
 
-run::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::ScaleBar& scale, bool from_behind) {
-  run::Panel panel;
+pictures::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::ScaleBar& scale,
+                         bool from_behind) {
+  pictures::Panel panel;
   panel.list.edge_styles[0] = {render::with_alpha(render::kWhite, 110), 0.8F};
   for (FaceId f = 0; f < rep.real_face_count(); ++f) {
     const double share = render::place_on(scale, map.waste[f]);
     render::DrawTriangle t;
     t.colour = share > 0 ? render::palette::heat(share) : render::palette::kPaleFront;
     t.edges = 7;
-    panel.list.add_polygon(run::corners_of(rep, f), t);
+    panel.list.add_polygon(pictures::corners_of(rep, f), t);
   }
   render::FitOptions fit;
-  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), from = run::broadside(run::box_of(rep), up);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), from = pictures::broadside(pictures::box_of(rep), up);
   fit.view = {from_behind ? Eigen::Vector3d(-from.x(), -from.y(), from.z()) : from, up};
-  panel.camera = run::fit_points(run::real_corners(rep), rep.dim(), fit);
+  panel.camera = pictures::fit_points(pictures::real_corners(rep), rep.dim(), fit);
   const std::string name = std::filesystem::path(map.mesh.name).filename().string();
   panel.title = (name.empty() ? "mesh" : name) + (from_behind ? ", from behind" : "");
-  panel.lighting = run::kScaleLighting;
+  panel.lighting = pictures::kScaleLighting;
   return panel;
 }
 
@@ -51,7 +52,7 @@ render::Image draw_waste(std::span<const WasteMap> maps) {
   for (const WasteMap& map : maps)
     most = std::max(most, *std::max_element(map.waste.begin(), map.waste.end()));
   const render::ScaleBar scale{"wasted visits per triangle (log scale)", most / kRange, most, true};
-  std::vector<run::Panel> panels;
+  std::vector<pictures::Panel> panels;
   for (const WasteMap& map : maps) {
     const bodies::LoadedBody body = captured_body(map.mesh);
     for (const bool from_behind : {false, true})
@@ -64,7 +65,7 @@ render::Image draw_waste(std::span<const WasteMap> maps) {
   options.columns = 2;
   render::Overlay overlay;
   overlay.scale = scale;
-  return run::with_overlay(run::draw_sheet(panels, look, options), overlay);
+  return pictures::with_overlay(pictures::draw_sheet(panels, look, options), overlay);
 }
 
 std::uint64_t visits_in(const capture::Capture& capture) {
@@ -284,7 +285,7 @@ std::string sentence_of_faults(const std::set<std::uint32_t>& trees, CapturedBod
 }  // namespace
 
 Check check(const capture::Capture& capture, const CheckSettings& settings,
-            const run::ProgressReport& progress) {
+            const record::ProgressReport& progress) {
   Check out;
   out.engine = capture.engine;
   out.precision = settings.precision.value_or(precision_of(capture));

@@ -75,7 +75,7 @@ struct Check {
 
 /// Checks all queries of a capture. Throws InputError for meshes and poses that cannot be queried.
 Check check(const capture::Capture& capture, const CheckSettings& settings,
-            const run::ProgressReport& progress = run::kSilent);
+            const record::ProgressReport& progress = record::kSilent);
 
 /// Returns the prices by engine and kind of query, in percent of the visits.
 report::Table price_table(std::span<const Check> checks);

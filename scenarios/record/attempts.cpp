@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-namespace lrb::run {
+namespace lrb::record {
 namespace {
 
 using trace::EventId;
@@ -73,4 +73,4 @@ std::uint32_t rejected(const VerdictCounts& verdicts) {
   return std::accumulate(verdicts.begin() + 1, verdicts.end(), 0u);
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::record

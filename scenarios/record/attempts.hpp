@@ -11,7 +11,7 @@
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/trace/trace.hpp>
 
-namespace lrb::run {
+namespace lrb::record {
 
 /// A cap that was tried over a patch of the front.
 struct Attempt {
@@ -43,4 +43,4 @@ VerdictCounts verdicts_of(std::span<const Attempt> attempts, std::span<const std
 /// Returns how many of them are rejected.
 std::uint32_t rejected(const VerdictCounts& verdicts);
 
-}  // namespace lrb::run
+}  // namespace lrb::record

@@ -8,7 +8,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/explain.hpp>
 
-namespace lrb::run {
+namespace lrb::record {
 namespace {
 
 using nlohmann::json;
@@ -96,7 +96,7 @@ bool is_compared(const std::optional<trace::EngineReport>& report) {
          (report->query != trace::EngineQuery::first_contact && report->query != trace::EngineQuery::shape);
 }
 
-CollideResult exact_answer(const PosedBodies& bodies, const CollideRequest& request,
+CollideResult exact_answer(const pictures::PosedBodies& bodies, const CollideRequest& request,
                            const std::optional<trace::EngineReport>& report,
                            std::span<const SimplexPair> found) {
   const auto& [a, pose_a, b, pose_b] = bodies;
@@ -124,10 +124,11 @@ std::vector<SimplexPair> pairs_found(std::span<const trace::Event> events) {
   return out;
 }
 
-std::vector<WrongPair> wrong_pairs(std::span<const SimplexPair> found, std::span<const SimplexPair> exact,
-                                   const std::optional<trace::EngineReport>& report) {
+std::vector<pictures::WrongPair> wrong_pairs(std::span<const SimplexPair> found,
+                                             std::span<const SimplexPair> exact,
+                                             const std::optional<trace::EngineReport>& report) {
   using trace::EngineQuery, trace::EngineVerdict;
-  std::vector<WrongPair> out;
+  std::vector<pictures::WrongPair> out;
   if (!is_compared(report)) return out;
   std::vector<SimplexPair> pairs;
   std::set_difference(found.begin(), found.end(), exact.begin(), exact.end(), std::back_inserter(pairs));
@@ -142,13 +143,13 @@ std::vector<WrongPair> wrong_pairs(std::span<const SimplexPair> found, std::span
   return out;
 }
 
-AnswerScore score_of(const trace::StepResult& answer, std::span<const WrongPair> wrong,
+AnswerScore score_of(const trace::StepResult& answer, std::span<const pictures::WrongPair> wrong,
                      const CollideResult& exact) {
   using trace::EngineQuery, trace::EngineVerdict;
   AnswerScore out;
   if (!is_compared(answer.engine)) return out;
   out.missed = static_cast<std::uint64_t>(
-      std::count_if(wrong.begin(), wrong.end(), [](const WrongPair& w) { return w.missed; }));
+      std::count_if(wrong.begin(), wrong.end(), [](const pictures::WrongPair& w) { return w.missed; }));
   out.false_pairs = wrong.size() - out.missed;
   out.right = answer.pair_count - out.false_pairs;
   // Whether a body intersects itself is not computed.
@@ -158,4 +159,4 @@ AnswerScore score_of(const trace::StepResult& answer, std::span<const WrongPair>
   return out;
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::record

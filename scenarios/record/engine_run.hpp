@@ -14,7 +14,7 @@
 #include <lrbscope/trace/trace.hpp>
 #include <lrbscope/trace/work.hpp>
 
-namespace lrb::run {
+namespace lrb::record {
 
 /// File in a run's folder with the trees of another engine, because its trace names their nodes by number.
 inline constexpr const char* kTreesFile = "trees.json";
@@ -29,7 +29,7 @@ std::vector<trace::TreeShape> read_trees(const std::string& text, const std::str
 /// Returns lrbscope's answer, with contact regions, to a query that another engine answered with the pairs
 /// `found`. For a query of a body with itself, in which all neighbouring faces touch: those of `found` that
 /// intersect.
-CollideResult exact_answer(const PosedBodies& bodies, const CollideRequest& request,
+CollideResult exact_answer(const pictures::PosedBodies& bodies, const CollideRequest& request,
                            const std::optional<trace::EngineReport>& report,
                            std::span<const SimplexPair> found);
 
@@ -40,8 +40,9 @@ std::vector<SimplexPair> pairs_found(std::span<const trace::Event> events);
 /// then those missed. A query for any pair misses one only if it found the bodies separate; a query of a body
 /// with itself, or one without all its events, is not known to miss any. The pairs of a search for the first
 /// contact are at other poses and not compared.
-std::vector<WrongPair> wrong_pairs(std::span<const SimplexPair> found, std::span<const SimplexPair> exact,
-                                   const std::optional<trace::EngineReport>& report);
+std::vector<pictures::WrongPair> wrong_pairs(std::span<const SimplexPair> found,
+                                             std::span<const SimplexPair> exact,
+                                             const std::optional<trace::EngineReport>& report);
 
 /// Returns false for first contacts and shapes, whose answers are not checked.
 bool is_compared(const std::optional<trace::EngineReport>& report);
@@ -52,7 +53,7 @@ struct AnswerScore {
   std::optional<bool> verdict;  ///< its verdict is right; nullopt: it has none that can be compared
 };
 /// `wrong`: as returned by wrong_pairs().
-AnswerScore score_of(const trace::StepResult& answer, std::span<const WrongPair> wrong,
+AnswerScore score_of(const trace::StepResult& answer, std::span<const pictures::WrongPair> wrong,
                      const CollideResult& exact);
 
-}  // namespace lrb::run
+}  // namespace lrb::record

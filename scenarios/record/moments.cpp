@@ -8,7 +8,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/counters.hpp>
 
-namespace lrb::run {
+namespace lrb::record {
 namespace {
 
 using trace::EventId;
@@ -111,7 +111,7 @@ std::vector<EventId> moments(const render::FrameSpec& spec, const trace::Trace& 
       break;
   }
   std::vector<EventId> out;
-  for (const std::size_t i : evenly(all.size(), spec.most)) out.push_back(all[i]);
+  for (const std::size_t i : pictures::evenly(all.size(), spec.most)) out.push_back(all[i]);
   return out;
 }
 
@@ -214,4 +214,4 @@ ThinnedEvents thin_events(const trace::Trace& trace, std::size_t most) {
   return out;
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::record

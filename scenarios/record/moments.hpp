@@ -7,7 +7,7 @@
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/trace/trace.hpp>
 
-namespace lrb::run {
+namespace lrb::record {
 
 /// Returns the events after which pictures are taken, ascending, at most spec.most of them. Throws InputError
 /// for events that the trace does not have, and for passes if it is not a construction.
@@ -42,4 +42,4 @@ ThinnedEvents thin_events(const trace::Trace& trace, std::size_t most);
 /// Returns the first contact of a run, or kNull if there is none.
 trace::EventId first_contact(const trace::Trace& trace);
 
-}  // namespace lrb::run
+}  // namespace lrb::record

@@ -21,7 +21,7 @@
 #include <lrbscope/trace/trace_json.hpp>
 #include <lrbscope/workspace.hpp>
 
-namespace lrb::run {
+namespace lrb::record {
 namespace {
 
 /// Throws if an event locates a vertex that the body does not have.
@@ -71,7 +71,7 @@ void add_contacts(Recording& run) {
     // Pairs of a step whose events were cut are not all known.
     const bool is_whole = step.events_seen == trace.events_of(i).size();
     run.wrong.push_back(is_whole ? wrong_pairs(found, run.results.back().pairs, report)
-                                 : std::vector<WrongPair>());
+                                 : std::vector<pictures::WrongPair>());
   }
 }
 
@@ -461,4 +461,4 @@ void remove_old_frames(const std::string& folder) {
     std::filesystem::remove(folder + file, error);
 }
 
-}  // namespace lrb::run
+}  // namespace lrb::record

@@ -14,7 +14,7 @@
 #include <lrbscope/trace/trace.hpp>
 #include <lrbscope/trace/work.hpp>
 
-namespace lrb::run {
+namespace lrb::record {
 
 /// Called with the progress of a long job: the current activity, the amount done, the total.
 using ProgressReport = std::function<void(const std::string& what, std::uint64_t done, std::uint64_t total)>;
@@ -29,7 +29,7 @@ struct Recording {
   std::vector<trace::TreeShape> trees;
   /// The wrong pairs of another engine, for each step: first those reported wrongly, then those missed. Empty
   /// if only lrbscope was recorded.
-  std::vector<std::vector<WrongPair>> wrong;
+  std::vector<std::vector<pictures::WrongPair>> wrong;
   std::vector<std::string> notes;  ///< notes as text
 };
 
@@ -88,4 +88,4 @@ std::string frame_file(std::size_t frame);
 /// Removes the output of an earlier run: frames, montage and its caption, certificate of separation.
 void remove_old_frames(const std::string& folder);
 
-}  // namespace lrb::run
+}  // namespace lrb::record

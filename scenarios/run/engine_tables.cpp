@@ -13,24 +13,24 @@
 namespace lrb::run {
 namespace {
 
-bool is_checked(const RecordedRun& p) {
+bool is_checked(const frames::RecordedRun& p) {
   return p.results != nullptr && !p.results->empty() && p.wrong != nullptr &&
          p.wrong->size() == p.results->size();
 }
 
-AnswerScore score_at(const RecordedRun& p, std::size_t step) {
-  return score_of(p.trace->steps[step].result, (*p.wrong)[step], (*p.results)[step]);
+record::AnswerScore score_at(const frames::RecordedRun& p, std::size_t step) {
+  return record::score_of(p.trace->steps[step].result, (*p.wrong)[step], (*p.results)[step]);
 }
 
 /// Sums over the steps of a run.
 struct EngineTotals {
-  AnswerScore pairs;
+  record::AnswerScore pairs;
   std::uint64_t verdicts = 0, wrong_verdicts = 0, wrong_queries = 0, intersecting = 0;
   bool has_pairs = false;  ///< all tests of some query were recorded
   std::uint64_t box_tests = 0, node_pairs = 0, face_tests = 0;
 };
 
-EngineTotals totals_of(const RecordedRun& p) {
+EngineTotals totals_of(const frames::RecordedRun& p) {
   EngineTotals out;
   for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
     const trace::StepResult& r = p.trace->steps[i].result;
@@ -40,7 +40,7 @@ EngineTotals totals_of(const RecordedRun& p) {
     out.node_pairs += r.counters.node_pairs;
     out.face_tests += r.counters.face_tests;
     if (!is_checked(p)) continue;
-    const AnswerScore s = score_at(p, i);
+    const record::AnswerScore s = score_at(p, i);
     out.pairs.right += s.right, out.pairs.missed += s.missed, out.pairs.false_pairs += s.false_pairs;
     out.verdicts += s.verdict.has_value();
     out.wrong_verdicts += s.verdict == false;
@@ -51,7 +51,7 @@ EngineTotals totals_of(const RecordedRun& p) {
 
 }  // namespace
 
-std::string engine_sentence(const RecordedRun& p) {
+std::string engine_sentence(const frames::RecordedRun& p) {
   using render::counted, render::group_digits;
   const EngineTotals t = totals_of(p);
   const std::uint64_t tests = t.box_tests + t.face_tests;
@@ -63,7 +63,7 @@ std::string engine_sentence(const RecordedRun& p) {
   return out + ".";
 }
 
-void add_engine_answer(report::Document& doc, const RecordedRun& p) {
+void add_engine_answer(report::Document& doc, const frames::RecordedRun& p) {
   using render::counted, render::group_digits;
   const EngineTotals t = totals_of(p);
   const std::size_t steps = p.trace->steps.size();
@@ -88,7 +88,7 @@ void add_engine_answer(report::Document& doc, const RecordedRun& p) {
                                               p.reps[1]->real_simplex_count() * steps)});
 }
 
-std::vector<report::Chart> engine_charts(const RecordedRun& p) {
+std::vector<report::Chart> engine_charts(const frames::RecordedRun& p) {
   const std::vector<trace::Step>& steps = p.trace->steps;
   if (steps.size() < 2) return {};
   const auto series = [&](const char* name, const auto& value) {
@@ -114,13 +114,13 @@ std::vector<report::Chart> engine_charts(const RecordedRun& p) {
     return r.engine && !r.engine->complete ? r.engine->pairs : r.pair_count;
   })};
   if (is_checked(p)) {
-    const auto add_unless_zero = [&](const char* name, std::uint64_t AnswerScore::*which) {
+    const auto add_unless_zero = [&](const char* name, std::uint64_t record::AnswerScore::*which) {
       report::Series s = series(name, [&](std::size_t i) { return score_at(p, i).*which; });
       if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; }))
         pairs.series.push_back(std::move(s));
     };
-    add_unless_zero("missed", &AnswerScore::missed);
-    add_unless_zero("false", &AnswerScore::false_pairs);
+    add_unless_zero("missed", &record::AnswerScore::missed);
+    add_unless_zero("false", &record::AnswerScore::false_pairs);
   }
   const auto is_above = [](const report::Chart& chart, double least) {
     return std::any_of(chart.series.begin(), chart.series.end(), [&](const report::Series& s) {
@@ -144,7 +144,7 @@ std::vector<report::Chart> engine_charts(const RecordedRun& p) {
   return out;
 }
 
-report::Table engine_table(const RecordedRun& p) {
+report::Table engine_table(const frames::RecordedRun& p) {
   using render::group_digits;
   constexpr std::size_t kMaxRows = 200;
   const trace::Trace& trace = *p.trace;
@@ -185,8 +185,8 @@ report::Table engine_table(const RecordedRun& p) {
       if (is_shown && t.rows.size() == 1) t.columns.emplace_back(column);
       if (is_shown) row.push_back(std::move(text));
     };
-    const AnswerScore score = checked ? score_at(p, i) : AnswerScore();
-    const bool is_compared = run::is_compared(report);
+    const record::AnswerScore score = checked ? score_at(p, i) : record::AnswerScore();
+    const bool is_compared = record::is_compared(report);
     const auto number = [&](std::uint64_t n) { return is_compared ? group_digits(n) : std::string(); };
     cell(has_kinds, "kind", io::in_words(name_of(report.query)));
     cell(true, "engine's verdict",
@@ -221,7 +221,7 @@ report::Table engine_table(const RecordedRun& p) {
   return t;
 }
 
-std::vector<report::Table> engine_counter_tables(const RecordedRun& p) {
+std::vector<report::Table> engine_counter_tables(const frames::RecordedRun& p) {
   using render::group_digits;
   struct Sum {
     std::uint64_t times = 0, all = 0, least = 0, most = 0;

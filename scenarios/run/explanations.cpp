@@ -271,14 +271,14 @@ struct ComparedPair {
   bool same_pair(const ComparedPair& o) const { return step == o.step && pair == o.pair; }
 };
 
-bool is_answered(const RecordedRun& p) {
+bool is_answered(const frames::RecordedRun& p) {
   const CollideRequest& request = p.trace->header.request;
   return p.reps.size() == 2 && request.recursion == Recursion::complete && !request.is_coarse();
 }
 
 /// Returns the distinct pairs of real faces that events compare, and those with a wrong result of another
 /// engine, by step.
-std::vector<ComparedPair> pairs_of(const RecordedRun& p, const Explained& what) {
+std::vector<ComparedPair> pairs_of(const frames::RecordedRun& p, const Explained& what) {
   std::vector<ComparedPair> out;
   std::size_t step = 0;
   for (const trace::EventId id : what.events) {
@@ -292,7 +292,7 @@ std::vector<ComparedPair> pairs_of(const RecordedRun& p, const Explained& what) 
   }
   if (p.wrong != nullptr && !p.wrong->empty())
     for (const std::uint32_t s : what.steps)
-      for (const WrongPair& w : (*p.wrong)[s]) out.push_back({s, w.pair, w.missed});
+      for (const pictures::WrongPair& w : (*p.wrong)[s]) out.push_back({s, w.pair, w.missed});
   std::sort(out.begin(), out.end(), [](const ComparedPair& x, const ComparedPair& y) {
     if (!x.same_pair(y)) return x.step != y.step ? x.step < y.step : x.pair < y.pair;
     return x.meets > y.meets;
@@ -310,8 +310,8 @@ void choose(std::vector<ComparedPair>& pairs, std::size_t most) {
   const auto meeting = static_cast<std::size_t>(
       std::count_if(pairs.begin(), pairs.end(), [](const ComparedPair& x) { return x.meets; }));
   std::vector<ComparedPair> out;
-  for (const std::size_t i : evenly(meeting, most)) out.push_back(pairs[i]);
-  for (const std::size_t i : evenly(pairs.size() - meeting, most - out.size()))
+  for (const std::size_t i : pictures::evenly(meeting, most)) out.push_back(pairs[i]);
+  for (const std::size_t i : pictures::evenly(pairs.size() - meeting, most - out.size()))
     out.push_back(pairs[meeting + i]);
   std::stable_sort(out.begin(), out.end(),
                    [](const ComparedPair& x, const ComparedPair& y) { return x.step < y.step; });
@@ -397,7 +397,7 @@ json gap_json(const BoxPair& boxes) {
       {"a", boxes.node[0]}, {"b", boxes.node[1]}, {"gap", rounded(boxes.gap)}, {"axis", name_of(boxes.axis)}};
 }
 
-std::string packed_square(const Square& corners, const SceneFrame& frame) {
+std::string packed_square(const pictures::Square& corners, const SceneFrame& frame) {
   std::vector<float> out;
   for (const Eigen::Vector3d& x : corners) frame.add_point(out, x);
   return packed(out);
@@ -412,20 +412,21 @@ json boxes_json(const SeparatingBoxes& boxes, int dim, const SceneFrame& frame) 
   json out = gap_json(boxes.pair);
   out["ofFaces"] = boxes.of_faces;
   out["places"] = packed(places);
-  out["square"] = packed_square(separating_square(boxes, dim), frame);
+  out["square"] = packed_square(pictures::separating_square(boxes, dim), frame);
   return out;
 }
 
-json plane_json(const SeparatingPlane& plane, const RecordedRun& p, const trace::Step& step,
+json plane_json(const SeparatingPlane& plane, const frames::RecordedRun& p, const trace::Step& step,
                 const SceneFrame& frame) {
-  const Square square = separating_square(plane, {*p.reps[0], step.pose_a, *p.reps[1], step.pose_b});
+  const pictures::Square square =
+      pictures::separating_square(plane, {*p.reps[0], step.pose_a, *p.reps[1], step.pose_b});
   const Eigen::Vector3d& n = plane.normal;
   return {{"gap", rounded(plane.gap())},
           {"normal", {rounded(n.x()), rounded(n.y()), rounded(n.z())}},
           {"square", packed_square(square, frame)}};
 }
 
-json walk_json(const RecordedRun& p, const trace::Step& step, const SceneFrame& frame) {
+json walk_json(const frames::RecordedRun& p, const trace::Step& step, const SceneFrame& frame) {
   const WalkExplanation e = explain_walk(*p.reps[0], step.pose_a, *p.reps[1], step.pose_b);
   json depths = json::array();
   for (const WalkDepth& d : e.depths) depths.push_back({d.node_pairs, d.ended});
@@ -450,7 +451,8 @@ bool is_of_shape(const trace::Step& step) {
 }
 
 /// Explains the steps without pairs; evenly spaced ones if there are too many.
-json steps_json(const RecordedRun& p, const Explained& what, const SceneFrame& frame, std::size_t most) {
+json steps_json(const frames::RecordedRun& p, const Explained& what, const SceneFrame& frame,
+                std::size_t most) {
   Numbers empty;
   for (std::uint32_t i = 0; i < what.steps.size(); ++i) {
     const trace::Step& step = p.trace->steps[what.steps[i]];
@@ -462,7 +464,7 @@ json steps_json(const RecordedRun& p, const Explained& what, const SceneFrame& f
       empty.push_back(i);
   }
   json out = json::array();
-  for (const std::size_t i : evenly(empty.size(), most)) {
+  for (const std::size_t i : pictures::evenly(empty.size(), most)) {
     out.push_back(walk_json(p, p.trace->steps[what.steps[empty[i]]], frame));
     out.back()["step"] = empty[i];
   }
@@ -471,7 +473,7 @@ json steps_json(const RecordedRun& p, const Explained& what, const SceneFrame& f
 
 }  // namespace
 
-json explanations_json(const RecordedRun& p, const Explained& what, const SceneFrame& frame,
+json explanations_json(const frames::RecordedRun& p, const Explained& what, const SceneFrame& frame,
                        const std::string& command, const ExplainLimits& limits) {
   if (!is_answered(p)) return nullptr;
   std::vector<ComparedPair> pairs = pairs_of(p, what);

@@ -62,7 +62,8 @@ struct Explained {
 /// pairs. If there are too many pairs, contacts come first; others are evenly chosen. `command` explains
 /// other pairs, see ReportText::why. Returns null for a run of one body, and for requests that the complete
 /// query does not answer.
-nlohmann::json explanations_json(const RecordedRun& recorded, const Explained& what, const SceneFrame& frame,
-                                 const std::string& command, const ExplainLimits& limits = {});
+nlohmann::json explanations_json(const frames::RecordedRun& recorded, const Explained& what,
+                                 const SceneFrame& frame, const std::string& command,
+                                 const ExplainLimits& limits = {});
 
 }  // namespace lrb::run

@@ -9,7 +9,7 @@
 
 namespace lrb::run {
 
-nlohmann::json map_json(const RecordedRun& p) {
+nlohmann::json map_json(const frames::RecordedRun& p) {
   using nlohmann::json;
   const trace::TraceHeader& header = p.trace->header;
   const bool ours = header.engine.empty();
@@ -23,8 +23,8 @@ nlohmann::json map_json(const RecordedRun& p) {
       walked.insert({{0, e.phase_begin().walked_a}, {1, e.phase_begin().walked_b}});
   json trees = json::array(), open = json::array(), arguments = json::array();
   for (const auto& [side, number] : walked) {
-    const trace::TreeShape tree = walked_shape(p, side, number);
-    const MapAxis axis(tree);
+    const trace::TreeShape tree = frames::walked_shape(p, side, number);
+    const frames::MapAxis axis(tree);
     if (axis.repeats) return nullptr;
     std::vector<std::uint32_t> parent(tree.size(), kNull);
     for (const std::uint32_t n : tree.from_root())
@@ -41,14 +41,15 @@ nlohmann::json map_json(const RecordedRun& p) {
   const bool complete =
       ours && header.request.mode == Mode::all_pairs && !header.request.is_coarse() && !p.trace->truncated();
   for (std::size_t step = 0; step < p.trace->steps.size() && !complete; ++step)
-    if (const std::optional<ProofMap> map = proof_map(p, step))
-      for (const MapCell& cell : map->cells)
-        if (cell.argument == Argument::open)
+    if (const std::optional<frames::ProofMap> map = frames::proof_map(p, step))
+      for (const frames::MapCell& cell : map->cells)
+        if (cell.argument == frames::Argument::open)
           open.push_back(std::to_string(cell.event) + " " + std::to_string(cell.node[0]) + " " +
                          std::to_string(cell.node[1]));
-  for (std::size_t i = 0; i < kArguments; ++i) {
-    const ArgumentLook& look = look_of(static_cast<Argument>(i));
-    const std::string name = argument_name(static_cast<Argument>(i), p, p.trace->steps.back());
+  for (std::size_t i = 0; i < frames::kArguments; ++i) {
+    const frames::ArgumentLook& look = frames::look_of(static_cast<frames::Argument>(i));
+    const std::string name =
+        frames::argument_name(static_cast<frames::Argument>(i), p, p.trace->steps.back());
     arguments.push_back({{"name", name}, {"colour", render::css(look.colour)}, {"pale", look.pale}});
   }
   return {{"trees", std::move(trees)}, {"open", std::move(open)}, {"arguments", std::move(arguments)}};

@@ -12,17 +12,18 @@
 namespace lrb::run {
 namespace {
 
-std::optional<MarkedSegment> separation_vector_in(const RecordedRun& p, std::size_t step) {
+std::optional<pictures::MarkedSegment> separation_vector_in(const frames::RecordedRun& p, std::size_t step) {
   const trace::Step& s = p.trace->steps[step];
   if (!s.result.clash) return std::nullopt;
   std::span<const ContactRegion> contacts;
   if (p.results != nullptr && step < p.results->size()) contacts = (*p.results)[step].regions;
-  return separation_vector_of(*s.result.clash, {*p.reps[0], s.pose_a, *p.reps[1], s.pose_b}, contacts);
+  return frames::separation_vector_of(*s.result.clash, {*p.reps[0], s.pose_a, *p.reps[1], s.pose_b},
+                                      contacts);
 }
 
 }  // namespace
 
-nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
+nlohmann::json measured_json(const frames::RecordedRun& p, const SceneFrame& frame) {
   // The order of MEASURED in scene_marks.js.
   enum Kind : std::uint32_t { gap, separation_vector, near_pair, contact, point, point_inside };
   constexpr std::size_t kMaxOfStep = 100;  // near pairs, contacts, and points
@@ -40,28 +41,29 @@ nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame) {
   for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
     const trace::Step& s = p.trace->steps[i];
     if (!s.finished) continue;
-    if (const auto segment = s.result.distance ? gap_of(*s.result.distance) : std::nullopt)
+    if (const auto segment = s.result.distance ? frames::gap_of(*s.result.distance) : std::nullopt)
       add(s, gap, segment->from, segment->to, "distance " + segment->text);
     if (const auto segment = separation_vector_in(p, i))
       add(s, separation_vector, segment->from, segment->to, "depth " + segment->text);
     if (s.result.near) {
-      const std::vector<NearMark> marks = near_marks(*s.result.near);
+      const std::vector<pictures::NearMark> marks = frames::near_marks(*s.result.near);
       for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
-        add(s, near_pair, marks[k].points[0], marks[k].points[1], k == 0 ? text_of(*s.result.near) : "");
+        add(s, near_pair, marks[k].points[0], marks[k].points[1],
+            k == 0 ? frames::text_of(*s.result.near) : "");
     }
     if (s.result.manifold) {
-      const std::vector<ContactMark> marks = contact_marks(*s.result.manifold);
+      const std::vector<pictures::ContactMark> marks = frames::contact_marks(*s.result.manifold);
       const std::vector<double> lengths =
-          normal_lengths(marks, size_of({*p.reps[0], s.pose_a, *p.reps[1], s.pose_b}));
+          pictures::normal_lengths(marks, pictures::size_of({*p.reps[0], s.pose_a, *p.reps[1], s.pose_b}));
       for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
         add(s, contact, marks[k].point, marks[k].point + lengths[k] * marks[k].normal,
-            k == 0 ? text_of(*s.result.manifold) : "");
+            k == 0 ? frames::text_of(*s.result.manifold) : "");
     }
     if (s.result.points) {
-      const std::vector<PointMark> marks = point_marks(*s.result.points);
+      const std::vector<pictures::PointMark> marks = frames::point_marks(*s.result.points);
       for (std::size_t k = 0; k < std::min(kMaxOfStep, marks.size()); ++k)
         add(s, marks[k].side == Where::inside ? point_inside : point, marks[k].point, marks[k].closest,
-            k == 0 ? text_of(*s.result.points) : "");
+            k == 0 ? frames::text_of(*s.result.points) : "");
     }
   }
   if (steps.empty()) return nullptr;

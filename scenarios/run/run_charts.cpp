@@ -110,25 +110,26 @@ report::Table rejection_table(const Passes& passes) {
 }
 
 /// Returns the regions where most caps were rejected first, and how each was made.
-report::Table region_table(const RecordedRun& p) {
+report::Table region_table(const frames::RecordedRun& p) {
   constexpr std::size_t kMaxRows = 200;
   const LrbRep& rep = *p.reps[0];
-  const std::vector<Attempt> attempts = attempts_of(*p.trace);
-  const auto of_region = attempts_by_region(*p.trace, rep, attempts);
-  std::vector<VerdictCounts> verdicts;
+  const std::vector<record::Attempt> attempts = record::attempts_of(*p.trace);
+  const auto of_region = record::attempts_by_region(*p.trace, rep, attempts);
+  std::vector<record::VerdictCounts> verdicts;
   std::vector<RegionId> order;
   for (RegionId r(0); r < rep.region_count(); ++r) {
-    verdicts.push_back(verdicts_of(attempts, of_region[r]));
+    verdicts.push_back(record::verdicts_of(attempts, of_region[r]));
     order.push_back(r);
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](RegionId x, RegionId y) { return rejected(verdicts[x]) > rejected(verdicts[y]); });
+  std::stable_sort(order.begin(), order.end(), [&](RegionId x, RegionId y) {
+    return record::rejected(verdicts[x]) > record::rejected(verdicts[y]);
+  });
   report::Table t{"Regions, by the caps rejected there",
                   {"region", "pass", "lids", "floor", "attempts", "rejected", "reasons"}};
   for (const RegionId r : std::span(order).first(std::min(order.size(), kMaxRows))) {
     t.rows.push_back({group_digits(r), std::to_string(rep.layer(r) + 1), group_digits(rep.lids(r).size()),
                       group_digits(rep.floor(r).size()), group_digits(of_region[r].size()),
-                      group_digits(rejected(verdicts[r])), trace::rejection_text(verdicts[r])});
+                      group_digits(record::rejected(verdicts[r])), trace::rejection_text(verdicts[r])});
     t.targets.push_back("region 0 " + std::to_string(r));
   }
   t.note =
@@ -151,7 +152,7 @@ std::string_view meaning_of(CapVerdict verdict) {
   return kMeanings[static_cast<std::size_t>(verdict)];
 }
 
-void add_construction(report::Document& doc, const RecordedRun& p) {
+void add_construction(report::Document& doc, const frames::RecordedRun& p) {
   const Passes passes = trace::passes_of(*p.trace);
   const auto made = std::count_if(passes.begin(), passes.end(), [](const auto& s) { return s.regions > 0; });
   doc.number({"Passes", std::to_string(made),

@@ -17,14 +17,14 @@ std::string_view meaning_for_engines(std::string_view name);
 
 /// Returns the key figures of a step of two bodies, the relation first. Returns an empty list for a step that
 /// is not finished, and for other runs.
-std::vector<report::Number> step_numbers(const RecordedRun& recorded, std::size_t step);
+std::vector<report::Number> step_numbers(const frames::RecordedRun& recorded, std::size_t step);
 
 /// Returns what a verdict on a cap means, as a clause.
 std::string_view meaning_of(CapVerdict verdict);
 
 /// Adds a construction: its key figures, charts of the front and of caps, and tables of passes, of verdicts
 /// on caps and of regions.
-void add_construction(report::Document& doc, const RecordedRun& recorded);
+void add_construction(report::Document& doc, const frames::RecordedRun& recorded);
 
 /// Returns true if any step of a trace has this measurement.
 template <class Measured>
@@ -40,24 +40,24 @@ std::vector<report::Chart> measure_charts(const trace::Trace& trace);
 
 /// Returns the counters by region depth, and of the regions with the most tests, for each body. Returns
 /// an empty list for a run of one body.
-std::vector<report::Table> group_tables(const RecordedRun& run);
+std::vector<report::Table> group_tables(const frames::RecordedRun& run);
 
 /// Returns the parts of the queries with their costs, and the traversal of each body's tree by depth beside
 /// the expectation of the surface area heuristic. Returns an empty list for a trace without these events.
-std::vector<report::Table> work_tables(const RecordedRun& run);
+std::vector<report::Table> work_tables(const frames::RecordedRun& run);
 
 /// Returns the run of another engine in a sentence, for the top of its page.
-std::string engine_sentence(const RecordedRun& recorded);
+std::string engine_sentence(const frames::RecordedRun& recorded);
 /// Adds the verdict and the key figures of a run of another engine that reported its answers.
-void add_engine_answer(report::Document& doc, const RecordedRun& recorded);
+void add_engine_answer(report::Document& doc, const frames::RecordedRun& recorded);
 /// Returns charts of tests, pairs and times by query; empty for a single query.
-std::vector<report::Chart> engine_charts(const RecordedRun& run);
+std::vector<report::Chart> engine_charts(const frames::RecordedRun& run);
 /// Returns the table of such a run's queries: the engine's answers beside the exact ones.
-report::Table engine_table(const RecordedRun& run);
+report::Table engine_table(const frames::RecordedRun& run);
 /// Returns a table of the counters that the engine reported; empty if there are none.
-std::vector<report::Table> engine_counter_tables(const RecordedRun& run);
+std::vector<report::Table> engine_counter_tables(const frames::RecordedRun& run);
 
 /// Returns the quality sheet of the bodies.
-report::Table quality_table(const RecordedRun& run);
+report::Table quality_table(const frames::RecordedRun& run);
 
 }  // namespace lrb::run

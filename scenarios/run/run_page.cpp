@@ -44,7 +44,7 @@ std::size_t pseudo_pairs(const trace::Trace& trace, std::size_t step) {
 /// Adds the measurements of a step other than pairs.
 void add_measured(const trace::StepResult& r, std::vector<report::Number>& out) {
   if (r.distance)
-    out.push_back({"Distance", interval_text(r.distance->lower, r.distance->upper),
+    out.push_back({"Distance", pictures::interval_text(r.distance->lower, r.distance->upper),
                    std::string("of the surfaces, proven") +
                        (r.distance->solids_meet && r.distance->upper > 0 ? ". The solids overlap" : "")});
   if (r.near)
@@ -57,20 +57,21 @@ void add_measured(const trace::StepResult& r, std::vector<report::Number>& out) 
   if (r.points)
     out.push_back({r.points->has_sides ? "Points inside" : "Points",
                    render::group_digits(r.points->has_sides ? r.points->inside : r.points->count),
-                   text_of(*r.points)});
+                   frames::text_of(*r.points)});
   if (!r.clash) return;
-  out.push_back({"Contact kind", kind_text(r.clash->kind), std::string(name_of(r.clash->reason))});
+  out.push_back({"Contact kind", pictures::kind_text(r.clash->kind), std::string(name_of(r.clash->reason))});
   if (r.clash->depth)
-    out.push_back({"Penetration depth", interval_text((*r.clash->depth)[0], (*r.clash->depth)[1]),
+    out.push_back({"Penetration depth", pictures::interval_text((*r.clash->depth)[0], (*r.clash->depth)[1]),
                    std::string("length of B's separation vector, proven") +
                        (r.clash->finished ? "" : ". The limit of steps was reached")});
   if (r.clash->volume)
-    out.push_back({"Shared volume", interval_text((*r.clash->volume)[0], (*r.clash->volume)[1]), ""});
+    out.push_back(
+        {"Shared volume", pictures::interval_text((*r.clash->volume)[0], (*r.clash->volume)[1]), ""});
 }
 
 }  // namespace
 
-std::vector<report::Number> step_numbers(const RecordedRun& p, std::size_t step) {
+std::vector<report::Number> step_numbers(const frames::RecordedRun& p, std::size_t step) {
   const trace::Step& s = p.trace->steps[step];
   if (!s.finished || p.reps.size() != 2 || p.trace->has_engine_reports()) return {};
   const trace::StepResult& r = s.result;
@@ -80,7 +81,7 @@ std::vector<report::Number> step_numbers(const RecordedRun& p, std::size_t step)
   if (p.trace->header.request.is_coarse()) {
     out.back().note =
         "of wrappers: " + render::group_digits(pseudo_pairs(*p.trace, step)) + " with a pseudo face";
-    out.push_back({"Error bound", error_bound_text(r.error_bound),
+    out.push_back({"Error bound", frames::error_bound_text(r.error_bound),
                    r.finished ? "deviation of those wrappers from the bodies"
                               : "a limit was reached before the tolerance"});
   } else if (p.results != nullptr && step < p.results->size()) {
@@ -100,7 +101,7 @@ std::vector<report::Number> step_numbers(const RecordedRun& p, std::size_t step)
 
 namespace {
 
-std::string body_text(const RecordedRun& p, std::size_t side) {
+std::string body_text(const frames::RecordedRun& p, std::size_t side) {
   const LrbRep& rep = *p.reps[side];
   const std::string name = std::filesystem::path(p.trace->header.bodies[side].name).stem().string();
   return std::string(p.reps.size() == 1 ? ""
@@ -116,7 +117,7 @@ std::uint64_t tests_of(const trace::Step& step) {
 }
 
 /// Returns the bodies, their first contact and the costliest query, in a sentence.
-std::string sentence_of(const RecordedRun& p) {
+std::string sentence_of(const frames::RecordedRun& p) {
   using render::counted;
   if (p.reps.size() == 2) {
     const std::string both = body_text(p, 0) + ", " + body_text(p, 1);
@@ -127,7 +128,7 @@ std::string sentence_of(const RecordedRun& p) {
     if (const auto& search = p.trace->header.first_contact; search && search->step)
       out += ". First touch at " + spec::contact_step(*search) + ", " + spec::contact_way(*search) +
              ", proven collision-free until then";
-    else if (const trace::EventId at = first_contact(*p.trace); at != kNull)
+    else if (const trace::EventId at = record::first_contact(*p.trace); at != kNull)
       out += steps.size() > 1
                  ? ". They intersect from step " + std::to_string(steps[p.trace->step_of(at)].index)
                  : ". They intersect";
@@ -191,7 +192,7 @@ std::string colour_of(std::string_view curve) {
 }
 
 /// Returns true for the curve of a wrapper if its body has no wrapper, or another engine was recorded.
-bool is_of_no_wrapper(const trace::Series& s, const RecordedRun& p) {
+bool is_of_no_wrapper(const trace::Series& s, const frames::RecordedRun& p) {
   if (s.unit == "faces" && !p.trace->header.engine.empty()) return true;
   return s.unit == "faces" &&
          ((s.name.ends_with(" A") && p.reps[0]->region_count() == 0) ||
@@ -200,7 +201,7 @@ bool is_of_no_wrapper(const trace::Series& s, const RecordedRun& p) {
 
 /// Adds charts of the trace's curves by unit: faces of the wrappers in one, counts in the other, which is
 /// left out for one body (each event refines one region).
-void add_charts_of(report::Document& doc, const RecordedRun& p, const trace::Chart& chart,
+void add_charts_of(report::Document& doc, const frames::RecordedRun& p, const trace::Chart& chart,
                    report::Cursor cursor, const std::string& faces_title, const std::string& counts_title) {
   const report::Axis x{std::string(chart.x_name)};
   report::Chart faces{faces_title, x, {"faces"}, {}, {}, cursor};
@@ -298,17 +299,21 @@ report::Table steps_table(const trace::Trace& trace) {
   if (is_ours) count("refinements", &Counters::refinements);
   column("fingerprint", [](const StepResult& r) { return trace::to_hex(r.fingerprint); });
   if (request.is_coarse()) {
-    column("error bound",
-           [](const StepResult& r) { return r.error_bound == 0 ? "0" : error_bound_text(r.error_bound); });
+    column("error bound", [](const StepResult& r) {
+      return r.error_bound == 0 ? "0" : frames::error_bound_text(r.error_bound);
+    });
     column("finished", [](const StepResult& r) { return r.finished ? "yes" : "no"; });
   }
   if (request.separation)
     column("proof of separation",
            [](const StepResult& r) { return r.separation ? faces_text(*r.separation) : ""; });
-  measured("distance", &StepResult::distance, [](const auto& d) { return interval_text(d.lower, d.upper); });
-  measured("contact kind", &StepResult::clash, [](const auto& c) { return kind_text(c.kind, c.reason); });
-  measured("depth", &StepResult::clash,
-           [](const auto& c) { return c.depth ? interval_text((*c.depth)[0], (*c.depth)[1]) : ""; });
+  measured("distance", &StepResult::distance,
+           [](const auto& d) { return pictures::interval_text(d.lower, d.upper); });
+  measured("contact kind", &StepResult::clash,
+           [](const auto& c) { return pictures::kind_text(c.kind, c.reason); });
+  measured("depth", &StepResult::clash, [](const auto& c) {
+    return c.depth ? pictures::interval_text((*c.depth)[0], (*c.depth)[1]) : "";
+  });
   measured("near pairs", &StepResult::near, [](const auto& n) { return group_digits(n.pairs); });
   measured("contact manifolds", &StepResult::manifold,
            [](const auto& m) { return group_digits(m.manifolds); });
@@ -316,7 +321,7 @@ report::Table steps_table(const trace::Trace& trace) {
   measured("points inside", &StepResult::points,
            [](const auto& p) { return p.has_sides ? group_digits(p.inside) : ""; });
   measured("smallest distance", &StepResult::points, [](const auto& p) {
-    return p.smallest.empty() ? "" : interval_text(p.smallest[0].lower, p.smallest[0].upper);
+    return p.smallest.empty() ? "" : pictures::interval_text(p.smallest[0].lower, p.smallest[0].upper);
   });
   t.note = "The fingerprint is FNV-1a 64 over the sorted pairs: equal answers, equal fingerprints.";
   if (timed) t.note += " Microseconds: from the first to the last event of the step, recording included.";
@@ -325,7 +330,7 @@ report::Table steps_table(const trace::Trace& trace) {
 }
 
 /// Adds the request and the result.
-void add_answer(report::Document& doc, const RecordedRun& p, const ReportText& text) {
+void add_answer(report::Document& doc, const frames::RecordedRun& p, const ReportText& text) {
   const bool two = p.reps.size() == 2;
   doc.command(text.command);
   if (p.trace->has_engine_reports()) {
@@ -345,7 +350,7 @@ void add_answer(report::Document& doc, const RecordedRun& p, const ReportText& t
   if (!text.mismatches.empty()) doc.verdict("not as expected");
 }
 
-void add_charts(report::Document& doc, const RecordedRun& p) {
+void add_charts(report::Document& doc, const frames::RecordedRun& p) {
   if (p.trace->has_engine_reports()) {
     doc.each(engine_charts(p), &report::Document::chart);
     add_charts_of(doc, p, trace::chart_over_events(*p.trace), report::Cursor::event, "Wrapper size by event",
@@ -362,7 +367,7 @@ void add_charts(report::Document& doc, const RecordedRun& p) {
 }
 
 /// Tables of a run of two bodies: contacts of the last step, and all steps unless there are too many.
-void add_tables(report::Document& doc, const RecordedRun& p) {
+void add_tables(report::Document& doc, const frames::RecordedRun& p) {
   if (p.reps.size() != 2) return;
   if (p.trace->has_engine_reports()) {
     doc.tab("Queries").table(engine_table(p));
@@ -386,16 +391,16 @@ report::Link trace_link(const std::string& file) {
   return {file, "all events; opens in ui.perfetto.dev and chrome://tracing"};
 }
 
-void add_frames(report::Document& doc, const DrawnFrames& drawn, const std::string& folder,
+void add_frames(report::Document& doc, const frames::DrawnFrames& drawn, const std::string& folder,
                 std::size_t budget) {
   std::vector<report::Frame> frames;
-  for (const DrawnFrame& f : drawn.frames)
+  for (const frames::DrawnFrame& f : drawn.frames)
     frames.push_back({f.file, f.caption, static_cast<double>(f.event), static_cast<double>(f.step)});
   doc.frames(frames, folder, budget);
 }
 
-report::Document run_page(const RecordedRun& p, const DrawnFrames& drawn, const std::string& folder,
-                          const ReportText& text) {
+report::Document run_page(const frames::RecordedRun& p, const frames::DrawnFrames& drawn,
+                          const std::string& folder, const ReportText& text) {
   report::Document doc(text.title, text.purpose);
   doc.explain(p.trace->header.engine.empty() ? meaning_of_column : meaning_for_engines)
       .summary(sentence_of(p));
@@ -422,7 +427,7 @@ report::Document run_page(const RecordedRun& p, const DrawnFrames& drawn, const 
   doc.tab("Frames");
   add_frames(doc, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
   if (drawn.proved != nullptr)
-    doc.tab("Proof").picture(kSeparationFile, io::read_text(folder + "/" + kSeparationFile),
+    doc.tab("Proof").picture(frames::kSeparationFile, io::read_text(folder + "/" + frames::kSeparationFile),
                              "Proof of separation at step " + std::to_string(drawn.proved->index),
                              "(a) The outermost wrappers. (b) Refined until they have no point in common: " +
                                  faces_text(*drawn.proved->result.separation) + ". Each contains its body.");

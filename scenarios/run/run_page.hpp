@@ -22,11 +22,11 @@ struct ReportText {
 report::Link trace_link(const std::string& file);
 
 /// Adds frames, whose files are in `folder`. `budget`: see inline_pngs().
-void add_frames(report::Document& doc, const DrawnFrames& drawn, const std::string& folder,
+void add_frames(report::Document& doc, const frames::DrawnFrames& drawn, const std::string& folder,
                 std::size_t budget = report::kInlineBudget);
 
 /// Builds the page of a run whose files are in `folder`.
-report::Document run_page(const RecordedRun& recorded, const DrawnFrames& drawn, const std::string& folder,
-                          const ReportText& text);
+report::Document run_page(const frames::RecordedRun& recorded, const frames::DrawnFrames& drawn,
+                          const std::string& folder, const ReportText& text);
 
 }  // namespace lrb::run

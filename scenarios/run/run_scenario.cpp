@@ -17,15 +17,15 @@ namespace lrb::run {
 namespace {
 
 /// Throws, before any file is written, if the scenario requests a frame that cannot be drawn.
-void check(const spec::Scenario& scenario, const RecordedRun& recorded) {
+void check(const spec::Scenario& scenario, const frames::RecordedRun& recorded) {
   try {
-    check_frames(recorded, scenario.frames);
+    frames::check_frames(recorded, scenario.frames);
   } catch (const InputError& e) {
     throw InputError("scenario " + scenario.name + ": " + e.what());
   }
 }
 
-std::vector<trace::SummaryBody> summary_bodies(const RecordedRun& recorded) {
+std::vector<trace::SummaryBody> summary_bodies(const frames::RecordedRun& recorded) {
   std::vector<trace::SummaryBody> out;
   for (std::size_t i = 0; i < recorded.reps.size(); ++i)
     out.push_back({recorded.reps[i], i < recorded.trees->size() ? &(*recorded.trees)[i] : nullptr});
@@ -34,13 +34,13 @@ std::vector<trace::SummaryBody> summary_bodies(const RecordedRun& recorded) {
 
 }  // namespace
 
-RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording) {
+frames::RecordedRun recorded_run_of(const spec::Scenario& scenario, const record::Recording& recording) {
   return recorded_run_of(scenario.name, scenario.purpose, recording);
 }
 
-RecordedRun recorded_run_of(const std::string& title, const std::string& purpose,
-                            const Recording& recording) {
-  RecordedRun p;
+frames::RecordedRun recorded_run_of(const std::string& title, const std::string& purpose,
+                                    const record::Recording& recording) {
+  frames::RecordedRun p;
   p.title = title;
   p.purpose = purpose;
   p.trace = &recording.trace;
@@ -51,9 +51,10 @@ RecordedRun recorded_run_of(const std::string& title, const std::string& purpose
   return p;
 }
 
-RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
-                     const std::string& command, const ProgressReport& progress) {
-  const RecordedRun recorded = recorded_run_of(scenario, recording);
+RunOutcome write_run(const spec::Scenario& scenario, const record::Recording& recording,
+                     const std::string& folder, const std::string& command,
+                     const record::ProgressReport& progress) {
+  const frames::RecordedRun recorded = recorded_run_of(scenario, recording);
   check(scenario, recorded);
   for (const char* name : {"a.lrb", "b.lrb", "trace.json", "summary.json", "index.html"})
     reject_input_as_output(folder + "/" + name);  // before anything is written
@@ -63,15 +64,15 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
       {"lrbscope:scenario", scenario.name},
       {"lrbscope:scenario_hash", trace::to_hex(scenario.hash)},
   };
-  const DrawnFrames drawn = draw_frames(recorded, scenario.frames, folder, text, progress);
+  const frames::DrawnFrames drawn = frames::draw_frames(recorded, scenario.frames, folder, text, progress);
   const std::string trace_file = scenario.gzip ? "trace.json.gz" : "trace.json";
   std::error_code error;
   std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),
                           error);  // of an earlier run
   trace::save_trace(recording.trace, folder + "/" + trace_file);
-  std::filesystem::remove(folder + "/" + kTreesFile, error);
+  std::filesystem::remove(folder + "/" + record::kTreesFile, error);
   if (!recording.trace.header.engine.empty() && !recording.trees.empty())
-    io::write_text(folder + "/" + kTreesFile, trees_text(recording.trees));
+    io::write_text(folder + "/" + record::kTreesFile, record::trees_text(recording.trees));
   RunOutcome out;
   out.notes = recording.notes;
   constexpr std::uintmax_t kMegabyte = 1'000'000, kLarge = 300 * kMegabyte;
@@ -79,7 +80,7 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
     out.notes.push_back(
         folder + "/" + trace_file + " has " + std::to_string(size / kMegabyte) +
         " MB, more than most viewers load; ask for fewer poses (--steps of collide) or events (--events)");
-  out.mismatches = mismatches(scenario, recording);
+  out.mismatches = record::mismatches(scenario, recording);
   out.summary = trace::summary_json(recording.trace, summary_bodies(recorded));
   io::write_text(folder + "/summary.json", out.summary);
 
@@ -99,8 +100,8 @@ RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording,
 }
 
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
-                        const ProgressReport& progress) {
-  return write_run(scenario, record(scenario, progress), folder, command, progress);
+                        const record::ProgressReport& progress) {
+  return write_run(scenario, record::record(scenario, progress), folder, command, progress);
 }
 
 }  // namespace lrb::run

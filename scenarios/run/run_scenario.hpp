@@ -18,16 +18,18 @@ struct RunOutcome {
 };
 
 /// Returns a recording with the settings for drawing its frames; both arguments must outlive it.
-RecordedRun recorded_run_of(const spec::Scenario& scenario, const Recording& recording);
+RecordedRun recorded_run_of(const spec::Scenario& scenario, const record::Recording& recording);
 /// Returns it for a run without a scenario.
-RecordedRun recorded_run_of(const std::string& title, const std::string& purpose, const Recording& recording);
+RecordedRun recorded_run_of(const std::string& title, const std::string& purpose,
+                            const record::Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
 /// montage.png}.
 RunOutcome run_scenario(const spec::Scenario& scenario, const std::string& folder, const std::string& command,
-                        const ProgressReport& progress);
+                        const record::ProgressReport& progress);
 /// Writes the same files for a run that has been recorded.
-RunOutcome write_run(const spec::Scenario& scenario, const Recording& recording, const std::string& folder,
-                     const std::string& command, const ProgressReport& progress);
+RunOutcome write_run(const spec::Scenario& scenario, const record::Recording& recording,
+                     const std::string& folder, const std::string& command,
+                     const record::ProgressReport& progress);
 
 }  // namespace lrb::run

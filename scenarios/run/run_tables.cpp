@@ -153,7 +153,7 @@ struct GroupSums {
 /// Counts for each group of a body's faces; the last one is for faces without a group.
 class Groups {
  public:
-  Groups(const RecordedRun& p, Side side, std::size_t count,
+  Groups(const frames::RecordedRun& p, Side side, std::size_t count,
          const std::function<std::uint32_t(const LrbRep&, FaceId)>& group_of)
       : rep_(*p.reps[static_cast<std::size_t>(side)]), with_boxes_(p.trees != nullptr && !p.trees->empty()) {
     sums.resize(count + 1);
@@ -196,10 +196,10 @@ void append(std::vector<std::string>& row, const std::vector<std::string>& cells
   row.insert(row.end(), cells.begin(), cells.end());
 }
 
-report::Table level_table(const RecordedRun& p, Side side) {
+report::Table level_table(const frames::RecordedRun& p, Side side) {
   const LrbRep& rep = *p.reps[static_cast<std::size_t>(side)];
   std::uint32_t levels = 0;
-  for (FaceId f = 0; f < rep.face_count(); ++f) levels = std::max(levels, level_of(rep, f) + 1);
+  for (FaceId f = 0; f < rep.face_count(); ++f) levels = std::max(levels, frames::level_of(rep, f) + 1);
   const Groups groups(p, side, levels, level_of);
   report::Table t{"Counters of " + std::string(name_of(side)) + " by level", {"level"}};
   append(t.columns, groups.columns());
@@ -214,7 +214,7 @@ report::Table level_table(const RecordedRun& p, Side side) {
   return t;
 }
 
-report::Table region_table(const RecordedRun& p, Side side) {
+report::Table region_table(const frames::RecordedRun& p, Side side) {
   constexpr std::size_t kMaxRows = 20;
   const LrbRep& rep = *p.reps[static_cast<std::size_t>(side)];
   Groups groups(p, side, rep.region_count(), region_of);
@@ -254,7 +254,7 @@ report::Table region_table(const RecordedRun& p, Side side) {
 
 }  // namespace
 
-std::vector<report::Table> group_tables(const RecordedRun& run) {
+std::vector<report::Table> group_tables(const frames::RecordedRun& run) {
   if (run.reps.size() != 2) return {};
   std::vector<report::Table> out;
   for (const Side side : {Side::a, Side::b}) out.push_back(level_table(run, side));
@@ -290,7 +290,7 @@ report::Table share_table(const trace::Trace& trace) {
   return t;
 }
 
-report::Table depth_table(const RecordedRun& p, Side side) {
+report::Table depth_table(const frames::RecordedRun& p, Side side) {
   const trace::TreeShape& tree = (*p.trees)[static_cast<std::size_t>(side)];
   report::Table t{"The walk of " + std::string(name_of(side)) + "'s tree, by depth",
                   {"depth", "nodes", "expected", "visited", "visits", "ended here", "box tests"}};
@@ -348,7 +348,8 @@ const std::vector<Quality>& qualities() {
        "few"},
       {"LRB-rep: mean height of lids above what they hide, share of the size",
        [](const LrbRep& r, const TreeQuality&) {
-         return r.region_count() == 0 ? "no lids" : percent(lid_height(r) / box_of(r).diagonal().norm());
+         return r.region_count() == 0 ? "no lids"
+                                      : percent(lid_height(r) / pictures::box_of(r).diagonal().norm());
        },
        "low"},
   };
@@ -357,12 +358,12 @@ const std::vector<Quality>& qualities() {
 
 }  // namespace
 
-std::vector<report::Table> work_tables(const RecordedRun& run) {
+std::vector<report::Table> work_tables(const frames::RecordedRun& run) {
   if (run.trees == nullptr || run.trees->empty()) return {};
   return {share_table(*run.trace), depth_table(run, Side::a), depth_table(run, Side::b)};
 }
 
-report::Table quality_table(const RecordedRun& run) {
+report::Table quality_table(const frames::RecordedRun& run) {
   report::Table t{"Quality of the bodies", {"figure"}};
   std::vector<TreeQuality> trees;
   for (std::size_t i = 0; i < run.reps.size(); ++i) {

@@ -74,7 +74,7 @@ const Pose& pose_in(const trace::Step& step, std::size_t body) {
   return body == 0 ? step.pose_a : step.pose_b;
 }
 
-SceneFrame scene_frame(const RecordedRun& p) {
+SceneFrame scene_frame(const frames::RecordedRun& p) {
   SceneFrame frame;
   if (p.trace->steps.empty()) return frame;
   const trace::Step& first = p.trace->steps.front();
@@ -91,7 +91,7 @@ SceneFrame scene_frame(const RecordedRun& p) {
 
 /// Returns the poses of a body in the page's frame, or one if it never moves: rows of [R | t], for vertices
 /// relative to the body's centre.
-std::vector<float> poses_of(const RecordedRun& p, std::size_t body, const Numbers& steps,
+std::vector<float> poses_of(const frames::RecordedRun& p, std::size_t body, const Numbers& steps,
                             const SceneFrame& frame) {
   const Eigen::Vector3d centre = body_centre(*p.reps[body]);
   std::vector<float> out;
@@ -140,7 +140,7 @@ json geometry(const LrbRep& rep, const SceneFrame& frame, const Numbers* shown =
 }
 
 /// Returns the real simplices of a body that events compare, in the events' order: contacts first.
-std::vector<SimplexId> compared_simplices(const RecordedRun& p, Side side) {
+std::vector<SimplexId> compared_simplices(const frames::RecordedRun& p, Side side) {
   std::vector<SimplexId> out;
   for (const EventKind kind : {EventKind::contact, EventKind::face_test})
     for (const trace::Event& e : p.trace->events)
@@ -150,17 +150,17 @@ std::vector<SimplexId> compared_simplices(const RecordedRun& p, Side side) {
 
 /// Boxes of nodes: all down to some depth, and below it those on the paths to compared faces.
 struct ShownBoxes {
-  std::vector<TreeBox> boxes;
+  std::vector<pictures::TreeBox> boxes;
   std::uint32_t whole = 0;              ///< all boxes down to this depth are included
   std::vector<std::uint32_t> by_depth;  ///< number of nodes at each depth
 };
 
 ShownBoxes shown_boxes(const ObbTree& tree, std::size_t most, const std::vector<SimplexId>& compared) {
-  ShownBoxes out{tree_boxes(tree, most), 0, nodes_by_depth(tree)};
+  ShownBoxes out{pictures::tree_boxes(tree, most), 0, pictures::nodes_by_depth(tree)};
   if (out.boxes.empty()) return out;
   out.whole = out.boxes.back().depth;
   if (out.boxes.size() < tree.nodes().size()) {
-    const std::vector<TreeBox> deeper = boxes_on_paths(tree, out.whole, compared, most);
+    const std::vector<pictures::TreeBox> deeper = pictures::boxes_on_paths(tree, out.whole, compared, most);
     out.boxes.insert(out.boxes.end(), deeper.begin(), deeper.end());
   }
   return out;
@@ -202,22 +202,22 @@ ShownBoxes shown_boxes(const trace::TreeShape& tree, std::size_t most,
 }
 
 json boxes_json(const LrbRep& rep, const SceneFrame& frame, const ShownBoxes& shown) {
-  const std::vector<TreeBox>& boxes = shown.boxes;
+  const std::vector<pictures::TreeBox>& boxes = shown.boxes;
   const Eigen::Vector3d centre = body_centre(rep);
   std::vector<float> places;  // centre and three half axes each
-  for (const TreeBox& box : boxes) {
+  for (const pictures::TreeBox& box : boxes) {
     frame.add_vector(places, box.centre - centre);
     for (int i = 0; i < 3; ++i) frame.add_vector(places, box.half.col(i));
   }
-  return {{"node", packed_each(boxes, [](const TreeBox& b) { return b.node; })},
-          {"depth", packed_each(boxes, [](const TreeBox& b) { return b.depth; })},
+  return {{"node", packed_each(boxes, [](const pictures::TreeBox& b) { return b.node; })},
+          {"depth", packed_each(boxes, [](const pictures::TreeBox& b) { return b.depth; })},
           {"places", packed(places)},
           {"whole", shown.whole},
           {"atDepth", packed(shown.by_depth)}};
 }
 
-json body_json(const RecordedRun& p, std::size_t i, const SceneFrame& frame, const SceneLimits& limits,
-               std::size_t faces) {
+json body_json(const frames::RecordedRun& p, std::size_t i, const SceneFrame& frame,
+               const SceneLimits& limits, std::size_t faces) {
   const LrbRep& rep = *p.reps[i];
   json out = {{"name", std::filesystem::path(rep.name()).stem().string()},
               {"hash", trace::to_hex(rep.hash())},
@@ -330,7 +330,7 @@ json events_json(const trace::Trace& trace, const trace::WorkChart& chart,
           {"depthB", column([](const Event& e) { return e.depth_b; })}};
 }
 
-json steps_json(const RecordedRun& p, const Numbers& steps, const SceneFrame& frame) {
+json steps_json(const frames::RecordedRun& p, const Numbers& steps, const SceneFrame& frame) {
   const auto column = [&](auto get) {
     return packed_each(steps, [&](std::uint32_t s) { return get(p.trace->steps[s]); });
   };
@@ -343,7 +343,7 @@ json steps_json(const RecordedRun& p, const Numbers& steps, const SceneFrame& fr
 }
 
 /// The key figures of each step: the names of all of them, and lists of [index of the name, value, note].
-json answers_json(const RecordedRun& p, const Numbers& steps) {
+json answers_json(const frames::RecordedRun& p, const Numbers& steps) {
   std::vector<std::string> names;
   json of_steps = json::array(), meanings = json::array();
   for (const std::uint32_t step : steps) {
@@ -365,7 +365,7 @@ json answers_json(const RecordedRun& p, const Numbers& steps) {
 /// The contact curves of each step, in the page's frame: the step (an index into `steps`), the number of
 /// points, and whether it is closed. A point contact is a curve of one point. Null if the contacts are not
 /// known.
-json curves_json(const RecordedRun& p, const Numbers& steps, const SceneFrame& frame) {
+json curves_json(const frames::RecordedRun& p, const Numbers& steps, const SceneFrame& frame) {
   if (p.results == nullptr) return nullptr;
   Numbers of_step, sizes, closed;
   std::vector<float> points;
@@ -399,11 +399,11 @@ Numbers steps_of(const trace::Trace& trace, const std::vector<trace::EventId>& k
 }
 
 /// The pairs that another engine got wrong, by the page's steps; null: unknown.
-json wrong_json(const RecordedRun& p, const Numbers& steps) {
+json wrong_json(const frames::RecordedRun& p, const Numbers& steps) {
   if (p.wrong == nullptr || p.wrong->empty()) return nullptr;
   Numbers step, a, b, missed;
   for (std::uint32_t i = 0; i < steps.size(); ++i)
-    for (const WrongPair& w : (*p.wrong)[steps[i]]) {
+    for (const pictures::WrongPair& w : (*p.wrong)[steps[i]]) {
       step.push_back(i);
       a.push_back(w.pair.a.value());
       b.push_back(w.pair.b.value());
@@ -412,7 +412,7 @@ json wrong_json(const RecordedRun& p, const Numbers& steps) {
   return {{"step", packed(step)}, {"a", packed(a)}, {"b", packed(b)}, {"missed", packed(missed)}};
 }
 
-std::string thinned_text(const trace::Trace& trace, const ThinnedEvents& events,
+std::string thinned_text(const trace::Trace& trace, const record::ThinnedEvents& events,
                          const std::string& trace_file) {
   if (events.all(trace)) return {};
   std::string out = "Of the run's " + render::group_digits(trace.events.size()) +
@@ -435,7 +435,7 @@ json passes_json(const trace::Trace& trace) {
   for (const trace::PassSummary& p : trace::passes_of(trace))
     out.push_back({{"first", p.first},
                    {"last", p.last},
-                   {"words", pass_text(p)},
+                   {"words", frames::pass_text(p)},
                    {"stage", name_of(p.stage)},
                    {"limit", p.max_deviation}});
   return out;
@@ -477,9 +477,9 @@ json view_json(const trace::TraceHeader& header) {
 
 }  // namespace
 
-std::string scene_json(const RecordedRun& p, const SceneSource& source, const SceneLimits& limits) {
+std::string scene_json(const frames::RecordedRun& p, const SceneSource& source, const SceneLimits& limits) {
   const trace::Trace& trace = *p.trace;
-  const ThinnedEvents events = thin_events(trace, limits.events);
+  const record::ThinnedEvents events = record::thin_events(trace, limits.events);
   const Numbers steps = steps_of(trace, events.kept);
   const SceneFrame frame = scene_frame(p);
   const trace::WorkChart work = work_of(trace);
@@ -487,36 +487,37 @@ std::string scene_json(const RecordedRun& p, const SceneSource& source, const Sc
   for (const LrbRep* rep : p.reps) faces += rep->face_count();
   json bodies = json::array();
   for (std::size_t i = 0; i < p.reps.size(); ++i) bodies.push_back(body_json(p, i, frame, limits, faces));
-  const json out = {{"dim", p.reps[0]->dim()},
-                    {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
-                    {"unit", frame.unit},
-                    {"view", view_json(trace.header)},
-                    {"wrapper", name_of(trace.header.request.wrapper)},
-                    {"thinned", thinned_text(trace, events, source.trace_file)},
-                    {"tooLarge", faces <= limits.faces ? "" : too_large_text(faces, limits)},
-                    {"trace", source.trace_file},
-                    {"firstContact", static_cast<std::int64_t>(first_contact(trace) == kNull
-                                                                   ? std::int64_t{-1}
-                                                                   : std::int64_t{first_contact(trace)})},
-                    {"work", work_json(trace, work)},
-                    {"wrong", wrong_json(p, steps)},
-                    {"measured", measured_json(p, frame)},
-                    {"answers", answers_json(p, steps)},
-                    {"curves", curves_json(p, steps, frame)},
-                    {"map", map_json(p)},
-                    {"kinds", kinds_json()},
-                    {"phases", words_json<Phase>()},
-                    {"engine", trace.header.engine},
-                    {"passes", passes_json(trace)},
-                    {"attempts", attempts_json(trace, events.kept)},
-                    {"relations", words_json<Relation>()},
-                    {"meets", words_json<exact::Meet>()},
-                    {"allEvents", trace.events.size()},
-                    {"colours", scene_colours()},
-                    {"bodies", std::move(bodies)},
-                    {"why", explanations_json(p, {events.kept, steps}, frame, source.why, limits.explained)},
-                    {"steps", steps_json(p, steps, frame)},
-                    {"events", events_json(trace, work, events.kept)}};
+  const json out = {
+      {"dim", p.reps[0]->dim()},
+      {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
+      {"unit", frame.unit},
+      {"view", view_json(trace.header)},
+      {"wrapper", name_of(trace.header.request.wrapper)},
+      {"thinned", thinned_text(trace, events, source.trace_file)},
+      {"tooLarge", faces <= limits.faces ? "" : too_large_text(faces, limits)},
+      {"trace", source.trace_file},
+      {"firstContact", static_cast<std::int64_t>(record::first_contact(trace) == kNull
+                                                     ? std::int64_t{-1}
+                                                     : std::int64_t{record::first_contact(trace)})},
+      {"work", work_json(trace, work)},
+      {"wrong", wrong_json(p, steps)},
+      {"measured", measured_json(p, frame)},
+      {"answers", answers_json(p, steps)},
+      {"curves", curves_json(p, steps, frame)},
+      {"map", map_json(p)},
+      {"kinds", kinds_json()},
+      {"phases", words_json<Phase>()},
+      {"engine", trace.header.engine},
+      {"passes", passes_json(trace)},
+      {"attempts", attempts_json(trace, events.kept)},
+      {"relations", words_json<Relation>()},
+      {"meets", words_json<exact::Meet>()},
+      {"allEvents", trace.events.size()},
+      {"colours", scene_colours()},
+      {"bodies", std::move(bodies)},
+      {"why", explanations_json(p, {events.kept, steps}, frame, source.why, limits.explained)},
+      {"steps", steps_json(p, steps, frame)},
+      {"events", events_json(trace, work, events.kept)}};
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -541,7 +542,7 @@ json scene_colours() {
             {"lid", palette::kLidPale},
             {"ground", palette::kGroundPale},
             {"noValue", palette::kNoValuePale}}},
-          {"separationVector", css(kSeparationColour)},
+          {"separationVector", css(pictures::kSeparationColour)},
           {"scale", std::move(scale)},
           {"categories", std::move(categories)}};
 }

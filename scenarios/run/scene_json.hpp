@@ -17,7 +17,7 @@ namespace lrb::run {
 /// Returns the results of distances and clashes of a run, for the page's view: for each step that has one,
 /// the segment between the closest points, or the separation vector of B from A. Returns null if there is
 /// none.
-nlohmann::json measured_json(const RecordedRun& p, const SceneFrame& frame);
+nlohmann::json measured_json(const frames::RecordedRun& p, const SceneFrame& frame);
 
 /// Returns the chart of the work, from events and, where node pairs were not recorded, from counters.
 trace::WorkChart work_of(const trace::Trace& trace);
@@ -37,7 +37,7 @@ std::vector<std::uint32_t> shown_pseudo_faces(const LrbRep& rep, Side side, cons
 
 /// Returns the trees of a run's traversals, for the page's proof map (proof_map.js); null without pairs of
 /// nodes.
-nlohmann::json map_json(const RecordedRun& p);
+nlohmann::json map_json(const frames::RecordedRun& p);
 
 /// Returns the colours of a page's 3D view.
 nlohmann::json scene_colours();
@@ -61,7 +61,7 @@ struct SceneSource {
 /// Returns the run as JSON. Coordinates are rounded to float, relative to the centre of their body and in
 /// units of the scene's size. The JSON names the parts omitted because of the limits, and the trace that
 /// contains them.
-std::string scene_json(const RecordedRun& recorded, const SceneSource& source,
+std::string scene_json(const frames::RecordedRun& recorded, const SceneSource& source,
                        const SceneLimits& limits = {});
 
 }  // namespace lrb::run

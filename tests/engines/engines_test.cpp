@@ -117,7 +117,7 @@ TEST_CASE("percentiles are values of the sorted list, and quantities that are no
 
 TEST_CASE("the least of three rounds counts, and counting tests takes no time") {
   FakeEngine engine({{10}, {90, 95, 11}, {70, 10, 12}}, {10, 1000, 1});
-  const Samples samples = measure(engine, numbered_poses(3), run::kSilent);
+  const Samples samples = measure(engine, numbered_poses(3), record::kSilent);
   CHECK(samples.rounds == kRounds);
   CHECK(samples.answers[0].microseconds == 10);
   CHECK(samples.answers[1].microseconds == 11);

@@ -52,16 +52,16 @@ std::vector<capture::Mesh> meshes_of_all_kinds() {
   return out;
 }
 
-run::Recording recorded(const capture::Capture& c, const profile::TreePair& pair,
-                        profile::CapturedRunSettings settings = {}) {
+record::Recording recorded(const capture::Capture& c, const profile::TreePair& pair,
+                           profile::CapturedRunSettings settings = {}) {
   settings.scenario = "test";
   std::vector<bodies::LoadedBody> bodies;
   for (const std::uint32_t tree : pair.trees)
     bodies.push_back(profile::captured_body(c.meshes[c.trees[tree].mesh]));
-  return profile::captured_run(c, pair, std::move(bodies), settings, run::kSilent);
+  return profile::captured_run(c, pair, std::move(bodies), settings, record::kSilent);
 }
 
-run::Recording recorded(const capture::Capture& c) {
+record::Recording recorded(const capture::Capture& c) {
   const profile::TreePairs pairs = profile::tree_pairs(c);
   REQUIRE(pairs.pairs.size() == 1);
   return recorded(c, pairs.pairs[0]);
@@ -161,7 +161,7 @@ TEST_CASE("a captured walk becomes a trace: which pair led to which, and what me
   q.events_seen = q.events.size();
   q.parts = {{0, 0, q.events.size()}};
   engine.capture.queries = {q};
-  const run::Recording run = recorded(engine.capture);
+  const record::Recording run = recorded(engine.capture);
   std::vector<std::array<std::uint32_t, 5>> found;  // a, b, parent's a, parent's b, met
   for (const trace::Event& e : run.trace.events) {
     if (e.kind != lrb::EventKind::node_pair) continue;
@@ -200,7 +200,7 @@ TEST_CASE("tests of triangles without a test of their volumes get a path from th
   q.events = {
       {3, 1, EventKind::nodes, 1}, {s, left, EventKind::triangles, 0}, {s, right, EventKind::triangles, 1}};
   engine.capture.queries = {q};
-  const run::Recording run = recorded(engine.capture);
+  const record::Recording run = recorded(engine.capture);
   const auto pair = std::find_if(run.trace.events.begin(), run.trace.events.end(),
                                  [](const trace::Event& e) { return e.kind == lrb::EventKind::node_pair; });
   REQUIRE(pair != run.trace.events.end());
@@ -216,7 +216,7 @@ TEST_CASE("boxes, axes, wide tests, counters and phases of a capture are those o
   q.events.push_back({0, 77, capture::EventKind::count});
   q.events[1].tests = 4, q.events[1].met = 1, q.events[1].axis = 2;
   q.events_seen = q.parts[0].count = q.events.size();
-  const run::Recording run = recorded(engine.capture);
+  const record::Recording run = recorded(engine.capture);
   const trace::EngineReport& report = run.trace.steps[0].result.engine.value();
   CHECK(report.verdict == trace::EngineVerdict::intersecting);
   CHECK(report.pairs == q.pairs);
@@ -250,7 +250,7 @@ TEST_CASE("wrong answers are found pair by pair: those missed, those that are fa
   ToyEngine engine;
   const std::uint32_t a = engine.add(captured(shapes::icosphere(2), "a")),
                       b = engine.add(captured(shapes::icosphere(2), "b"));
-  std::vector<run::WrongPair> planted;
+  std::vector<pictures::WrongPair> planted;
   std::uint32_t tested = 0;
   engine.wrong = [&](std::uint32_t s, std::uint32_t t, bool meets) {
     if (++tested % 7 != 0) return meets;
@@ -259,14 +259,14 @@ TEST_CASE("wrong answers are found pair by pair: those missed, those that are fa
   };
   engine.query(a, b, {1.5, 0.25, 0.125});
   std::uint64_t missed = 0;
-  for (const run::WrongPair& w : planted) missed += w.missed;
+  for (const pictures::WrongPair& w : planted) missed += w.missed;
   REQUIRE(missed > 3);
   REQUIRE(planted.size() - missed > 3);
-  const run::Recording run = recorded(engine.capture);
+  const record::Recording run = recorded(engine.capture);
   REQUIRE(run.wrong.size() == 1);
   CHECK(run.wrong[0].size() == planted.size());
-  for (const run::WrongPair& w : planted)
-    CHECK(std::count_if(run.wrong[0].begin(), run.wrong[0].end(), [&](const run::WrongPair& x) {
+  for (const pictures::WrongPair& w : planted)
+    CHECK(std::count_if(run.wrong[0].begin(), run.wrong[0].end(), [&](const pictures::WrongPair& x) {
             return x.pair == w.pair && x.missed == w.missed;
           }) == 1);
   const profile::CapturedTotals totals = profile::totals_of(run);
@@ -304,7 +304,7 @@ TEST_CASE("what counts as wrong depends on the kind of query") {
     if (!c.keeps_pairs)
       for (capture::Event& e : q.events)
         if (e.kind == capture::EventKind::triangles) e.met = 0;
-    const run::Recording run = recorded(engine.capture);
+    const record::Recording run = recorded(engine.capture);
     const profile::CapturedTotals totals = profile::totals_of(run);
     CHECK((totals.missed > 0) == c.is_missed);
     CHECK(totals.false_pairs == 0);
@@ -324,7 +324,7 @@ TEST_CASE("a query without all its events, or without tests of triangles, is not
   q.events.clear();
   q.parts.clear();
   q.events_seen = 1;
-  run::Recording run = recorded(engine.capture);
+  record::Recording run = recorded(engine.capture);
   CHECK(profile::totals_of(run).missed == 0);
   CHECK_FALSE(run.trace.steps[0].result.engine->complete);
   CHECK(
@@ -349,7 +349,7 @@ TEST_CASE("a walk over a broken tree is recorded with what holds") {
   std::uint32_t deep = static_cast<std::uint32_t>(tree.size() - 1);
   const std::uint32_t orphan = tree.child[tree.first_child[0]];
   tree.child[tree.first_child[0]] = deep;
-  const run::Recording run = recorded(engine.capture);
+  const record::Recording run = recorded(engine.capture);
   CHECK(run.trace.events.size() == whole);
   CHECK(trace::trace_from_json(trace::trace_to_json(run.trace), "t.json") == run.trace);
   CHECK(run.trees[0].depth(orphan) == kNull);
@@ -382,7 +382,7 @@ TEST_CASE("a run for each pair of trees; queries without a second tree are count
   CHECK(found.without_tree == 1);
   CHECK(found.pairs[0].queries == std::vector<std::size_t>{0, 2});
   CHECK((found.pairs[2].trees == std::array<std::uint32_t, 2>{trees[1], trees[0]}));
-  const run::Recording run = recorded(engine.capture, found.pairs[0]);
+  const record::Recording run = recorded(engine.capture, found.pairs[0]);
   CHECK(run.trace.steps.at(1).index == 3);
 }
 
@@ -390,7 +390,8 @@ TEST_CASE("beyond the limit of events a trace is cut, with a note; answers stay 
   const ToyEngine engine = two_balls();
   profile::CapturedRunSettings settings;
   settings.event_cap = 50;
-  const run::Recording run = recorded(engine.capture, profile::tree_pairs(engine.capture).pairs[0], settings);
+  const record::Recording run =
+      recorded(engine.capture, profile::tree_pairs(engine.capture).pairs[0], settings);
   CHECK(run.trace.events.size() == 50);
   REQUIRE(run.notes.size() == 1);
   CHECK(run.notes[0].find("the first 50 of ") != std::string::npos);
@@ -399,15 +400,15 @@ TEST_CASE("beyond the limit of events a trace is cut, with a note; answers stay 
 }
 
 TEST_CASE("trees of an engine survive a file, which is checked when it is read") {
-  const run::Recording run = recorded(two_balls().capture);
-  const std::string text = run::trees_text(run.trees);
-  const auto trees = run::read_trees(text, "trees.json", {320, 320});
+  const record::Recording run = recorded(two_balls().capture);
+  const std::string text = record::trees_text(run.trees);
+  const auto trees = record::read_trees(text, "trees.json", {320, 320});
   REQUIRE(trees.size() == 2);
-  CHECK(run::trees_text(trees) == text);
+  CHECK(record::trees_text(trees) == text);
   const auto refuses = [&](const std::string& bad) {
-    CHECK_THROWS_AS(run::read_trees(bad, "trees.json", {320, 320}), InputError);
+    CHECK_THROWS_AS(record::read_trees(bad, "trees.json", {320, 320}), InputError);
   };
-  CHECK_THROWS_AS(run::read_trees(text, "trees.json", {320, 319}), InputError);
+  CHECK_THROWS_AS(record::read_trees(text, "trees.json", {320, 319}), InputError);
   refuses("");
   refuses("[]");
   refuses(text.substr(0, text.size() / 2));

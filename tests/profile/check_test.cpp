@@ -17,8 +17,9 @@ using namespace lrb::test;
 namespace {
 
 /// Records queries of two tori of our own at poses that intersect more or less deeply.
-run::Recording recorded_tori(EventLevel level, Mode mode = Mode::all_pairs, std::uint32_t cap = 1'000'000) {
-  run::Recording out;
+record::Recording recorded_tori(EventLevel level, Mode mode = Mode::all_pairs,
+                                std::uint32_t cap = 1'000'000) {
+  record::Recording out;
   for (int k = 0; k < 2; ++k)
     out.bodies.push_back({LrbRep::without_regions(shapes::torus(24, 16), true, false), {}, 0});
   trace::RecorderSettings settings;
@@ -152,7 +153,7 @@ TEST_CASE("Faults of the trees are noted, because they make prices wrong") {
 
 TEST_CASE("A recording of lrbscope is a capture whose answers are right and whose visits are the counters'") {
   for (const Mode mode : {Mode::all_pairs, Mode::any_pair}) {
-    const run::Recording recorded = recorded_tori(EventLevel::nodes, mode);
+    const record::Recording recorded = recorded_tori(EventLevel::nodes, mode);
     const capture::Capture c = captured(recorded);
     const Check checked = check(c, {});
     REQUIRE(checked.queries.size() == 5);

@@ -16,8 +16,8 @@
 namespace lrb::test {
 namespace {
 
-using run::Argument;
-using run::ProofMap;
+using frames::Argument;
+using frames::ProofMap;
 
 std::uint64_t pairs_of(const ProofMap& map, Argument argument) {
   return map.pairs[static_cast<std::size_t>(argument)];
@@ -26,15 +26,15 @@ std::uint64_t pairs_of(const ProofMap& map, Argument argument) {
 /// Returns the map of the first step, after checks: each pair is in one cell, tested ones also in that of
 /// their leaves; areas add up to the number of all pairs; and no cell but those of contacts, or in queries
 /// that ended early of open pairs, has a pair of `truth`.
-ProofMap checked_map(const run::RecordedRun& recorded, std::span<const SimplexPair> truth, bool complete) {
-  const std::optional<ProofMap> map = run::proof_map(recorded, 0);
+ProofMap checked_map(const frames::RecordedRun& recorded, std::span<const SimplexPair> truth, bool complete) {
+  const std::optional<ProofMap> map = frames::proof_map(recorded, 0);
   REQUIRE(map);
   const std::size_t columns = map->size[1], all = map->size[0] * columns;
   CHECK(std::reduce(map->pairs.begin(), map->pairs.end()) == all);
   std::vector<Argument> grid(all);
   std::vector<std::uint8_t> times(all);
   bool once = true;
-  for (const run::MapCell& cell : map->cells)
+  for (const frames::MapCell& cell : map->cells)
     for (std::size_t a = cell.low[0]; a < cell.high[0]; ++a)
       for (std::size_t b = cell.low[1]; b < cell.high[1]; ++b) {
         once &= times[a * columns + b]++ == (cell.is_upon() ? 1 : 0);
@@ -46,7 +46,7 @@ ProofMap checked_map(const run::RecordedRun& recorded, std::span<const SimplexPa
                                   Argument::filter, Argument::contact, Argument::tolerance})
     CHECK(static_cast<std::uint64_t>(std::count(grid.begin(), grid.end(), argument)) ==
           pairs_of(*map, argument));
-  const run::MapAxis a(run::walked_shape(recorded, 0, 0)), b(run::walked_shape(recorded, 1, 0));
+  const frames::MapAxis a(frames::walked_shape(recorded, 0, 0)), b(frames::walked_shape(recorded, 1, 0));
   for (const SimplexPair& pair : truth) {
     const Argument by = grid[std::size_t{a.rank[pair.a]} * columns + b.rank[pair.b]];
     CHECK((by == Argument::contact || (!complete && (by == Argument::open || by == Argument::face_boxes))));
@@ -67,8 +67,8 @@ trace::Trace recorded(const LrbRep& a, const LrbRep& b, const Pose& pose, const 
   return recorder.take();
 }
 
-run::RecordedRun run_of(const LrbRep& a, const LrbRep& b, const trace::Trace& trace) {
-  run::RecordedRun out;
+frames::RecordedRun run_of(const LrbRep& a, const LrbRep& b, const trace::Trace& trace) {
+  frames::RecordedRun out;
   out.reps = {&a, &b};
   out.trace = &trace;
   return out;
@@ -107,9 +107,10 @@ TEST_CASE("the map of another engine's query: each pair is rejected, tested, or 
                           b = engine.grow(engine.add(captured(shapes::icosphere(2))), random);
       engine.ask(a, {}, b, Pose::translation({1.5, 0.25, 0.125}), {.kind = kind, .wide = wide});
       const profile::TreePair pair = profile::tree_pairs(engine.capture).pairs[0];
-      const run::Recording recording = profile::captured_run(
-          engine.capture, pair, profile::captured_bodies(engine.capture, pair), {}, run::kSilent);
-      run::RecordedRun recorded = run_of(recording.bodies[0].rep, recording.bodies[1].rep, recording.trace);
+      const record::Recording recording = profile::captured_run(
+          engine.capture, pair, profile::captured_bodies(engine.capture, pair), {}, record::kSilent);
+      frames::RecordedRun recorded =
+          run_of(recording.bodies[0].rep, recording.bodies[1].rep, recording.trace);
       recorded.trees = &recording.trees;
       const bool complete = kind == capture::QueryKind::all_pairs;
       const ProofMap map = checked_map(recorded, recording.results[0].pairs, complete);
@@ -121,8 +122,8 @@ TEST_CASE("the map of another engine's query: each pair is rejected, tested, or 
       tree.splits = true;
       tree.triangle.push_back(tree.triangle.front());
       ++tree.first_triangle.back();
-      const run::Recording other =
-          profile::captured_run(split, pair, profile::captured_bodies(split, pair), {}, run::kSilent);
+      const record::Recording other =
+          profile::captured_run(split, pair, profile::captured_bodies(split, pair), {}, record::kSilent);
       recorded = run_of(other.bodies[0].rep, other.bodies[1].rep, other.trace);
       recorded.trees = &other.trees;
       CHECK_FALSE(proof_map(recorded, 0));

@@ -85,7 +85,7 @@ void check_against_brute_force(const crowd::CrowdRun& run, std::set<Relation>& s
 TEST_CASE("all pairs of a crowd agree with brute force") {
   for (const json& j : {good(), good_2d()}) {
     std::set<Relation> seen;
-    const crowd::CrowdRun run = crowd::run_crowd(crowd_of(j), 2, run::kSilent);
+    const crowd::CrowdRun run = crowd::run_crowd(crowd_of(j), 2, record::kSilent);
     check_against_brute_force(run, seen);
     CHECK(seen.contains(Relation::crossing));
     if (j == good()) CHECK(seen.contains(Relation::b_inside_a));  // or the test shows little
@@ -99,15 +99,15 @@ TEST_CASE("all pairs of a crowd agree with brute force") {
 TEST_CASE("answers and work do not depend on the number of threads") {
   for (const json& j : {good(), good_2d()}) {
     const spec::Crowd crowd = crowd_of(j);
-    const std::string one = crowd::crowd_summary(crowd, crowd::run_crowd(crowd, 1, run::kSilent));
+    const std::string one = crowd::crowd_summary(crowd, crowd::run_crowd(crowd, 1, record::kSilent));
     for (const std::uint32_t threads : {2U, 5U})
-      CHECK(crowd::crowd_summary(crowd, crowd::run_crowd(crowd, threads, run::kSilent)) == one);
+      CHECK(crowd::crowd_summary(crowd, crowd::run_crowd(crowd, threads, record::kSilent)) == one);
   }
 }
 
 TEST_CASE("pairs are listed by their cost, with the sums over all steps") {
   const spec::Crowd crowd = crowd_of(good());
-  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, record::kSilent);
   const std::vector<crowd::PairHistory> pairs = crowd::pair_histories(run);
   REQUIRE(pairs.size() > 3);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -146,7 +146,7 @@ TEST_CASE("bodies of a crowd follow poses from files, one for all steps or one f
   json moved = good_2d();
   moved["motion"] = {{"steps", 11}, {"speed", 0.1}, {"spin", 5}};
   const spec::Crowd crowd = crowd_of(moved);
-  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, record::kSilent);
   std::vector<Pose> all;
   std::filesystem::create_directory(folder / "steps");
   for (std::uint32_t step = 0; step < crowd.steps; ++step) {
@@ -177,14 +177,14 @@ TEST_CASE("bodies of a crowd follow poses from files, one for all steps or one f
     CHECK(read.steps == 11);
     CHECK(read.hash != hash);
     hash = read.hash;
-    CHECK(summary_of(read, crowd::run_crowd(read, 2, run::kSilent)) == summary_of(crowd, run));
+    CHECK(summary_of(read, crowd::run_crowd(read, 2, record::kSilent)) == summary_of(crowd, run));
   }
   // A body's own pose comes first, and a part of the steps can be chosen.
   given["bodies"][0]["body"]["pose"] = {{"position", {1, 0, 0}}};
   given["motion"]["steps"] = 2;
   const spec::Crowd read = spec::parse_crowd(given.dump(1), folder / "c.json");
   CHECK(read.steps == 2);
-  const crowd::CrowdRun shifted = crowd::run_crowd(read, 1, run::kSilent);
+  const crowd::CrowdRun shifted = crowd::run_crowd(read, 1, record::kSilent);
   const Pose& pose = all[crowd.body_count()];
   CHECK(shifted.motion.pose(0, 1).t == pose.r * Eigen::Vector3d(1, 0, 0) + pose.t);
   CHECK(shifted.motion.pose(10, 1).t == all[crowd.body_count() + 10].t);
@@ -209,7 +209,7 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
   start["motion"] = {{"steps", 9}, {"speed", 0.3}, {"spin", 20}};
   start["query"] = {{"contacts", true}, {"distance", true}};
   spec::Crowd crowd = crowd_of(start);
-  const crowd::CrowdRun all = crowd::run_crowd(crowd, 1, run::kSilent);
+  const crowd::CrowdRun all = crowd::run_crowd(crowd, 1, record::kSilent);
   // At step s only bodies with a number divisible by s + 1 have moved; at step 5 none.
   for (std::uint32_t step = 0; step < crowd.steps; ++step) {
     std::vector<Pose>& poses = crowd.poses.emplace_back();
@@ -219,14 +219,14 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
     }
   }
   for (spec::CrowdKind& kind : crowd.kinds) kind.body.pose = {};  // the poses contain it
-  const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, run::kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, record::kSilent);
   std::size_t kept = 0, queried = 0;
   for (std::uint32_t step = 0; step < crowd.steps; ++step) {
     CAPTURE(step);
     spec::Crowd alone = crowd;
     alone.steps = 1;
     alone.poses = {crowd.poses[step]};
-    const crowd::CrowdRun anew = crowd::run_crowd(alone, 2, run::kSilent);
+    const crowd::CrowdRun anew = crowd::run_crowd(alone, 2, record::kSilent);
     const auto &found = run.steps[step].queries, &expected = anew.steps[0].queries;
     REQUIRE(found.size() == expected.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -252,14 +252,14 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
 TEST_CASE("two bodies of a crowd are a run of their own, with the same answers") {
   for (const json& j : {good(), good_2d()}) {
     const spec::Crowd crowd = crowd_of(j);
-    const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, run::kSilent);
+    const crowd::CrowdRun run = crowd::run_crowd(crowd, 1, record::kSilent);
     std::set<BodyPair> pairs = {{0, 1}};
     for (const crowd::CrowdQuery& q : run.steps[0].queries) pairs.insert(q.bodies);
     for (const BodyPair& pair : pairs) {
       // The names in either order.
       CHECK((crowd::find_pair(crowd, run.names[pair.j] + "," + run.names[pair.i]) == pair));
       const spec::Scenario scenario = crowd::scenario_of_pair(crowd, run.motion, pair);
-      const run::Recording recording = run::record(scenario, run::kSilent);
+      const record::Recording recording = record::record(scenario, record::kSilent);
       REQUIRE(recording.trace.steps.size() == crowd.steps);
       for (std::uint32_t step = 0; step < crowd.steps; ++step) {
         CHECK(trace::equal(recording.trace.steps[step].pose_a, run.motion.pose(pair.i, step)));
@@ -292,7 +292,7 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
   constexpr double kWithin = 0.3;
   j["query"] = {{"distance", true}, {"clash", true}, {"near", kWithin}};
   const spec::Crowd crowd = crowd_of(j);
-  const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, run::kSilent);
+  const crowd::CrowdRun run = crowd::run_crowd(crowd, 2, record::kSilent);
   NearPairsRequest near;
   near.within = kWithin;
   std::size_t queried = 0, separate = 0, deep = 0, near_by = 0;
@@ -338,9 +338,9 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
 
   json flat = good_2d();
   flat["query"] = {{"clash", true}};
-  CHECK_THROWS_AS(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, run::kSilent)), InputError);
+  CHECK_THROWS_AS(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, record::kSilent)), InputError);
   flat["query"] = {{"distance", true}, {"near", 0.2}};
-  CHECK_NOTHROW(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, run::kSilent)));
+  CHECK_NOTHROW(static_cast<void>(crowd::run_crowd(crowd_of(flat), 1, record::kSilent)));
   flat["query"] = {{"clash", 40}};
   CHECK(crowd_of(flat).more.clash.value().max_steps == 40);
 }
@@ -353,7 +353,7 @@ TEST_CASE("crowds that cannot be run are rejected; keys without effect are noted
   CHECK(crowd_of(timed).notes[0].find("c.json: trace has no effect") != std::string::npos);
   json mixed = good();
   mixed["bodies"].push_back({{"name", "flat"}, {"body", {{"generator", "island"}}}});
-  CHECK_THROWS_WITH_AS(static_cast<void>(crowd::run_crowd(crowd_of(mixed), 1, run::kSilent)),
+  CHECK_THROWS_WITH_AS(static_cast<void>(crowd::run_crowd(crowd_of(mixed), 1, record::kSilent)),
                        "crowd few: flat is 2D and ball is 3D; expected bodies of the same dimension",
                        InputError);
   CHECK_THROWS_WITH_AS(static_cast<void>(spec::open_crowd("crowds")),

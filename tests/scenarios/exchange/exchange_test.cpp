@@ -56,13 +56,14 @@ Mesh mesh_of(const Part& part) {
 
 /// The run of a shipped scenario at its end, as a model.
 struct ShippedRun {
-  run::Recording run;
+  record::Recording run;
   Model model;
   trace::Totals totals;
   explicit ShippedRun(const char* name, const Wanted& wanted)
-      : run(run::record(spec::open_scenario(name), run::kSilent)) {
+      : run(record::record(spec::open_scenario(name), record::kSilent)) {
     const std::size_t step = run.trace.steps.size() - 1;
-    const trace::EventId last = run::last_event(run.trace, step), first = run.trace.steps[step].first_event;
+    const trace::EventId last = record::last_event(run.trace, step),
+                         first = run.trace.steps[step].first_event;
     const bool two = run.bodies.size() == 2;
     trace::Cursor cursor = two ? trace::Cursor(run.trace, run.bodies[0].rep, run.bodies[1].rep)
                                : trace::Cursor(run.trace, run.bodies[0].rep);

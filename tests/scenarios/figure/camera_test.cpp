@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 
 TEST_CASE("a long body is viewed from its long side, whatever the up direction") {
   const Eigen::AlignedBox3d along_x(Vector3d(0, 0, 0), Vector3d(4, 1, 1));
-  const Vector3d z_up = run::broadside(along_x, {0, 0, 1});
+  const Vector3d z_up = pictures::broadside(along_x, {0, 0, 1});
   CHECK(std::abs(z_up.y()) > 2 * std::abs(z_up.x()));
   CHECK(z_up.z() > 0);
-  const Vector3d y_up = run::broadside(along_x, {0, 1, 0});
+  const Vector3d y_up = pictures::broadside(along_x, {0, 1, 0});
   CHECK(std::abs(y_up.z()) > 2 * std::abs(y_up.x()));
   CHECK(y_up.y() > 0);
 }
@@ -32,10 +32,10 @@ TEST_CASE("a thin upright body is drawn from its broad side, unless a view is gi
     const LrbRep rep = LrbRep::without_regions(mesh, true, false);
     trace::Trace trace;
     trace.steps.emplace_back();
-    run::RecordedRun recorded;
+    frames::RecordedRun recorded;
     recorded.reps = {&rep};
     recorded.trace = &trace;
-    return run::view_of_thin_body(recorded, look);
+    return frames::view_of_thin_body(recorded, look);
   };
   const auto plate = view({0.1, 2, 2}), rod = view({0.1, 2, 0.1});
   REQUIRE((plate && rod));
@@ -54,7 +54,7 @@ TEST_CASE("an animated PNG has all frames in one file") {
     const std::vector<std::uint8_t> png = render::encode_png(render::Image(5, 4, {g, g, g, 255}));
     frames.emplace_back(png.begin(), png.end());
   }
-  const std::string png = run::animated_png(frames);
+  const std::string png = frames::animated_png(frames);
   // Programs without animation show the first frame.
   const std::vector<std::uint8_t> bytes(png.begin(), png.end());
   CHECK(render::decode_png(bytes).image.at(0, 0) == render::Rgba{10, 10, 10, 255});
@@ -75,11 +75,11 @@ TEST_CASE("an animated PNG has all frames in one file") {
     CHECK(data_of(png, "fdAT", at).substr(4) == data_of(frames[i], "IDAT", 0));
   }
   // Equal frames extend the one before; frames of another size are rejected.
-  const std::string twice = run::animated_png({frames[0], frames[0], frames[1]});
+  const std::string twice = frames::animated_png({frames[0], frames[0], frames[1]});
   CHECK(data_of(twice, "fcTL", 0).substr(20, 4) ==
         std::string("\0\10\0\14", 4));  // 2 and 6 twelfths of a second
   CHECK(twice.size() < png.size());
   const std::vector<std::uint8_t> small = render::encode_png(render::Image(5, 5));
-  CHECK_THROWS_AS(run::animated_png({frames[0], {small.begin(), small.end()}}), InputError);
-  CHECK_THROWS_AS(run::animated_png({}), InputError);
+  CHECK_THROWS_AS(frames::animated_png({frames[0], {small.begin(), small.end()}}), InputError);
+  CHECK_THROWS_AS(frames::animated_png({}), InputError);
 }

@@ -28,11 +28,11 @@ namespace {
 /// A shipped scenario, recorded.
 struct Shipped {
   spec::Scenario scenario;
-  run::Recording recording;
-  run::RecordedRun run;
+  record::Recording recording;
+  frames::RecordedRun run;
   explicit Shipped(const std::string& name)
       : scenario(spec::open_scenario(name)),
-        recording(run::record(scenario, run::kSilent)),
+        recording(record::record(scenario, record::kSilent)),
         run(run::recorded_run_of(scenario, recording)) {}
 };
 
@@ -111,21 +111,21 @@ TEST_CASE("a figure of a 2D body consists of lines and text, without pixels") {
   const Shipped s("figure2");
   FigureSpec spec;
   spec.format = FigureSpec::Format::svg;
-  const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
+  const Figure svg = draw_figure(s.run, {}, spec, record::kSilent);
   CHECK(svg.panels == 6);
   CHECK(count(svg.bytes, "<image") == 0);
   CHECK(count(svg.bytes, "aria-label=\"(f)\"") == 1);
   CHECK(count(svg.bytes, "aria-label=\"island, wrapper\"") == 1);
   CHECK(svg.caption.find("(a) outermost wrapper, 8 faces; (b)") != std::string::npos);
   spec.legend = false;
-  const Figure bare = draw_figure(s.run, {}, spec, run::kSilent);
+  const Figure bare = draw_figure(s.run, {}, spec, record::kSilent);
   CHECK(count(bare.bytes, "aria-label=\"island, wrapper\"") == 0);
   spec.titles = true;
-  CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).bytes, "(a) outermost") == 1);
+  CHECK(count(draw_figure(s.run, {}, spec, record::kSilent).bytes, "(a) outermost") == 1);
   spec.format = FigureSpec::Format::pdf;
-  const Figure pdf = draw_figure(s.run, {}, spec, run::kSilent);
+  const Figure pdf = draw_figure(s.run, {}, spec, record::kSilent);
   CHECK(count(pdf.bytes, "/Subtype /Image") == 0);
-  CHECK(pdf.bytes == draw_figure(s.run, {}, spec, run::kSilent).bytes);
+  CHECK(pdf.bytes == draw_figure(s.run, {}, spec, record::kSilent).bytes);
 }
 
 TEST_CASE("a figure of 3D bodies: vector graphics, or faces as pixels if there are many") {
@@ -134,13 +134,13 @@ TEST_CASE("a figure of 3D bodies: vector graphics, or faces as pixels if there a
   spec.format = FigureSpec::Format::svg;
   spec.dpi = 150;
   spec.choice.panels = 2;
-  const Figure vectors = draw_figure(s.run, {}, spec, run::kSilent);
+  const Figure vectors = draw_figure(s.run, {}, spec, record::kSilent);
   CHECK(vectors.notes.empty());
   CHECK(count(vectors.bytes, "<image") == 0);
   CHECK(count(vectors.bytes, "stroke=\"#c41230\"") > 0);
   CHECK(count(vectors.bytes, "width=\"85mm\"") == 1);
   spec.vector_faces = 10;
-  const Figure svg = draw_figure(s.run, {}, spec, run::kSilent);
+  const Figure svg = draw_figure(s.run, {}, spec, record::kSilent);
   CHECK(count(svg.bytes, "<image") == svg.panels);
   REQUIRE(svg.notes.size() == 1);
   CHECK(svg.notes[0].starts_with("faces are an image of 150 dpi: panel (a) has "));
@@ -148,7 +148,7 @@ TEST_CASE("a figure of 3D bodies: vector graphics, or faces as pixels if there a
   CHECK(count(svg.bytes, "aria-label=\"(a)\"") == 1);
   CHECK(count(svg.bytes, "<text") == 0);
   spec.format = FigureSpec::Format::png;
-  const Figure png = draw_figure(s.run, {}, spec, run::kSilent);
+  const Figure png = draw_figure(s.run, {}, spec, record::kSilent);
   const auto bytes = std::vector<std::uint8_t>(png.bytes.begin(), png.bytes.end());
   const render::DecodedPng read = render::decode_png(bytes);
   CHECK(read.image.width() == static_cast<int>(std::ceil(85 / 25.4 * 150)));
@@ -246,10 +246,10 @@ TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in 
   }
   render::FrameSpec print;
   print.style = render::StyleName::print;
-  const Figure plain = draw_figure(s.run, print, spec, run::kSilent);
+  const Figure plain = draw_figure(s.run, print, spec, record::kSilent);
   spec.insets = {parse_inset("b:contact:3"), parse_inset("a:region:b0")};
   spec.callouts = {parse_callout("face:b2"), parse_callout("a:region:b0=end")};
-  const Figure svg = draw_figure(s.run, print, spec, run::kSilent);
+  const Figure svg = draw_figure(s.run, print, spec, record::kSilent);
   CHECK(svg.notes.empty());
   CHECK(count(svg.bytes, "<clipPath") == count(plain.bytes, "<clipPath") + 2);
   CHECK(count(svg.bytes, "aria-label=\"face 2 of B\"") == 2);
@@ -258,11 +258,11 @@ TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in 
   CHECK(count(svg.caption, " (inset: region 0 of B, ") == 1);
   spec.vector_faces = 10;
   spec.dpi = 100;
-  CHECK(count(draw_figure(s.run, {}, spec, run::kSilent).bytes, "<image") == 4);
+  CHECK(count(draw_figure(s.run, {}, spec, record::kSilent).bytes, "<image") == 4);
   spec.insets.clear();
   spec.callouts = {
       parse_callout("face:b2=a text that is much wider than a panel of half the width of the figure")};
-  CHECK_THROWS_AS(draw_figure(s.run, {}, spec, run::kSilent), InputError);
+  CHECK_THROWS_AS(draw_figure(s.run, {}, spec, record::kSilent), InputError);
 }
 
 TEST_CASE("--occlusion darkens faces in a gap, and leaves those of a convex body") {

@@ -57,7 +57,7 @@ golden::GoldenSpec small_spec() {
 
 golden::GoldenRun play() {
   return golden::play_golden(spec::parse_scenario(two_balls(), "balls.scenario.json"), small_spec(),
-                             run::kSilent);
+                             record::kSilent);
 }
 
 /// The golden of a run, without going through files.

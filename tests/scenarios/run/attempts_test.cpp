@@ -79,12 +79,12 @@ TEST_CASE("attempts by region: those that could have covered what it covers, and
   for (const Mesh& mesh : bodies_to_build()) {
     CAPTURE(mesh.name);
     const Built built = build_recorded(mesh, 12);
-    const std::vector<run::Attempt> attempts = run::attempts_of(built.trace);
+    const std::vector<record::Attempt> attempts = record::attempts_of(built.trace);
     REQUIRE(attempts.size() > 20);
-    const auto of_region = run::attempts_by_region(built.trace, built.rep, attempts);
+    const auto of_region = record::attempts_by_region(built.trace, built.rep, attempts);
     REQUIRE(of_region.size() == built.rep.region_count());
     std::size_t rejected = 0, accepted = 0;
-    for (const run::Attempt& a : attempts) (a.rejected() ? rejected : accepted) += 1;
+    for (const record::Attempt& a : attempts) (a.rejected() ? rejected : accepted) += 1;
     std::size_t caps = 0;
     for (const auto& pass : trace::passes_of(built.trace)) caps += pass.caps[0];
     CHECK(accepted == caps);
@@ -95,7 +95,7 @@ TEST_CASE("attempts by region: those that could have covered what it covers, and
       for (const std::uint32_t v : kept) covered.erase(v);
       std::vector<std::uint32_t> expected;
       for (std::uint32_t i = 0; i < attempts.size(); ++i) {
-        const run::Attempt& a = attempts[i];
+        const record::Attempt& a = attempts[i];
         const bool whole = built.trace.events[a.patch].patch().interior == 0;
         bool there = std::count(a.regions.begin(), a.regions.end(), r) > 0;
         for (const VertexId v : a.vertices) there = there || covered.contains(v);

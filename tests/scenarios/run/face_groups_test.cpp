@@ -15,29 +15,30 @@ namespace {
 
 using ColourPer = render::FrameSpec::ColourPer;
 
-run::Recording rocks() {
+record::Recording rocks() {
   spec::Scenario s = test::approach("rock", 6);
   s.events = EventLevel::nodes;
-  return run::record(s, run::kSilent);
+  return record::record(s, record::kSilent);
 }
 
 }  // namespace
 
 TEST_CASE("sums over regions and levels count every face once") {
-  const run::Recording r = rocks();
+  const record::Recording r = rocks();
   const LrbRep& rep = r.bodies[0].rep;
   const trace::FaceCounts counts = trace::count_faces(rep, Side::a, r.trace.events);
   const std::vector<double> tests(counts.tests.begin(), counts.tests.end());
   const double all = std::accumulate(tests.begin(), tests.end(), 0.0);
   REQUIRE(all > 0);
-  CHECK(run::grouped(tests, ColourPer::face, rep) == tests);
+  CHECK(frames::grouped(tests, ColourPer::face, rep) == tests);
   for (const ColourPer per : {ColourPer::region, ColourPer::level}) {
-    const std::vector<double> sums = run::grouped(tests, per, rep);
+    const std::vector<double> sums = frames::grouped(tests, per, rep);
     REQUIRE(sums.size() == tests.size());
     std::map<std::uint32_t, double> once;
     double total = 0;
     for (FaceId f = 0; f < rep.face_count(); ++f) {
-      const std::uint32_t group = per == ColourPer::region ? run::region_of(rep, f) : run::level_of(rep, f);
+      const std::uint32_t group =
+          per == ColourPer::region ? frames::region_of(rep, f) : frames::level_of(rep, f);
       if (group == kNull) {
         CHECK(sums[f] == tests[f]);
         total += sums[f];
@@ -52,12 +53,12 @@ TEST_CASE("sums over regions and levels count every face once") {
 }
 
 TEST_CASE("a real face belongs to the region that covers it, a pseudo face to the one that it hides") {
-  const run::Recording r = rocks();
+  const record::Recording r = rocks();
   const LrbRep& rep = r.bodies[0].rep;
   for (RegionId region = 0; region < rep.region_count(); ++region) {
-    for (const FaceId f : rep.lids(region)) CHECK(run::region_of(rep, f) == region.value());
+    for (const FaceId f : rep.lids(region)) CHECK(frames::region_of(rep, f) == region.value());
     for (const FaceId f : rep.floor(region))
-      if (rep.is_real(f)) CHECK(run::region_of(rep, f) == region.value());
+      if (rep.is_real(f)) CHECK(frames::region_of(rep, f) == region.value());
   }
-  for (const FaceId f : rep.outermost_faces()) CHECK(run::level_of(rep, f) == 0);
+  for (const FaceId f : rep.outermost_faces()) CHECK(frames::level_of(rep, f) == 0);
 }

@@ -27,8 +27,8 @@ std::string balls(const std::string& query) {
          query + "}";
 }
 
-run::Recording recorded(const std::string& query) {
-  return run::record(spec::parse_scenario(balls(query), "gap.json"), run::kSilent);
+record::Recording recorded(const std::string& query) {
+  return record::record(spec::parse_scenario(balls(query), "gap.json"), record::kSilent);
 }
 
 bool draws_line(const render::DrawList& list, render::Rgba colour) {
@@ -38,12 +38,12 @@ bool draws_line(const render::DrawList& list, render::Rgba colour) {
 }
 
 /// The state at the end of a step.
-run::FrameState at_end(const run::Recording& r, std::size_t step, const render::FrameSpec& spec) {
-  run::RecordedRun run;
+frames::FrameState at_end(const record::Recording& r, std::size_t step, const render::FrameSpec& spec) {
+  frames::RecordedRun run;
   run.reps = {&r.bodies[0].rep, &r.bodies[1].rep};
   run.trace = &r.trace;
   run.results = &r.results;
-  run::FrameState state(run, spec, false);
+  frames::FrameState state(run, spec, false);
   state.seek(r.trace.steps[step].first_event + static_cast<trace::EventId>(r.trace.events_of(step).size()) -
              1);
   return state;
@@ -52,7 +52,7 @@ run::FrameState at_end(const run::Recording& r, std::size_t step, const render::
 }  // namespace
 
 TEST_CASE("measured runs: each step has its distance and clash, and the contact search is recorded") {
-  const run::Recording r = recorded(R"({"distance": true, "clash": true})");
+  const record::Recording r = recorded(R"({"distance": true, "clash": true})");
   REQUIRE(r.trace.steps.size() == 7);
   for (const trace::Step& step : r.trace.steps) {
     REQUIRE(step.result.distance.has_value());
@@ -65,11 +65,11 @@ TEST_CASE("measured runs: each step has its distance and clash, and the contact 
   CHECK(r.trace.steps.back().result.clash->finished);
   std::string rocks = balls(R"({"clash": 1})");  // not convex: the search for their depth has steps
   for (std::size_t at; (at = rocks.find("ball\"")) != std::string::npos;) rocks.replace(at, 4, "rock");
-  const run::Recording limited = run::record(spec::parse_scenario(rocks, "gap.json"), run::kSilent);
+  const record::Recording limited = record::record(spec::parse_scenario(rocks, "gap.json"), record::kSilent);
   CHECK_FALSE(limited.trace.steps.back().result.clash->finished);
   REQUIRE(r.trace.header.first_contact.has_value());
   CHECK(r.trace.header.first_contact->history.size() > 2);
-  const run::Recording plain = recorded("{}");
+  const record::Recording plain = recorded("{}");
   CHECK_FALSE(plain.trace.steps[0].result.distance.has_value());
   CHECK_FALSE(plain.trace.steps[0].result.clash.has_value());
   REQUIRE(plain.trace.header.first_contact.has_value());
@@ -78,17 +78,17 @@ TEST_CASE("measured runs: each step has its distance and clash, and the contact 
 }
 
 TEST_CASE("measured runs: frames show closest points and separation vectors with their lengths") {
-  const run::Recording r = recorded(R"({"distance": true, "clash": true})"), plain = recorded("{}");
+  const record::Recording r = recorded(R"({"distance": true, "clash": true})"), plain = recorded("{}");
   const render::FrameSpec spec;
-  const run::FrameState apart = at_end(r, 0, spec), met = at_end(r, 6, spec);
-  CHECK(draws_line(apart.scene().list, run::kGapColour));
-  CHECK_FALSE(draws_line(apart.scene().list, run::kSeparationColour));
+  const frames::FrameState apart = at_end(r, 0, spec), met = at_end(r, 6, spec);
+  CHECK(draws_line(apart.scene().list, pictures::kGapColour));
+  CHECK_FALSE(draws_line(apart.scene().list, pictures::kSeparationColour));
   CHECK(apart.caption().find("distance ") != std::string::npos);
-  CHECK(draws_line(met.scene().list, run::kSeparationColour));
+  CHECK(draws_line(met.scene().list, pictures::kSeparationColour));
   CHECK(met.caption().find(", depth ") != std::string::npos);
   CHECK(met.caption().find("protrudes") != std::string::npos);
-  CHECK_FALSE(draws_line(at_end(plain, 0, spec).scene().list, run::kGapColour));
-  CHECK_FALSE(draws_line(at_end(plain, 6, spec).scene().list, run::kSeparationColour));
+  CHECK_FALSE(draws_line(at_end(plain, 0, spec).scene().list, pictures::kGapColour));
+  CHECK_FALSE(draws_line(at_end(plain, 6, spec).scene().list, pictures::kSeparationColour));
 }
 
 TEST_CASE("measured runs: distances of points that move with B are those of the library") {
@@ -96,9 +96,9 @@ TEST_CASE("measured runs: distances of points that move with B are those of the 
   folder.write("points.csv", "x,y,z\n0,0,0\n-1,0,0\n0,0,1\n3,3,3\n");
   const std::string file = folder / "gap.json";
   const auto record_with = [&](const std::string& query) {
-    return run::record(spec::parse_scenario(balls(query), file), run::kSilent);
+    return record::record(spec::parse_scenario(balls(query), file), record::kSilent);
   };
-  const run::Recording r = record_with(R"({"points": "points.csv"})");
+  const record::Recording r = record_with(R"({"points": "points.csv"})");
   std::vector<Eigen::Vector3d> points = {{0, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {3, 3, 3}};
   std::uint64_t inside = 0;
   for (const trace::Step& step : r.trace.steps) {
@@ -116,14 +116,14 @@ TEST_CASE("measured runs: distances of points that move with B are those of the 
   CHECK(trace::trace_from_json(trace::trace_to_json(r.trace), "t.json").steps.back().result ==
         r.trace.steps.back().result);
   const render::FrameSpec spec;
-  const run::FrameState last = at_end(r, r.trace.steps.size() - 1, spec);
+  const frames::FrameState last = at_end(r, r.trace.steps.size() - 1, spec);
   CHECK(last.caption().find(" of 4 points inside, smallest distance -") != std::string::npos);
   CHECK(draws_line(last.scene().list, render::palette::kContact));
   CHECK_THROWS_WITH_AS(record_with(R"({"points": "none.csv"})"), doctest::Contains("none.csv"), InputError);
 }
 
 TEST_CASE("measured runs: near pairs and contact manifolds of each step are those of the library") {
-  const run::Recording r = recorded(R"({"near": 0.6, "manifold": 0.05})"), plain = recorded("{}");
+  const record::Recording r = recorded(R"({"near": 0.6, "manifold": 0.05})"), plain = recorded("{}");
   const LrbRep &a = r.bodies[0].rep, &b = r.bodies[1].rep;
   std::optional<ManifoldResult> before;
   std::size_t near_steps = 0, kept_ids = 0;
@@ -150,8 +150,8 @@ TEST_CASE("measured runs: near pairs and contact manifolds of each step are thos
   CHECK_FALSE(plain.trace.steps[0].result.near.has_value());
   CHECK_FALSE(plain.trace.steps[0].result.manifold.has_value());
   const render::FrameSpec spec;
-  const run::FrameState met = at_end(r, 6, spec);
-  CHECK(draws_line(met.scene().list, run::kSeparationColour));
+  const frames::FrameState met = at_end(r, 6, spec);
+  CHECK(draws_line(met.scene().list, pictures::kSeparationColour));
   CHECK(met.caption().find(" pairs of faces within 0.6, ") != std::string::npos);
   CHECK(met.caption().find("contact manifold") != std::string::npos);
   CHECK(at_end(r, 0, spec).caption().find("no contact manifold") != std::string::npos);

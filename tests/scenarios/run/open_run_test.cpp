@@ -17,18 +17,18 @@ TEST_CASE("a run whose trace names an invalid vertex is rejected") {
   s.events = EventLevel::nodes;
   s.motion.kind = spec::Motion::Kind::poses;
   s.motion.poses = {Pose::translation({0.1, 0, 5})};
-  run::Recording r = run::record(s, run::kSilent);
+  record::Recording r = record::record(s, record::kSilent);
   const test::Folder folder;
   save_lrb(r.bodies[0].rep, folder / "a.lrb");
   save_lrb(r.bodies[1].rep, folder / "b.lrb");
   const auto write = [&] { trace::save_trace(r.trace, folder / "trace.json"); };
   write();
-  CHECK(run::open_run(folder.path.string()).trace == r.trace);
+  CHECK(record::open_run(folder.path.string()).trace == r.trace);
   const auto point = std::find_if(r.trace.events.begin(), r.trace.events.end(),
                                   [](const trace::Event& e) { return e.kind == EventKind::point; });
   REQUIRE(point != r.trace.events.end());
   point->a =
       static_cast<std::uint32_t>(r.bodies[static_cast<std::size_t>(point->side)].rep.vertices().size());
   write();
-  CHECK_THROWS_AS(run::open_run(folder.path.string()), InputError);
+  CHECK_THROWS_AS(record::open_run(folder.path.string()), InputError);
 }

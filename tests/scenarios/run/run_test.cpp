@@ -17,7 +17,7 @@ using namespace lrb;
 
 TEST_CASE("only expectations that are not met are reported") {
   spec::Scenario s = test::approach("ball", 4);
-  const run::Recording r = run::record(s, run::kSilent);
+  const record::Recording r = record::record(s, record::kSilent);
   spec::Expectation e;
   e.step = 3;
   e.relation = Relation::crossing;
@@ -25,36 +25,36 @@ TEST_CASE("only expectations that are not met are reported") {
   e.fingerprint = fingerprint(r.results[3].pairs);
   e.max_tests = r.results[3].counters.box_tests + r.results[3].counters.face_tests;
   s.expect = {e};
-  CHECK(run::mismatches(s, r).empty());
+  CHECK(record::mismatches(s, r).empty());
   s.expect[0].max_tests = *e.max_tests - 1;
-  REQUIRE(run::mismatches(s, r).size() == 1);
-  CHECK(run::mismatches(s, r)[0].find("expected at most " + std::to_string(*e.max_tests - 1) + " tests") !=
+  REQUIRE(record::mismatches(s, r).size() == 1);
+  CHECK(record::mismatches(s, r)[0].find("expected at most " + std::to_string(*e.max_tests - 1) + " tests") !=
         std::string::npos);
   s.expect[0].pairs = *e.pairs + 1;
   s.expect[0].relation = Relation::touching;
   s.expect[0].fingerprint = *e.fingerprint + 1;
-  CHECK(run::mismatches(s, r).size() == 4);
+  CHECK(record::mismatches(s, r).size() == 4);
   s.expect[0].step = 99;
-  CHECK(run::mismatches(s, r).size() == 1);
+  CHECK(record::mismatches(s, r).size() == 1);
 }
 
 TEST_CASE("moments: first and last are always included, within the limit") {
-  const run::Recording r = run::record(test::approach("ball", 4), run::kSilent);
+  const record::Recording r = record::record(test::approach("ball", 4), record::kSilent);
   render::FrameSpec spec;
-  CHECK(run::moments(spec, r.trace).size() == 8);
+  CHECK(record::moments(spec, r.trace).size() == 8);
   spec.most = 3;
-  const std::vector<trace::EventId> three = run::moments(spec, r.trace);
+  const std::vector<trace::EventId> three = record::moments(spec, r.trace);
   REQUIRE(three.size() == 3);
-  CHECK(three.front() == run::last_event(r.trace, 0));
+  CHECK(three.front() == record::last_event(r.trace, 0));
   CHECK(three.back() == r.trace.events.size() - 1);
   spec.at = render::FrameSpec::At::none;
-  CHECK(run::moments(spec, r.trace).empty());
+  CHECK(record::moments(spec, r.trace).empty());
   spec.at = render::FrameSpec::At::refinement;
   spec.most = 100'000;
-  for (const trace::EventId e : run::moments(spec, r.trace))
+  for (const trace::EventId e : record::moments(spec, r.trace))
     CHECK((r.trace.events[e].kind == EventKind::refine || r.trace.events[e].kind == EventKind::step));
-  CHECK(run::evenly(10, 4) == std::vector<std::size_t>{0, 3, 6, 9});
-  CHECK(run::evenly(2, 9) == std::vector<std::size_t>{0, 1});
+  CHECK(pictures::evenly(10, 4) == std::vector<std::size_t>{0, 3, 6, 9});
+  CHECK(pictures::evenly(2, 9) == std::vector<std::size_t>{0, 1});
 }
 
 TEST_CASE("volumes of known convex hulls") {
@@ -80,7 +80,7 @@ TEST_CASE("the shipped collisions meet their expectations") {
     if (s.show != spec::Show::collision) continue;
     CAPTURE(s.name);
     CHECK_FALSE(s.expect.empty());
-    const run::Recording r = run::record(s, run::kSilent);
-    for (const std::string& line : run::mismatches(s, r)) FAIL_CHECK(line);
+    const record::Recording r = record::record(s, record::kSilent);
+    for (const std::string& line : record::mismatches(s, r)) FAIL_CHECK(line);
   }
 }

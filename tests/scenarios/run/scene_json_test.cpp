@@ -21,19 +21,19 @@ using nlohmann::json;
 
 namespace {
 
-run::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised,
-                               EventLevel level = EventLevel::faces, bool measured = false) {
+record::Recording rocks_that_meet(WrapperMode mode = WrapperMode::regularised,
+                                  EventLevel level = EventLevel::faces, bool measured = false) {
   spec::Scenario s = test::approach("rock", 6);
   s.events = level;
   s.request.wrapper = mode;
   if (mode == WrapperMode::unregularised) s.request.recursion = Recursion::paper;
   s.more.distance = measured;
   if (measured) s.more.clash.emplace();
-  return run::record(s, run::kSilent);
+  return record::record(s, record::kSilent);
 }
 
-run::RecordedRun run_of(const run::Recording& r) {
-  run::RecordedRun p;
+frames::RecordedRun run_of(const record::Recording& r) {
+  frames::RecordedRun p;
   p.trace = &r.trace;
   for (const bodies::LoadedBody& body : r.bodies) p.reps.push_back(&body.rep);
   return p;
@@ -50,10 +50,10 @@ std::size_t changes(const trace::Trace& trace) {
 }  // namespace
 
 TEST_CASE("thinned events: changes of wrappers have priority, and the first contact is kept") {
-  const run::Recording r = rocks_that_meet();
+  const record::Recording r = rocks_that_meet();
   const std::size_t most = changes(r.trace) + 3 * r.trace.steps.size();
   REQUIRE(most < r.trace.events.size());
-  const run::ThinnedEvents t = run::thin_events(r.trace, most);
+  const record::ThinnedEvents t = record::thin_events(r.trace, most);
   CHECK(t.kept.size() == most);
   CHECK(t.steps == r.trace.steps.size());
   CHECK_FALSE(t.cut);
@@ -61,12 +61,12 @@ TEST_CASE("thinned events: changes of wrappers have priority, and the first cont
   CHECK(static_cast<std::size_t>(std::count_if(t.kept.begin(), t.kept.end(), [&](trace::EventId e) {
           return changes_wrapper(r.trace.events[e]);
         })) == changes(r.trace));
-  CHECK(std::binary_search(t.kept.begin(), t.kept.end(), run::first_contact(r.trace)));
+  CHECK(std::binary_search(t.kept.begin(), t.kept.end(), record::first_contact(r.trace)));
 }
 
 TEST_CASE("thinned events: if even those are too many, entire steps are omitted") {
-  const run::Recording r = rocks_that_meet();
-  const run::ThinnedEvents t = run::thin_events(r.trace, changes(r.trace) / 2);
+  const record::Recording r = rocks_that_meet();
+  const record::ThinnedEvents t = record::thin_events(r.trace, changes(r.trace) / 2);
   CHECK(t.kept.size() <= changes(r.trace) / 2);
   CHECK(t.steps < r.trace.steps.size());
   CHECK_FALSE(t.cut);
@@ -79,12 +79,12 @@ TEST_CASE("thinned events: if even those are too many, entire steps are omitted"
     for (std::size_t i = 0; i < events.size(); ++i)
       if (changes_wrapper(events[i])) CHECK(kept(i) == kept(0));
   }
-  CHECK(std::binary_search(t.kept.begin(), t.kept.end(), run::first_contact(r.trace)));
+  CHECK(std::binary_search(t.kept.begin(), t.kept.end(), record::first_contact(r.trace)));
 }
 
 TEST_CASE("thinned events: a refinement face by face keeps the test that caused it") {
-  const run::Recording r = rocks_that_meet(WrapperMode::unregularised);
-  const run::ThinnedEvents t = run::thin_events(r.trace, r.trace.events.size() - 1);
+  const record::Recording r = rocks_that_meet(WrapperMode::unregularised);
+  const record::ThinnedEvents t = record::thin_events(r.trace, r.trace.events.size() - 1);
   std::size_t causes = 0;
   for (const trace::EventId id : t.kept) {
     const trace::Event& e = r.trace.events[id];
@@ -96,12 +96,12 @@ TEST_CASE("thinned events: a refinement face by face keeps the test that caused 
 }
 
 TEST_CASE("boxes of tree nodes contain the faces, and each depth the boxes of the next") {
-  const run::Recording r = rocks_that_meet();
+  const record::Recording r = rocks_that_meet();
   const LrbRep& rep = r.bodies[0].rep;
-  const std::vector<run::TreeBox> boxes = run::tree_boxes(rep.tree(), 100'000);
+  const std::vector<pictures::TreeBox> boxes = pictures::tree_boxes(rep.tree(), 100'000);
   CHECK(boxes.size() == rep.tree().nodes().size());
   CHECK(boxes.back().depth + 1 == rep.tree().height());
-  const auto holds = [](const run::TreeBox& box, const Eigen::Vector3d& x) {
+  const auto holds = [](const pictures::TreeBox& box, const Eigen::Vector3d& x) {
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector3d axis = box.half.col(i);
       if (std::abs(axis.dot(x - box.centre)) > axis.squaredNorm() * (1 + 1e-6) + 1e-12) return false;
@@ -111,40 +111,40 @@ TEST_CASE("boxes of tree nodes contain the faces, and each depth the boxes of th
   for (std::uint32_t depth = 0; depth < 2; ++depth)
     for (FaceId f = 0; f < rep.real_face_count(); ++f)
       for (const VertexId v : rep.face(f))
-        CHECK(std::any_of(boxes.begin(), boxes.end(), [&](const run::TreeBox& b) {
+        CHECK(std::any_of(boxes.begin(), boxes.end(), [&](const pictures::TreeBox& b) {
           return b.depth == depth && holds(b, rep.vertices()[v]);
         }));
 }
 
 TEST_CASE("boxes of deep nodes: those on paths to faces, as many as fit, with the complete tree's boxes") {
-  const run::Recording r = rocks_that_meet();
+  const record::Recording r = rocks_that_meet();
   const ObbTree& tree = r.bodies[0].rep.tree();
-  const std::vector<run::TreeBox> all = run::tree_boxes(tree, 100'000);
+  const std::vector<pictures::TreeBox> all = pictures::tree_boxes(tree, 100'000);
   REQUIRE(tree.height() > 2);
   std::vector<SimplexId> simplices;
   for (SimplexId s = 0; s < r.bodies[0].rep.real_simplex_count(); ++s) simplices.push_back(s);
-  const std::vector<run::TreeBox> deep = run::boxes_on_paths(tree, 0, simplices, 100'000);
+  const std::vector<pictures::TreeBox> deep = pictures::boxes_on_paths(tree, 0, simplices, 100'000);
   CHECK(deep.size() + 1 == all.size());  // every node is on the way to a face; the root is not below itself
-  for (const run::TreeBox& box : deep) {
+  for (const pictures::TreeBox& box : deep) {
     const auto same = std::find_if(all.begin(), all.end(), [&](const auto& b) { return b.node == box.node; });
     REQUIRE(same != all.end());
     CHECK(same->depth == box.depth);
     CHECK(same->centre == box.centre);
     CHECK(same->half == box.half);
   }
-  const auto one = run::boxes_on_paths(tree, 0, {SimplexId(0)}, 100'000);
+  const auto one = pictures::boxes_on_paths(tree, 0, {SimplexId(0)}, 100'000);
   CHECK(one.size() >= 1);
   CHECK(one.size() < tree.height());
-  CHECK(run::boxes_on_paths(tree, 0, simplices, 3).size() == 3);
-  CHECK(run::boxes_on_paths(tree, 0, {SimplexId(1'000'000)}, 3).empty());  // no real simplex
-  const std::vector<std::uint32_t> counts = run::nodes_by_depth(tree);
+  CHECK(pictures::boxes_on_paths(tree, 0, simplices, 3).size() == 3);
+  CHECK(pictures::boxes_on_paths(tree, 0, {SimplexId(1'000'000)}, 3).empty());  // no real simplex
+  const std::vector<std::uint32_t> counts = pictures::nodes_by_depth(tree);
   CHECK(counts.size() == tree.height());
   CHECK(counts[0] == 1);
   CHECK(counts[1] == std::count_if(all.begin(), all.end(), [](const auto& b) { return b.depth == 1; }));
 }
 
 TEST_CASE("page data of a run names omissions and where to find them") {
-  const run::Recording r = rocks_that_meet();
+  const record::Recording r = rocks_that_meet();
   run::SceneLimits limits;
   limits.events = 100;
   limits.faces = 10;
@@ -162,7 +162,7 @@ TEST_CASE("page data of a run names omissions and where to find them") {
 }
 
 TEST_CASE("page data of large bodies lacks pseudo faces that no wrapper shows") {
-  const run::Recording r = rocks_that_meet();
+  const record::Recording r = rocks_that_meet();
   run::SceneLimits limits;
   limits.with_all_lids = 10;
   const json scene = json::parse(run::scene_json(run_of(r), {"trace.json", ""}, limits));
@@ -183,7 +183,7 @@ TEST_CASE("page data of large bodies lacks pseudo faces that no wrapper shows") 
 }
 
 TEST_CASE("page data of a run has the outcome of each event") {
-  const run::Recording r = rocks_that_meet(WrapperMode::regularised, EventLevel::all);
+  const record::Recording r = rocks_that_meet(WrapperMode::regularised, EventLevel::all);
   const json events = json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["events"];
   const std::vector<std::string> words = events["outcomes"]["words"];
   std::set<std::string> expected;
@@ -199,7 +199,7 @@ TEST_CASE("page data of a run has the outcome of each event") {
 }
 
 TEST_CASE("page data of a run explains each pair of a step once, and each step without pairs") {
-  const run::Recording r = rocks_that_meet();
+  const record::Recording r = rocks_that_meet();
   const json why = json::parse(run::scene_json(run_of(r), {"trace.json", "lrbscope why --run x"}))["why"];
   std::set<std::array<std::uint32_t, 3>> pairs;
   std::size_t empty = 0;
@@ -221,16 +221,16 @@ TEST_CASE("page data of a run explains each pair of a step once, and each step w
 }
 
 TEST_CASE("page data of a run explains only answers of the complete query") {
-  const run::Recording r = rocks_that_meet(WrapperMode::unregularised);
+  const record::Recording r = rocks_that_meet(WrapperMode::unregularised);
   CHECK(json::parse(run::scene_json(run_of(r), {"trace.json", ""}))["why"].is_null());
 }
 
 TEST_CASE("page data of a run has a segment for each measured step with separate or overlapping bodies") {
-  const auto scene_of = [](const run::Recording& r) {
+  const auto scene_of = [](const record::Recording& r) {
     return json::parse(run::scene_json(run_of(r), {"trace.json", ""}));
   };
   CHECK(scene_of(rocks_that_meet())["measured"].is_null());
-  const run::Recording r = rocks_that_meet(WrapperMode::regularised, EventLevel::faces, true);
+  const record::Recording r = rocks_that_meet(WrapperMode::regularised, EventLevel::faces, true);
   const json measured = scene_of(r)["measured"];
   std::vector<std::string> wanted;
   for (const trace::Step& s : r.trace.steps) {

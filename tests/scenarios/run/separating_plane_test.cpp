@@ -32,7 +32,7 @@ TEST_CASE("captions: a gap is a lower bound of the distance, and shrinks as the 
     through.t.x() = x;
     const WalkExplanation walk = explain_walk(ring, {}, ring, through);
     REQUIRE(walk.result.pairs.empty());
-    const std::string words = run::separating_plane_text(walk, {ring, {}, ring, through});
+    const std::string words = pictures::separating_plane_text(walk, {ring, {}, ring, through});
     CHECK(words.starts_with(walk.plane ? "by a plane, " : "by boxes, "));
     if (x == 4 || x < 2) CHECK(walk.plane.has_value() == (x == 4));
     const double gap = gap_in(words), distance = lrb::distance(ring, {}, ring, through).upper;
