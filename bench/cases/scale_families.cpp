@@ -14,22 +14,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-Mesh mesh_of(const LrbRep& rep) {
-  Mesh m;
-  m.dim = rep.dim();
-  m.vertices.assign(rep.vertices().begin(), rep.vertices().end());
-  for (FaceId f = 0; f < rep.real_face_count(); ++f) m.add_face(rep.face(f));
-  return m;
-}
-
 Body stretched(const LrbRep& rep, const Vector3d& by) {
-  Mesh m = mesh_of(rep);
+  Mesh m = shapes::mesh_of(rep);
   for (Vector3d& v : m.vertices) v = v.cwiseProduct(by);
   return body(m);
 }
 
 Body moved(const LrbRep& rep, const Vector3d& by) {
-  return body(shapes::translated(mesh_of(rep), by));
+  return body(shapes::translated(shapes::mesh_of(rep), by));
 }
 
 /// Returns a vector in any direction, `low` to `high` long.
@@ -92,7 +84,7 @@ Case make_thin(RandomEngine& random, double difficulty) {
 
 Case make_zero_area(RandomEngine& random, double difficulty) {
   const auto collapsed = [&](const LrbRep& rep) {
-    Mesh m = mesh_of(rep);
+    Mesh m = shapes::mesh_of(rep);
     for (int times = pick(random, 1, 4); times > 0; --times) {
       const auto corners = m.face(static_cast<FaceId>(random() % m.face_count()));
       const std::size_t k = random() % corners.size();

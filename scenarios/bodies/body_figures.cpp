@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/geometry.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/validate.hpp>
 namespace lrb::bodies {
 
@@ -142,21 +143,6 @@ RepFigures figures_of(const LrbRep& rep) {
   return out;
 }
 
-/// Returns the mesh that a body was built from, without vertices of pseudo faces: a build is limited to the
-/// extent of all vertices.
-Mesh real_faces(const LrbRep& rep) {
-  Mesh mesh;
-  mesh.dim = rep.dim();
-  mesh.name = rep.name();
-  std::uint32_t vertices = 0;
-  for (FaceId f = 0; f < rep.real_face_count(); ++f) {
-    mesh.add_face(rep.face(f));
-    for (const VertexId v : rep.face(f)) vertices = std::max(vertices, v + 1);
-  }
-  mesh.vertices.assign(rep.vertices().begin(), rep.vertices().begin() + vertices);
-  return mesh;
-}
-
 std::string rounded(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", x);
@@ -266,7 +252,7 @@ std::vector<double> waste_over_faces(const LrbRep& rep, std::span<const RegionFi
 
 std::vector<Trial> try_settings(const LrbRep& rep, unsigned threads) {
   std::vector<Trial> out = {{"", figures_of(rep)}};
-  const CheckedMesh mesh = check(real_faces(rep));
+  const CheckedMesh mesh = check(shapes::mesh_of(rep));
   for (const Setting& s : kTried) {
     BuildOptions options;
     options.patch_interior = s.patch;

@@ -8,6 +8,7 @@
 #include "tests/construct/build_checks.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/mesh_check.hpp>
 #include <lrbscope/wrapper.hpp>
 
 namespace lrb::test {
@@ -47,6 +48,10 @@ TEST_CASE("real models meet the targets for faces, outer faces, volume, embeddin
                                Target{"rocker-arm", {1780, 720, 390}}}) {
     CAPTURE(target.name);
     const Mesh mesh = read_mesh((folder / (std::string(target.name) + ".obj")).string());
+    const MeshReport report = check_mesh(mesh);
+    CHECK(report.lines(mesh).empty());
+    CHECK((report.closed && report.components == 1));
+    CHECK(report.genus == (target.name == std::string("rocker-arm") ? 1 : 0));
     Eigen::AlignedBox3d box;
     for (const auto& v : mesh.vertices) box.extend(v);
     Mesh hull;

@@ -313,24 +313,15 @@ TEST_CASE("manifolds of 100,000 pairs of sets of triangles on a grid" * doctest:
 TEST_CASE("manifolds of bodies in the plane and of degenerate faces") {
   RandomEngine random(2);
   ManifoldsSeen seen;
-  const LrbRep flat[] = {closed(shapes::gear(6)), closed(shapes::star(5)), closed(shapes::ring_2d(8))};
-  for (const LrbRep& a : flat)
-    for (const LrbRep& b : flat)
-      for (const double margin : {0.0, 0.05, 0.5})
-        check(a, {}, b,
-              Pose::rotation({0, 0, 1}, shapes::uniform(random, 0, 6),
-                             {shapes::uniform(random, 0, 3), shapes::uniform(random, 0, 1), 0}),
-              margin, seen);
+  test::for_flat_and_loose(random, 9, [&](const LrbRep& a, const LrbRep& b, const Pose& pose, int i) {
+    const double flat[] = {0, 0.05, 0.5}, loose[] = {0, 0.1, 0.5};
+    check(a, {}, b, pose, a.dim() == 2 ? flat[i] : loose[i / 3], seen);
+  });
   CHECK(seen.points > 30);
   const ManifoldResult square = contact_manifolds(
       closed(shapes::polygon({{-2, -1}, {2, -1}, {2, 0}, {-2, 0}})), {},
       closed(shapes::polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}})), Pose::translation({0, -0.25, 0}));
   check_corners(square, {{0, -0.25, 0}, {1, -0.25, 0}}, {0, 1, 0}, 0.25);
-  const LrbRep loose = test::open_body(test::loose_needles(random));
-  for (const double margin : {0.0, 0.1, 0.5})
-    for (int i = 0; i < 3; ++i)
-      check(loose, {}, loose, Pose{shapes::random_rotation(random), 0.1 * shapes::random_direction(random)},
-            margin, seen);
 }
 
 TEST_CASE("no points of a manifold's faces along its normal are deeper than its first point") {

@@ -121,19 +121,10 @@ TEST_CASE("near pairs are exact for flush bodies and at the distance itself") {
 TEST_CASE("near pairs of bodies in the plane, of needles, and of degenerate faces") {
   RandomEngine random(2);
   PairsSeen seen;
-  const LrbRep flat[] = {closed(shapes::gear(6)), closed(shapes::star(5)), closed(shapes::ring_2d(8))};
-  for (const LrbRep& a : flat)
-    for (const LrbRep& b : flat)
-      for (const double within : {0.0, 0.05, 0.5})
-        check(a, {}, b,
-              Pose::rotation({0, 0, 1}, shapes::uniform(random, 0, 6),
-                             {shapes::uniform(random, 0, 3), shapes::uniform(random, 0, 1), 0}),
-              within, seen);
-  const LrbRep loose = test::open_body(test::loose_needles(random));
-  for (const double within : {0.0, 1e-12, 0.1, 0.5})
-    for (int i = 0; i < 3; ++i)
-      check(loose, {}, loose, Pose{shapes::random_rotation(random), 0.1 * shapes::random_direction(random)},
-            within, seen);
+  test::for_flat_and_loose(random, 12, [&](const LrbRep& a, const LrbRep& b, const Pose& pose, int i) {
+    const double flat[] = {0, 0.05, 0.5}, loose[] = {0, 1e-12, 0.1, 0.5};
+    check(a, {}, b, pose, a.dim() == 2 ? flat[i] : loose[i / 3], seen);
+  });
   CHECK(seen.pairs > 300);
 }
 

@@ -121,22 +121,18 @@ std::string compare(const test::SimplexPair& s, std::size_t n) {
 }
 
 void compare_kinds(std::uint64_t seed, std::size_t n, int rounds) {
-  int all_met = 0;
-  for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
-    test::Rng rng(seed + static_cast<std::uint64_t>(k));
-    int met = 0;
-    std::string fault;
-    for (int i = 0; i < test::rounds_for(static_cast<Kind>(k), rounds); ++i) {
-      const test::SimplexPair s = test::random_pair(rng, static_cast<Kind>(k));
-      const auto a = s.a(), b = s.b();
-      met += (n == 3 ? exact::meet_triangles(a.data(), b.data())
-                     : exact::meet_segments(a.data(), b.data())) != exact::Meet::disjoint;
-      if (fault.empty()) fault = compare(s, n);
-    }
-    CHECK_MESSAGE(fault.empty(), test::name_of(static_cast<Kind>(k)) << ": " << fault);
-    all_met += met;
-  }
-  CHECK(all_met > 0);
+  int met = 0;
+  std::string fault;
+  test::for_each_kind(seed, rounds, 1, [&](test::Rng&, const test::SimplexPair& s, Kind) {
+    const auto a = s.a(), b = s.b();
+    met += (n == 3 ? exact::meet_triangles(a.data(), b.data()) : exact::meet_segments(a.data(), b.data())) !=
+           exact::Meet::disjoint;
+    const std::string found = compare(s, n);
+    if (fault.empty()) fault = found;
+    return found.empty();
+  });
+  CHECK(fault == "");
+  CHECK(met > 0);
 }
 
 }  // namespace

@@ -76,26 +76,18 @@ TEST_CASE("expansions add, scale and multiply exactly and keep their form") {
 }
 
 TEST_CASE("fixed point, expansions and integers give the oracle's orientation wherever they apply") {
-  using test::Kind;
-  for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
-    test::Rng rng(53 + static_cast<std::uint64_t>(k));
-    int fixed_point_used = 0, wrong = 0;
-    for (int i = 0; i < test::effort(500); ++i) {
-      const auto s = test::random_pair(rng, static_cast<Kind>(k));
-      exact::Coordinates4 p;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        p[axis] = {s.p[0][axis], s.p[1][axis], s.p[2][axis], s.p[3][axis]};
-      const int expected = oracle::orientation({s.p[0].data(), s.p[1].data(), s.p[2].data(), s.p[3].data()});
-      std::array<std::array<std::int64_t, 4>, 3> f;
-      if (exact::to_fixed_point(p[0], f[0]) && exact::to_fixed_point(p[1], f[1]) &&
-          exact::to_fixed_point(p[2], f[2])) {
-        ++fixed_point_used;
-        wrong += exact::orient3d_fixed(f) != expected;
-      }
-      wrong += exact::orient3d_integer(p) != expected;
-      if (exact::expansions_apply(p)) wrong += exact::orient3d_expansion(p) != expected;
-    }
-    CHECK_MESSAGE(wrong == 0, test::name_of(static_cast<Kind>(k)));
-    if (static_cast<Kind>(k) == Kind::grid) CHECK(fixed_point_used > 0);
-  }
+  int fixed_point_used = 0;
+  test::for_each_kind(53, 500, 1, [&](test::Rng&, const test::SimplexPair& s, test::Kind kind) {
+    exact::Coordinates4 p;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[axis] = {s.p[0][axis], s.p[1][axis], s.p[2][axis], s.p[3][axis]};
+    const int expected = oracle::orientation({s.p[0].data(), s.p[1].data(), s.p[2].data(), s.p[3].data()});
+    std::array<std::array<std::int64_t, 4>, 3> f;
+    const bool fits = exact::to_fixed_point(p[0], f[0]) && exact::to_fixed_point(p[1], f[1]) &&
+                      exact::to_fixed_point(p[2], f[2]);
+    fixed_point_used += fits && kind == test::Kind::grid;
+    return (!fits || exact::orient3d_fixed(f) == expected) && exact::orient3d_integer(p) == expected &&
+           (!exact::expansions_apply(p) || exact::orient3d_expansion(p) == expected);
+  });
+  CHECK(fixed_point_used > 0);
 }

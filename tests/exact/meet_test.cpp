@@ -12,39 +12,20 @@
 using namespace lrb;
 using lrb::test::Kind;
 
-namespace {
-
-/// Calls check(pair) for `rounds` random pairs of each kind; grids, whose oracle is fast, get `grid_factor`
-/// more.
-template <class Check>
-void for_each_kind(std::uint64_t seed, int rounds, int grid_factor, Check check) {
-  for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
-    const Kind kind = static_cast<Kind>(k);
-    const bool is_grid = kind == Kind::grid || kind == Kind::tiny_grid || kind == Kind::collinear;
-    test::Rng rng(seed + static_cast<std::uint64_t>(k));
-    const int n = test::rounds_for(kind, rounds) * (is_grid ? grid_factor : 1);
-    int wrong = 0;
-    for (int i = 0; i < n; ++i) wrong += check(test::random_pair(rng, kind)) ? 0 : 1;
-    CHECK_MESSAGE(wrong == 0, test::name_of(kind) << ": " << wrong << " of " << n << " disagree");
-  }
-}
-
-}  // namespace
-
 TEST_CASE("intersections of triangles agree with the rational oracle") {
-  for_each_kind(11, 1500, 30, [](const test::SimplexPair& s) {
+  test::for_each_kind(11, 1500, 30, [](test::Rng&, const test::SimplexPair& s, Kind) {
     return test::triangles_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 3));
   });
 }
 
 TEST_CASE("intersections of 2D segments agree with the rational oracle") {
-  for_each_kind(12, 1500, 20, [](const test::SimplexPair& s) {
+  test::for_each_kind(12, 1500, 20, [](test::Rng&, const test::SimplexPair& s, Kind) {
     return test::segments_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 2));
   });
 }
 
 TEST_CASE("orientations have the sign of the rational determinant") {
-  for_each_kind(13, 1500, 3, [](const test::SimplexPair& s) {
+  test::for_each_kind(13, 1500, 3, [](test::Rng&, const test::SimplexPair& s, Kind) {
     const double *a = s.p[0].data(), *b = s.p[1].data(), *c = s.p[2].data(), *d = s.p[3].data();
     const int in_space = oracle::orientation({a, b, c, d});
     const int in_plane = oracle::orientation({a, b, c});

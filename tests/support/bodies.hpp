@@ -106,6 +106,21 @@ inline Mesh loose_needles(shapes::RandomEngine& random) {
   return mesh;
 }
 
+/// Calls check(a, b, pose of B, number) for pairs of bodies in the plane, three poses each, and of loose
+/// needles, `loose` poses.
+inline void for_flat_and_loose(shapes::RandomEngine& random, int loose, const auto& check) {
+  const LrbRep flat[] = {closed(shapes::gear(6)), closed(shapes::star(5)), closed(shapes::ring_2d(8))};
+  for (const LrbRep& a : flat)
+    for (const LrbRep& b : flat)
+      for (int i = 0; i < 3; ++i) {
+        const double x = shapes::uniform(random, 0, 3), y = shapes::uniform(random, 0, 1);
+        check(a, b, Pose::rotation({0, 0, 1}, shapes::uniform(random, 0, 6), {x, y, 0}), i);
+      }
+  const LrbRep needles = open_body(loose_needles(random));
+  for (int i = 0; i < loose; ++i)
+    check(needles, needles, Pose{shapes::random_rotation(random), 0.1 * shapes::random_direction(random)}, i);
+}
+
 /// Returns the mesh without its last face.
 inline Mesh without_last_face(Mesh mesh) {
   mesh.face_vertices.resize(mesh.face_offsets[mesh.face_count() - 1]);

@@ -9,6 +9,8 @@
 #include <random>
 #include <string>
 
+#include <doctest/doctest.h>
+
 namespace lrb::test {
 
 using Rng = std::mt19937_64;
@@ -212,6 +214,21 @@ inline SimplexPair random_pair(Rng& rng, Kind kind) {
     }
   }
   return s;
+}
+
+/// Calls check(random, pair, kind) for `rounds` random pairs of each kind; grids, whose oracle is fast, get
+/// `grid_factor` more. Each call must return true.
+template <class Check>
+void for_each_kind(std::uint64_t seed, int rounds, int grid_factor, const Check& check) {
+  for (int k = 0; k < static_cast<int>(Kind::count); ++k) {
+    const Kind kind = static_cast<Kind>(k);
+    const bool is_grid = kind == Kind::grid || kind == Kind::tiny_grid || kind == Kind::collinear;
+    Rng rng(seed + static_cast<std::uint64_t>(k));
+    const int n = rounds_for(kind, rounds) * (is_grid ? grid_factor : 1);
+    int wrong = 0;
+    for (int i = 0; i < n; ++i) wrong += check(rng, random_pair(rng, kind), kind) ? 0 : 1;
+    CHECK_MESSAGE(wrong == 0, name_of(kind) << ": " << wrong << " of " << n << " disagree");
+  }
 }
 
 }  // namespace lrb::test

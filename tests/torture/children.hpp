@@ -50,6 +50,13 @@ void print_row(const char* name, const Counts& counts, double seconds) {
   std::fflush(stdout);
 }
 
+/// Counts a difference of case number `number` of a batch, and prints the first ones.
+inline void complain(std::uint64_t& counter, const char* bodies, std::uint64_t number, const char* what) {
+  if (counter++ < 3)
+    std::fprintf(stderr, "%s, case %llu of its batch: %s\n", bodies, static_cast<unsigned long long>(number),
+                 what);
+}
+
 /// Adds up work(batch) over [0, count), `jobs` processes at a time. Counts come through a pipe. Those of a
 /// batch whose process dies are a crash.
 template <class Counts>

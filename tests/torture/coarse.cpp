@@ -68,16 +68,16 @@ class Poses {
 
   void approach(QueryContext& context) {
     const int dim = bodies_.a.dim();
-    frame_ = random_() % 2
-                 ? Pose{}
-                 : Pose{shapes::random_rotation(random_, dim),
-                        std::pow(10, uniform(random_, -2, 3)) * in_space(shapes::random_direction(random_))};
+    frame_ = random_() % 2 ? Pose{}
+                           : Pose{shapes::random_rotation(random_, dim),
+                                  std::pow(10, uniform(random_, -2, 3)) *
+                                      test::in_space(shapes::random_direction(random_), bodies_.a.dim())};
     flush_ = random_() % 4 == 0;
     if (!flush_)
       touch_.r = shapes::random_rotation(random_, dim);
     else
       touch_.r = Eigen::Matrix3d::Identity();
-    way_ = in_space(shapes::random_direction(random_)).normalized();
+    way_ = test::in_space(shapes::random_direction(random_), bodies_.a.dim()).normalized();
     CollideRequest any;
     any.mode = Mode::any_pair;
     NullProbe probe;
@@ -106,10 +106,6 @@ class Poses {
   }
 
  private:
-  Eigen::Vector3d in_space(Eigen::Vector3d d) const {
-    if (bodies_.a.dim() == 2) d.z() = 0;
-    return d;
-  }
   Pose in_frame(const Pose& p) const { return {frame_.r * p.r, frame_.r * p.t + frame_.t}; }
 
   const CoarseBodies& bodies_;
@@ -176,9 +172,7 @@ class CoarseChecker {
   }
 
   void complain(std::uint64_t& counter, const char* what) {
-    if (counter++ < 3)
-      std::fprintf(stderr, "%s, query %llu of its batch: %s\n", bodies_.name,
-                   static_cast<unsigned long long>(t_.queries), what);
+    torture::complain(counter, bodies_.name, t_.queries, what);
   }
 
   const CoarseBodies& bodies_;

@@ -10,22 +10,13 @@ namespace {
 using cases::Body;
 using cases::RandomEngine;
 
-Mesh mesh_of(const LrbRep& rep) {
-  Mesh m;
-  m.dim = rep.dim();
-  m.name = rep.name();
-  m.vertices.assign(rep.vertices().begin(), rep.vertices().end());
-  for (FaceId f = 0; f < rep.real_face_count(); ++f) m.add_face(rep.face(f));
-  return m;
-}
-
 /// Null if the builder refuses the mesh.
 cases::Body built(const LrbRep& rep, RandomEngine& random) {
   BuildOptions options;
   options.patch_interior = static_cast<std::uint32_t>(cases::pick(random, 2, 16));
   options.seed = random();
   try {
-    return std::make_shared<LrbRep>(build_lrb(mesh_of(rep), options));
+    return std::make_shared<LrbRep>(build_lrb(shapes::mesh_of(rep), options));
   } catch (const InputError&) {
     return nullptr;
   }

@@ -115,11 +115,7 @@ class Motions {
   }
 
  private:
-  Eigen::Vector3d direction() {
-    Eigen::Vector3d d = shapes::random_direction(random_);
-    if (dim_ == 2) d.z() = 0;
-    return d;
-  }
+  Eigen::Vector3d direction() { return test::in_space(shapes::random_direction(random_), dim_); }
   Eigen::Vector3d axis() { return dim_ == 2 ? Eigen::Vector3d::UnitZ() : shapes::random_direction(random_); }
   Pose pose(double distance) { return {shapes::random_rotation(random_, dim_), distance * direction()}; }
 
@@ -229,9 +225,7 @@ class SweepChecker {
   }
 
   void complain(std::uint64_t& counter, const char* what) {
-    if (counter++ < 3)
-      std::fprintf(stderr, "%s, motion %llu of its batch: %s\n", bodies_.name,
-                   static_cast<unsigned long long>(t_.motions), what);
+    torture::complain(counter, bodies_.name, t_.motions, what);
   }
 
   const SweepBodies& bodies_;
