@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "scenarios/bodies/generators.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/core/random.hpp>
 
 namespace lrb::generators {
@@ -68,7 +69,7 @@ Mesh gear(const GeneratorValues& v, std::uint64_t) {
 }
 
 Mesh cog2d(const GeneratorValues& v, std::uint64_t) {
-  return polygon_2d(outline(v));
+  return shapes::polygon(outline(v));
 }
 
 namespace {
@@ -94,18 +95,6 @@ std::vector<Eigen::Vector2d> with_bays(const std::vector<Eigen::Vector2d>& outli
 
 }  // namespace
 
-Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline) {
-  Mesh mesh;
-  mesh.dim = 2;
-  const auto n = static_cast<std::uint32_t>(outline.size());
-  for (VertexId i = 0; i < n; ++i) {
-    mesh.vertices.emplace_back(outline[i].x(), outline[i].y(), 0);
-    const VertexId corners[2] = {i, VertexId((i + 1) % n)};
-    mesh.add_face(corners);
-  }
-  return mesh;
-}
-
 Mesh island(const GeneratorValues& v, std::uint64_t seed) {
   Random random(seed);
   // The coarse outline: wide capes and one deep gulf, so that it is not convex even before detail is added.
@@ -120,7 +109,7 @@ Mesh island(const GeneratorValues& v, std::uint64_t seed) {
   }
   for (int level = 0; level < static_cast<int>(v.at("levels")); ++level)
     outline = with_bays(outline, v.at("depth"), random);
-  return polygon_2d(outline);
+  return shapes::polygon(outline);
 }
 
 namespace {
@@ -273,20 +262,16 @@ class StarSurface {
  public:
   StarSurface(int frequency, const std::function<double(const Eigen::Vector3d&)>& radius)
       : n_(frequency), radius_(radius) {
-    const double g = std::numbers::phi;
-    const double corner[12][3] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                                  {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-    const int face[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                             {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                             {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                             {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-    for (const auto& f : face) add_face(corner[f[0]], corner[f[1]], corner[f[2]]);
+    const Mesh solid = shapes::icosahedron();
+    for (FaceId f = 0; f < solid.face_count(); ++f) {
+      const auto corner = [&](int i) { return solid.vertices[solid.face(f)[i]]; };
+      add_face(corner(0), corner(1), corner(2));
+    }
   }
   Mesh take() { return std::move(mesh_); }
 
  private:
-  void add_face(const double a[3], const double b[3], const double c[3]) {
-    const Eigen::Vector3d p(a[0], a[1], a[2]), q(b[0], b[1], b[2]), r(c[0], c[1], c[2]);
+  void add_face(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r) {
     const auto id = [&](int i, int j) {  // i steps towards q, j towards r
       return vertex(((n_ - i - j) * p + i * q + j * r) / n_);
     };

@@ -64,9 +64,6 @@ inline void add_triangle(Mesh& mesh, VertexId a, VertexId b, VertexId c) {
   mesh.add_face(corners);
 }
 
-/// Makes a 2D mesh from a closed polygon, counter-clockwise.
-Mesh polygon_2d(const std::vector<Eigen::Vector2d>& outline);
-
 // The fractal bodies of the paper's section 4: a basic shape with repeated local detail, as dents under lids.
 // The regions are known by construction, without a builder.
 

@@ -138,19 +138,6 @@ Mesh subdivided(const Mesh& in) {
   return out;
 }
 
-Mesh icosahedron() {
-  const double g = std::numbers::phi;
-  Mesh mesh;
-  mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  static constexpr VertexId kFaces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                                             {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                             {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                                             {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-  for (const auto& f : kFaces) mesh.add_face(f);
-  return mesh;
-}
-
 Mesh unit_icosphere(int level) {
   Mesh mesh = icosahedron();
   for (int i = 0; i < level; ++i) mesh = subdivided(mesh);
@@ -181,6 +168,19 @@ Mesh radial(int corners, const std::function<double(int)>& radius) {
 }
 
 }  // namespace
+
+Mesh icosahedron() {
+  const double g = std::numbers::phi;
+  Mesh mesh;
+  mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  static constexpr VertexId kFaces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                             {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                             {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                             {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  for (const auto& f : kFaces) mesh.add_face(f);
+  return mesh;
+}
 
 Mesh tetrahedron(double size) {
   Mesh mesh;

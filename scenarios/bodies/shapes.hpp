@@ -100,6 +100,8 @@ Mesh quad_torus(int n, int m, double major = 1,
                 double minor = 0.4);  ///< the same in quads (hardly ever planar)
 Mesh open_cylinder(int slices);       ///< the lateral surface alone: NOT closed
 
+Mesh icosahedron();  ///< of edges 2
+
 // Polygons in the plane z = 0 (dim 2).
 Mesh polygon(const std::vector<Point2>& corners);  ///< as given; counter-clockwise to be oriented outward
 Mesh circle(int corners, double radius = 1);
