@@ -11,6 +11,7 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include "tests/support/trace_schema.hpp"
+#include "tests/trace/runs.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/trace/counters.hpp>
 #include <lrbscope/trace/recorder.hpp>
@@ -20,14 +21,11 @@
 
 using namespace lrb;
 using namespace lrb::trace;
+using runs::BodyPair, runs::Recorded;
 
 namespace {
 
-struct Bodies {
-  const LrbRep *a, *b;
-};
-
-std::vector<Bodies> all_bodies() {
+std::vector<BodyPair> all_bodies() {
   static const LrbRep plate(toy::notched_plate()), box(toy::dented_box());
   static const LrbRep dent = shapes::dented_box(), stairs = shapes::stairs_2d();
   return {{&plate, &plate}, {&plate, &stairs}, {&box, &box}, {&dent, &box}};
@@ -44,31 +42,16 @@ std::vector<CollideRequest> all_requests() {
   return out;
 }
 
-struct Recorded {
-  Trace trace;
-  std::vector<CollideResult> results;
-};
-
 /// Each step also runs without the recorder and must give the same result.
-Recorded record(const Bodies& bodies, const CollideRequest& request, int steps) {
-  RecorderSettings settings;
-  settings.request = request;
-  Recorder recorder(*bodies.a, *bodies.b, settings);
-  QueryContext context;
-  shapes::RandomEngine random(11);
-  Recorded out;
-  for (int i = 0; i < steps; ++i) {
-    const Pose pose = shapes::random_pose(random, *bodies.a, *bodies.b, shapes::uniform(random, 0, 1.1));
-    recorder.begin_step(static_cast<std::uint32_t>(i), {}, pose);
-    out.results.push_back(collide(*bodies.a, {}, *bodies.b, pose, request, context, recorder));
-    recorder.end_step(out.results.back());
-    const CollideResult plain = collide(*bodies.a, {}, *bodies.b, pose, request);
-    CHECK(plain.pairs == out.results.back().pairs);
-    CHECK(plain.relation == out.results.back().relation);
-    CHECK(plain.opened == out.results.back().opened);
-    CHECK(plain.counters == out.results.back().counters);
+Recorded record(const BodyPair& bodies, const CollideRequest& request, int steps) {
+  Recorded out = runs::record(bodies, request, EventLevel::faces, 11, steps);
+  for (std::size_t i = 0; i < out.results.size(); ++i) {
+    const CollideResult plain = collide(*bodies.a, {}, *bodies.b, out.trace.steps[i].pose_b, request);
+    CHECK(plain.pairs == out.results[i].pairs);
+    CHECK(plain.relation == out.results[i].relation);
+    CHECK(plain.opened == out.results[i].opened);
+    CHECK(plain.counters == out.results[i].counters);
   }
-  out.trace = recorder.take();
   return out;
 }
 
@@ -77,7 +60,7 @@ Recorded record(const Bodies& bodies, const CollideRequest& request, int steps) 
 TEST_CASE("recording changes no answer, is complete, and replays to the query's final wrappers") {
   std::size_t refinements = 0, contacts = 0;
   for (const CollideRequest& request : all_requests())
-    for (const Bodies& bodies : all_bodies()) {
+    for (const BodyPair& bodies : all_bodies()) {
       CAPTURE(std::string(name_of(request.recursion)));
       CAPTURE(std::string(name_of(request.wrapper)));
       CAPTURE(std::string(name_of(request.mode)));
@@ -106,7 +89,7 @@ TEST_CASE("recording changes no answer, is complete, and replays to the query's 
 
 TEST_CASE("a face test follows the refinement that added the later of its faces, its cause in the trace") {
   for (const CollideRequest& request : all_requests())
-    for (const Bodies& bodies : all_bodies()) {
+    for (const BodyPair& bodies : all_bodies()) {
       const Recorded run = record(bodies, request, 10);
       std::map<std::pair<Side, CellId>, EventId> refined;  // in this step: the event that added the faces
       for (const Event& e : run.trace.events) {
@@ -141,7 +124,7 @@ TEST_CASE("approximate queries and certificates: the trace has the answers, and 
   const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), b = build_lrb(shapes::bumpy_sphere(2, 8, 0.3));
   const LrbRep flat_a = build_lrb(shapes::gear(24)), flat_b = build_lrb(shapes::gear(19, 0.9, 0.6));
   std::size_t pseudo = 0, unfinished = 0, unknown = 0, proofs = 0, earlier = 0;
-  for (const Bodies& bodies : {Bodies{&a, &b}, Bodies{&flat_a, &flat_b}})
+  for (const BodyPair& bodies : {BodyPair{&a, &b}, BodyPair{&flat_a, &flat_b}})
     for (const CollideRequest& request :
          {CollideRequest{.tolerance = 0.5, .separation = true}, CollideRequest{.max_tests = 40},
           CollideRequest{.tolerance = 0.3, .max_tests = 300, .separation = true},

@@ -12,6 +12,7 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/answer_content.hpp"
 #include "tests/support/trace_schema.hpp"
+#include "tests/trace/runs.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/error.hpp>
@@ -27,47 +28,24 @@
 using namespace lrb;
 using namespace lrb::trace;
 using Json = nlohmann::json;
+using runs::BodyPair, runs::Recorded;
 
 namespace {
 
-struct WatchedBodies {
-  const LrbRep *a, *b;
-};
-
-const std::vector<WatchedBodies>& watched_bodies() {
+const std::vector<BodyPair>& watched_bodies() {
   static const LrbRep rock = build_lrb(shapes::bumpy_sphere(3, 7, 0.3)),
                       ring = build_lrb(shapes::torus(24, 12)), gear = build_lrb(shapes::gear(20)),
                       box = build_lrb(shapes::box());
-  static const std::vector<WatchedBodies> all = {
-      {&rock, &ring}, {&rock, &rock}, {&gear, &gear}, {&ring, &box}};
+  static const std::vector<BodyPair> all = {{&rock, &ring}, {&rock, &rock}, {&gear, &gear}, {&ring, &box}};
   return all;
 }
 
-struct WatchedRun {
-  Trace trace;
-  std::vector<CollideResult> results;
-};
-
-/// Records poses that are apart, touch and cross, and one at the very same place.
-WatchedRun record(const WatchedBodies& bodies, const CollideRequest& request, EventLevel level,
-                  int steps = 6) {
-  RecorderSettings settings;
-  settings.request = request;
-  settings.level = level;
-  Recorder recorder(*bodies.a, *bodies.b, settings);
-  QueryContext context;
-  shapes::RandomEngine random(5);
-  WatchedRun out;
-  for (int i = 0; i < steps; ++i) {
-    Pose pose = shapes::random_pose(random, *bodies.a, *bodies.b, shapes::uniform(random, 0, 1.2));
-    if (i == 0) pose = {};
-    if (i == 1) pose.r *= 1.5;  // walked by the kernel for affine maps
-    recorder.begin_step(static_cast<std::uint32_t>(i), {}, pose);
-    out.results.push_back(collide(*bodies.a, {}, *bodies.b, pose, request, context, recorder));
-    recorder.end_step(out.results.back());
-  }
-  out.trace = recorder.take();
-  return out;
+/// Also at the very same place, and by the kernel for affine maps.
+Recorded record(const BodyPair& bodies, const CollideRequest& request, EventLevel level) {
+  return runs::record(bodies, request, level, 5, 6, [](int step, Pose& pose) {
+    if (step == 0) pose = {};
+    if (step == 1) pose.r *= 1.5;
+  });
 }
 
 std::vector<CollideRequest> requests() {
@@ -86,11 +64,11 @@ bool is_more(const Event& e) {
 }  // namespace
 
 TEST_CASE("a query does the same work at every event detail") {
-  for (const WatchedBodies& bodies : watched_bodies())
+  for (const BodyPair& bodies : watched_bodies())
     for (const CollideRequest& request : requests()) {
-      const WatchedRun faces = record(bodies, request, EventLevel::faces);
+      const Recorded faces = record(bodies, request, EventLevel::faces);
       for (const EventLevel level : {EventLevel::nodes, EventLevel::all}) {
-        const WatchedRun more = record(bodies, request, level);
+        const Recorded more = record(bodies, request, level);
         for (std::size_t i = 0; i < faces.results.size(); ++i)
           CHECK((test::content(more.results[i]) == test::content(faces.results[i])));
         std::vector<Event> same = more.trace.events;
@@ -112,7 +90,7 @@ TEST_CASE("a query does the same work at every event detail") {
 TEST_CASE("observed coherent queries have the same answers and counters, and their events add up to these") {
   std::map<Phase, std::uint64_t> phases;
   std::uint64_t refined_again = 0, taken_back = 0;
-  for (const WatchedBodies& bodies : watched_bodies())
+  for (const BodyPair& bodies : watched_bodies())
     for (const Mode mode : {Mode::all_pairs, Mode::first_pair, Mode::any_pair}) {
       const CollideRequest request{.mode = mode, .contacts = mode == Mode::all_pairs};
       CoherentQuery alone(*bodies.a, *bodies.b, request, CoherentQuery::CacheUse::always),
@@ -178,9 +156,9 @@ TEST_CASE("observed coherent queries have the same answers and counters, and the
 TEST_CASE("the events of a step add up to its counters") {
   std::set<NodeStep> seen;
   std::uint64_t apart = 0, inside_apart = 0, planes = 0, expansions = 0;
-  for (const WatchedBodies& bodies : watched_bodies())
+  for (const BodyPair& bodies : watched_bodies())
     for (const CollideRequest& request : requests()) {
-      const WatchedRun run = record(bodies, request, EventLevel::all);
+      const Recorded run = record(bodies, request, EventLevel::all);
       for (std::size_t step = 0; step < run.results.size(); ++step) {
         std::uint64_t pairs = 0, boxes = 0, met = 0, rejected = 0, plane_tests = 0, reported = 0;
         for (const Event& e : run.trace.events_of(step)) {
@@ -218,7 +196,7 @@ TEST_CASE("the events of a step add up to its counters") {
 }
 
 TEST_CASE("pairs of nodes form a tree: each pair's children are the overlapping ones, one level below") {
-  for (const WatchedBodies& bodies : watched_bodies()) {
+  for (const BodyPair& bodies : watched_bodies()) {
     const Trace t = record(bodies, {}, EventLevel::nodes).trace;
     std::map<EventId, std::uint32_t> children;
     for (EventId i = 0; i < t.events.size(); ++i) {
@@ -276,8 +254,8 @@ TEST_CASE("traversals of levels of detail name the level, and are not counted fo
 }
 
 TEST_CASE("the recorded axis of a rejected pair separates the nodes' boxes") {
-  const WatchedBodies& bodies = watched_bodies()[0];
-  const WatchedRun run = record(bodies, {}, EventLevel::nodes);
+  const BodyPair& bodies = watched_bodies()[0];
+  const Recorded run = record(bodies, {}, EventLevel::nodes);
   std::size_t step = 0;
   for (EventId i = 0; i < run.trace.events.size(); ++i) {
     const Event& e = run.trace.events[i];
@@ -302,7 +280,7 @@ TEST_CASE("the recorded axis of a rejected pair separates the nodes' boxes") {
 
 TEST_CASE("phases nest in steps, begin and end once, and have correct counts") {
   for (const CollideRequest& request : requests()) {
-    const WatchedRun run = record(watched_bodies()[1], request, EventLevel::nodes);
+    const Recorded run = record(watched_bodies()[1], request, EventLevel::nodes);
     EventId open = kNull;
     std::map<Phase, int> ended;
     for (EventId i = 0; i < run.trace.events.size(); ++i) {
@@ -334,8 +312,8 @@ TEST_CASE("phases nest in steps, begin and end once, and have correct counts") {
 }
 
 TEST_CASE("box tests of nodes are distributed to the faces below them") {
-  for (const WatchedBodies& bodies : watched_bodies()) {
-    const WatchedRun run = record(bodies, {}, EventLevel::nodes);
+  for (const BodyPair& bodies : watched_bodies()) {
+    const Recorded run = record(bodies, {}, EventLevel::nodes);
     std::uint64_t box_tests = 0;
     for (const CollideResult& r : run.results) box_tests += r.counters.box_tests;
     const LrbRep* const reps[] = {bodies.a, bodies.b};

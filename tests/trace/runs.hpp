@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/collide/collide_into.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
 #include <lrbscope/trace/recorder.hpp>
 
@@ -77,6 +78,35 @@ inline Run record(const LrbRep& a, const LrbRep& b, const std::vector<Eigen::Vec
   }
   run.trace = recorder.take();
   return run;
+}
+
+/// Two bodies, and their queries at random poses, recorded.
+struct BodyPair {
+  const LrbRep *a, *b;
+};
+struct Recorded {
+  Trace trace;
+  std::vector<CollideResult> results;
+};
+/// Poses are apart, touch and cross; change(step, pose) may replace them.
+inline Recorded record(const BodyPair& bodies, const CollideRequest& request, EventLevel level,
+                       std::uint64_t seed, int steps, void (*change)(int step, Pose& pose) = nullptr) {
+  RecorderSettings settings;
+  settings.request = request;
+  settings.level = level;
+  Recorder recorder(*bodies.a, *bodies.b, settings);
+  QueryContext context;
+  shapes::RandomEngine random(seed);
+  Recorded out;
+  for (int i = 0; i < steps; ++i) {
+    Pose pose = shapes::random_pose(random, *bodies.a, *bodies.b, shapes::uniform(random, 0, 1.2));
+    if (change != nullptr) change(i, pose);
+    recorder.begin_step(static_cast<std::uint32_t>(i), {}, pose);
+    out.results.push_back(collide(*bodies.a, {}, *bodies.b, pose, request, context, recorder));
+    recorder.end_step(out.results.back());
+  }
+  out.trace = recorder.take();
+  return out;
 }
 
 /// Two plates: apart, the second's corner deep in the first's notch, crossing.
