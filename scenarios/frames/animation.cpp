@@ -1,27 +1,20 @@
 #include "scenarios/frames/animation.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include "scenarios/io/files.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
-
-extern char** environ;
 
 namespace lrb::frames {
 namespace {
@@ -60,25 +53,6 @@ bool is_installed(const std::string& name) {
   for (std::string folder; std::getline(folders, folder, ':');)
     if (access(((folder.empty() ? "." : folder) + "/" + name).c_str(), X_OK) == 0) return true;
   return false;
-}
-
-/// Runs a program with no input or output except stderr. Returns its exit code.
-int run_program(const std::vector<std::string>& words) {
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  if (error != 0) throw EnvironmentError(words[0] + ": cannot start the program: " + std::strerror(error));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
 /// Returns the command, word by word, that makes an animation of the frames in folder/frames: 12 per second.
@@ -236,11 +210,14 @@ void animate(const std::string& folder, const std::string& file) {
   // Written under another name in the same folder, so that a partial file never appears under its final name.
   const std::string part =
       (path.parent_path() / ("." + path.stem().string() + ".part" + path.extension().string())).string();
-  const int code = run_program(animation_command(folder, part));
+  const io::Finished ran = io::run_program(animation_command(folder, part));
+  std::fputs(ran.errors.c_str(), stderr);
   std::error_code error;
-  if (code != 0) std::filesystem::remove(part, error);
-  if (code != 0)
-    throw EnvironmentError(file + ": ffmpeg cannot write the file (exit code " + std::to_string(code) + ")");
+  if (ran.code != 0) {
+    std::filesystem::remove(part, error);
+    throw EnvironmentError(file + ": ffmpeg cannot write the file (exit code " + std::to_string(ran.code) +
+                           ")");
+  }
   std::filesystem::rename(part, path, error);
   if (error) throw EnvironmentError(file + ": cannot write the file: " + error.message());
 }

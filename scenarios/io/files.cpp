@@ -1,12 +1,19 @@
 #include "scenarios/io/files.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <system_error>
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "engine/platform/platform.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
+
+extern char** environ;
 
 namespace lrb::io {
 
@@ -99,6 +106,62 @@ TemporaryFolder::TemporaryFolder() {
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   fs::remove_all(path, ignored);
+}
+
+namespace {
+
+/// An unnamed temporary file: removed when it is closed, however the process ends.
+class Scratch {
+ public:
+  Scratch() : file_(std::tmpfile()) {
+    if (file_ == nullptr) throw EnvironmentError(std::string("no temporary file: ") + std::strerror(errno));
+  }
+  ~Scratch() { std::fclose(file_); }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  int descriptor() const { return fileno(file_); }
+  void fill(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0)
+      throw EnvironmentError(std::string("cannot write a temporary file: ") + std::strerror(errno));
+    std::rewind(file_);
+  }
+  std::string text() {
+    std::string out;
+    char buffer[1 << 14];
+    std::rewind(file_);
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, file_)) out.append(buffer, n);
+    return out;
+  }
+
+ private:
+  std::FILE* file_;
+};
+
+}  // namespace
+
+Finished run_program(std::vector<std::string> words, const std::string& input) {
+  Scratch files[3];
+  files[STDIN_FILENO].fill(input);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_adddup2(&actions, files[number].descriptor(), number);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t child = -1;
+  Finished out;
+  out.started = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ) == 0;
+  posix_spawn_file_actions_destroy(&actions);
+  if (!out.started) return out;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  out.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  out.output = files[STDOUT_FILENO].text();
+  out.errors = files[STDERR_FILENO].text();
+  return out;
 }
 
 namespace {

@@ -75,6 +75,15 @@ struct TemporaryFolder {
   std::filesystem::path path;
 };
 
+/// What a program did that has ended.
+struct Finished {
+  bool started = false;  ///< there is such a program
+  int code = 1;          ///< exit code; 1 also after a signal
+  std::string output, errors;
+};
+/// Runs a program, found in PATH unless its name is a path, with `input` as its standard input.
+Finished run_program(std::vector<std::string> words, const std::string& input = {});
+
 // The results of a long computation while it runs, so that an interrupted one can be continued.
 
 /// A file to which lines are appended; each is flushed at once.

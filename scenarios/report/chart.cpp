@@ -1,25 +1,18 @@
 #include "scenarios/report/chart.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
-
-extern char** environ;
 
 namespace lrb::report {
 namespace {
@@ -30,65 +23,6 @@ const char* program() {
 }
 
 constexpr const char* kInstall = ": install Debian's gnuplot-nox, or set LRB_GNUPLOT to the program";
-
-/// An unnamed temporary file: removed when it is closed, however the process ends.
-class Scratch {
- public:
-  Scratch() : file_(std::tmpfile()) {
-    if (file_ == nullptr)
-      throw EnvironmentError(std::string("gnuplot: no temporary file: ") + std::strerror(errno));
-  }
-  ~Scratch() { std::fclose(file_); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  int descriptor() const { return fileno(file_); }
-  void fill(const std::string& text) {
-    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0)
-      throw EnvironmentError(std::string("gnuplot: cannot write its script: ") + std::strerror(errno));
-    std::rewind(file_);
-  }
-  std::string text() {
-    std::string out;
-    char buffer[1 << 14];
-    std::rewind(file_);
-    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, file_)) out.append(buffer, n);
-    return out;
-  }
-
- private:
-  std::FILE* file_;
-};
-
-struct Finished {
-  bool started = false, good = false;
-  std::string output, errors;
-};
-
-/// Runs gnuplot on a script passed on standard input; the picture is read from its standard output.
-Finished run(const std::string& script) {
-  Scratch in, out, errors;
-  in.fill(script);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, in.descriptor(), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, out.descriptor(), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, errors.descriptor(), STDERR_FILENO);
-  std::string name = program(), from_input = "-";
-  char* argv[] = {name.data(), from_input.data(), nullptr};
-  pid_t child = -1;
-  Finished finished;
-  finished.started = posix_spawnp(&child, argv[0], &actions, nullptr, argv, environ) == 0;
-  posix_spawn_file_actions_destroy(&actions);
-  if (!finished.started) return finished;
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  finished.good = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  finished.output = out.text();
-  finished.errors = errors.text();
-  return finished;
-}
 
 /// Returns the command that sets the terminal. The font is DejaVu Sans, as in the pictures.
 std::string terminal(const Gnuplot& chart, const std::string& ending) {
@@ -122,7 +56,7 @@ std::string last_lines(const std::string& errors) {
 }  // namespace
 
 bool has_gnuplot() {
-  return run("exit\n").good;
+  return io::run_program({program(), "-"}, "exit\n").code == 0;
 }
 
 void Gnuplot::add_data(std::string_view name, const std::vector<std::string>& rows) {
@@ -155,9 +89,10 @@ std::string gnuplot_data_text(std::string_view text) {
 
 std::string drawn(const Gnuplot& chart, const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  Finished finished = run("set terminal " + terminal(chart, ending) + "\nset encoding utf8\n" + chart.script);
+  io::Finished finished = io::run_program(
+      {program(), "-"}, "set terminal " + terminal(chart, ending) + "\nset encoding utf8\n" + chart.script);
   if (!finished.started) throw EnvironmentError(path + ": there is no program " + program() + kInstall);
-  if (!finished.good || finished.output.empty())
+  if (finished.code != 0 || finished.output.empty())
     throw EnvironmentError(path + ": " + program() + " failed: " + last_lines(finished.errors));
   return std::move(finished.output);
 }
