@@ -75,7 +75,7 @@ struct TemporaryFolder {
   std::filesystem::path path;
 };
 
-/// What a program did that has ended.
+/// How a program ended.
 struct Finished {
   bool started = false;  ///< there is such a program
   int code = 1;          ///< exit code; 1 also after a signal
