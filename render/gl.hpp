@@ -114,25 +114,11 @@ struct DeleteOne {
 using GlProgram = GlName<DeleteProgram>;
 using GlObject = GlName<DeleteOne>;
 
-inline GlObject make_texture(const Gl& gl) {
+/// Makes an object by glGen*(), to be deleted by its glDelete*().
+inline GlObject make_object(PFNGLGENTEXTURESPROC generate, PFNGLDELETETEXTURESPROC remove) {
   GLuint name = 0;
-  gl.GenTextures(1, &name);
-  return {name, {gl.DeleteTextures}};
-}
-inline GlObject make_framebuffer(const Gl& gl) {
-  GLuint name = 0;
-  gl.GenFramebuffers(1, &name);
-  return {name, {gl.DeleteFramebuffers}};
-}
-inline GlObject make_buffer(const Gl& gl) {
-  GLuint name = 0;
-  gl.GenBuffers(1, &name);
-  return {name, {gl.DeleteBuffers}};
-}
-inline GlObject make_vertex_array(const Gl& gl) {
-  GLuint name = 0;
-  gl.GenVertexArrays(1, &name);
-  return {name, {gl.DeleteVertexArrays}};
+  generate(1, &name);
+  return {name, {remove}};
 }
 /// Compiles and links a program. Throws EnvironmentError with the driver's log.
 GlProgram make_program(const Gl& gl, const std::string& name, const std::string& vertex,

@@ -212,7 +212,8 @@ struct Rasterizer::State {
   }
 
   Mesh make_mesh() {
-    Mesh m{make_vertex_array(gl), make_buffer(gl)};
+    Mesh m{make_object(gl.GenVertexArrays, gl.DeleteVertexArrays),
+           make_object(gl.GenBuffers, gl.DeleteBuffers)};
     gl.BindVertexArray(m.array);
     gl.BindBuffer(GL_ARRAY_BUFFER, m.buffer);
     return m;
@@ -240,7 +241,7 @@ struct Rasterizer::State {
 
   GlObject texture(GLenum internal, GLenum format, GLenum type, int w, int h) {
     // Integer and exact colour textures must not be filtered.
-    GlObject t = make_texture(gl);
+    GlObject t = make_object(gl.GenTextures, gl.DeleteTextures);
     gl.BindTexture(GL_TEXTURE_2D, t);
     gl.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), w, h, 0, format, type, nullptr);
     for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
@@ -253,7 +254,7 @@ struct Rasterizer::State {
     Target t;
     t.colour = texture(internal, format, type, w, h);
     t.depth = texture(GL_DEPTH32F_STENCIL8, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, w, h);
-    t.framebuffer = make_framebuffer(gl);
+    t.framebuffer = make_object(gl.GenFramebuffers, gl.DeleteFramebuffers);
     gl.BindFramebuffer(GL_FRAMEBUFFER, t.framebuffer);
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, t.colour, 0);
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, t.depth, 0);

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/faulty_meshes.hpp"
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/mesh_repair.hpp>
@@ -17,16 +18,6 @@ namespace {
 
 std::vector<BoundaryLoop> loops_of(const Mesh& m) {
   return find_boundary_loops(m, examine(m).use);
-}
-
-double volume(const Mesh& m) {
-  double six = 0;
-  for (FaceId f = 0; f < m.face_count(); ++f) {
-    const auto c = m.face(f);
-    for (std::size_t i = 1; i + 1 < c.size(); ++i)
-      six += m.vertices[c[0]].dot(m.vertices[c[i]].cross(m.vertices[c[i + 1]]));
-  }
-  return six / 6;
 }
 
 /// Closes what can be closed, and checks by other means that nothing that was there has changed, that nothing

@@ -8,6 +8,8 @@
 #include <initializer_list>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/lrb_rep.hpp>
 
@@ -27,6 +29,17 @@ inline LrbRep closed(const Mesh& mesh, double size = 1) {
 /// Returns a body of faces alone that bound no solid.
 inline LrbRep open_body(const Mesh& mesh) {
   return LrbRep::without_regions(mesh, false, false);
+}
+
+/// Returns the signed volume behind the faces of a mesh.
+inline double volume(const Mesh& mesh) {
+  double six = 0;
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    const auto c = mesh.face(f);
+    for (std::size_t i = 1; i + 1 < c.size(); ++i)
+      six += mesh.vertices[c[0]].dot(mesh.vertices[c[i]].cross(mesh.vertices[c[i + 1]]));
+  }
+  return six / 6;
 }
 
 /// Returns a sheet of n x n quads in the plane z = 0.

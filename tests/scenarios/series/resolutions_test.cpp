@@ -2,11 +2,11 @@
 
 #include "scenarios/bodies/resolutions.hpp"
 
-#include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/shared_meshes.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
@@ -16,15 +16,7 @@ using namespace lrb;
 
 namespace {
 
-double volume(const Mesh& mesh) {
-  double sum = 0;
-  for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    const auto c = mesh.face(f);
-    for (std::size_t i = 1; i + 1 < c.size(); ++i)
-      sum += mesh.vertices[c[0]].dot(mesh.vertices[c[i]].cross(mesh.vertices[c[i + 1]]));
-  }
-  return sum / 6;
-}
+using test::volume;
 
 void check_embedded(const Mesh& mesh, int genus, std::uint32_t components) {
   CAPTURE(mesh.name);
