@@ -15,13 +15,13 @@ namespace {
 using Eigen::Vector3d;
 
 Body stretched(const LrbRep& rep, const Vector3d& by) {
-  Mesh m = shapes::mesh_of(rep);
+  Mesh m = rep.real_mesh();
   for (Vector3d& v : m.vertices) v = v.cwiseProduct(by);
   return body(m);
 }
 
 Body moved(const LrbRep& rep, const Vector3d& by) {
-  return body(shapes::translated(shapes::mesh_of(rep), by));
+  return body(shapes::translated(rep.real_mesh(), by));
 }
 
 /// Returns a vector in any direction, `low` to `high` long.
@@ -84,7 +84,7 @@ Case make_thin(RandomEngine& random, double difficulty) {
 
 Case make_zero_area(RandomEngine& random, double difficulty) {
   const auto collapsed = [&](const LrbRep& rep) {
-    Mesh m = shapes::mesh_of(rep);
+    Mesh m = rep.real_mesh();
     for (int times = pick(random, 1, 4); times > 0; --times) {
       const auto corners = m.face(static_cast<FaceId>(random() % m.face_count()));
       const std::size_t k = random() % corners.size();

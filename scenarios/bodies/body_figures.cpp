@@ -252,7 +252,7 @@ std::vector<double> waste_over_faces(const LrbRep& rep, std::span<const RegionFi
 
 std::vector<Trial> try_settings(const LrbRep& rep, unsigned threads) {
   std::vector<Trial> out = {{"", figures_of(rep)}};
-  const CheckedMesh mesh = check(shapes::mesh_of(rep));
+  const CheckedMesh mesh = check(rep.real_mesh());
   for (const Setting& s : kTried) {
     BuildOptions options;
     options.patch_interior = s.patch;

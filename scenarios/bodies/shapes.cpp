@@ -405,17 +405,4 @@ Mesh scaled(Mesh mesh, double by) {
   return mesh;
 }
 
-Mesh mesh_of(const LrbRep& rep) {
-  Mesh mesh;
-  mesh.dim = rep.dim();
-  mesh.name = rep.name();
-  std::uint32_t vertices = 0;
-  for (FaceId f = 0; f < rep.real_face_count(); ++f) {
-    mesh.add_face(rep.face(f));
-    for (const VertexId v : rep.face(f)) vertices = std::max(vertices, v + 1);
-  }
-  mesh.vertices.assign(rep.vertices().begin(), rep.vertices().begin() + vertices);
-  return mesh;
-}
-
 }  // namespace lrb::shapes

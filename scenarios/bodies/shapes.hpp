@@ -116,7 +116,5 @@ Mesh several(const std::vector<Mesh>& meshes);  ///< all of them, vertices and f
 Mesh turned_inside_out(Mesh mesh);
 Mesh translated(Mesh mesh, const Point3& by);
 Mesh scaled(Mesh mesh, double by);  ///< by > 0
-/// Returns the real faces of a body, without the vertices of pseudo faces that follow theirs.
-Mesh mesh_of(const LrbRep& rep);
 
 }  // namespace lrb::shapes

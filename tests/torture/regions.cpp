@@ -16,7 +16,7 @@ cases::Body built(const LrbRep& rep, RandomEngine& random) {
   options.patch_interior = static_cast<std::uint32_t>(cases::pick(random, 2, 16));
   options.seed = random();
   try {
-    return std::make_shared<LrbRep>(build_lrb(shapes::mesh_of(rep), options));
+    return std::make_shared<LrbRep>(build_lrb(rep.real_mesh(), options));
   } catch (const InputError&) {
     return nullptr;
   }
