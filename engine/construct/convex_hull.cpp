@@ -314,7 +314,7 @@ std::vector<std::uint32_t> convex_outline(std::span<const Eigen::Vector3d> point
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto before = [&](std::uint32_t i, std::uint32_t j) {
-    const Vector3 &a = points[i], &b = points[j];
+    const Eigen::Vector3d &a = points[i], &b = points[j];
     return a.x() != b.x() ? a.x() < b.x() : a.y() != b.y() ? a.y() < b.y() : i < j;
   };
   std::sort(order.begin(), order.end(), before);

@@ -12,7 +12,7 @@ namespace lrb::frames {
 
 /// Collects the points that a sequence shows. If `spec` isolates regions, these regions, with a margin if the
 /// rest is shown as a ghost; if it explodes bodies, the displaced regions.
-Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spec);
+pictures::Framing frame_sequence(const RecordedRun& recorded, const render::FrameSpec& spec);
 
 /// Returns the closest points of two bodies: what close-ups show without a contact. Returns
 /// none for 2D bodies, and for bodies that meet or have no faces.

@@ -18,9 +18,9 @@ struct RunOutcome {
 };
 
 /// Returns a recording with the settings for drawing its frames; both arguments must outlive it.
-RecordedRun recorded_run_of(const spec::Scenario& scenario, const record::Recording& recording);
+frames::RecordedRun recorded_run_of(const spec::Scenario& scenario, const record::Recording& recording);
 /// Returns it for a run without a scenario.
-RecordedRun recorded_run_of(const std::string& title, const std::string& purpose,
+frames::RecordedRun recorded_run_of(const std::string& title, const std::string& purpose,
                             const record::Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,

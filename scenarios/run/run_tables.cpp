@@ -200,7 +200,7 @@ report::Table level_table(const frames::RecordedRun& p, Side side) {
   const LrbRep& rep = *p.reps[static_cast<std::size_t>(side)];
   std::uint32_t levels = 0;
   for (FaceId f = 0; f < rep.face_count(); ++f) levels = std::max(levels, frames::level_of(rep, f) + 1);
-  const Groups groups(p, side, levels, level_of);
+  const Groups groups(p, side, levels, frames::level_of);
   report::Table t{"Counters of " + std::string(name_of(side)) + " by level", {"level"}};
   append(t.columns, groups.columns());
   for (std::uint32_t level = 0; level < levels; ++level) {
@@ -217,7 +217,7 @@ report::Table level_table(const frames::RecordedRun& p, Side side) {
 report::Table region_table(const frames::RecordedRun& p, Side side) {
   constexpr std::size_t kMaxRows = 20;
   const LrbRep& rep = *p.reps[static_cast<std::size_t>(side)];
-  Groups groups(p, side, rep.region_count(), region_of);
+  Groups groups(p, side, rep.region_count(), frames::region_of);
   for (const trace::Event& e : p.trace->events)
     if (e.kind == EventKind::refine && e.side == side) ++groups.sums[e.region().value()].refined;
   std::vector<std::uint32_t> order(rep.region_count());
