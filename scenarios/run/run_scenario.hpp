@@ -21,7 +21,7 @@ struct RunOutcome {
 frames::RecordedRun recorded_run_of(const spec::Scenario& scenario, const record::Recording& recording);
 /// Returns it for a run without a scenario.
 frames::RecordedRun recorded_run_of(const std::string& title, const std::string& purpose,
-                            const record::Recording& recording);
+                                    const record::Recording& recording);
 
 /// Runs a scenario and writes folder/{index.html, trace.json[.gz], summary.json, a.lrb, b.lrb, frames/,
 /// montage.png}.
