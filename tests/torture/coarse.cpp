@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/coarse_checks.hpp"
 #include "tests/torture/children.hpp"
 #include "tests/torture/torture.hpp"
