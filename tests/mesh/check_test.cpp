@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -98,24 +99,20 @@ TEST_CASE("each fault is found alone, with its elements, and decides what the me
   struct Row {
     Mesh mesh;
     std::vector<std::pair<MeshFault, std::uint64_t>> faults;
-    bool closed, buildable, queryable;
-    Elements first = {};  ///< of the first fault
+    const char* good_for;  ///< c: is closed; b: can be built; q: can be queried
+    Elements first = {};   ///< of the first fault
   };
   for (const Row& row : std::vector<Row>{
-           {mesh_of({{0, 0, 0}}, {}), {{no_faces, 1}, {unused_vertex, 1}}, false, false, false},
+           {mesh_of({{0, 0, 0}}, {}), {{no_faces, 1}, {unused_vertex, 1}}, ""},
            {changed(tetrahedron(),
                     [](Mesh& m) { m.vertices[2].y() = std::numeric_limits<double>::quiet_NaN(); }),
             {{non_finite_vertex, 1}},
-            true,
-            false,
-            false,
+            "c",
             {{2, kNull}}},
            // Of face 1, whose three edges lose a face.
            {changed(tetrahedron(), [](Mesh& m) { m.face_vertices[4] = 4; }),
             {{index_out_of_range, 1}, {open_edge, 3}},
-            false,
-            false,
-            false,
+            "",
             {{1, 4}}},
            // No boundary: the body stays closed.
            {changed(tetrahedron(),
@@ -123,70 +120,49 @@ TEST_CASE("each fault is found alone, with its elements, and decides what the me
                       m.add_face(std::array<VertexId, 3>{1, 1, 2});
                     }),
             {{repeated_corner, 1}, {zero_area_face, 1}},
-            true,
-            false,
-            true,
+            "cq",
             {{4, 1}}},
-           {needle(0.3125), {{zero_area_face, 1}, {open_edge, 3}}, false, false, true},
-           {needle(std::nextafter(0.3125, 1)),
-            {{sliver, 1}, {open_edge, 3}},
-            false,
-            false,
-            true,
-            {{0, kNull}}},
+           {needle(0.3125), {{zero_area_face, 1}, {open_edge, 3}}, "q"},
+           {needle(std::nextafter(0.3125, 1)), {{sliver, 1}, {open_edge, 3}}, "q", {{0, kNull}}},
            {mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {{0, 1, 2, 3}}),
             {{zero_area_face, 1}, {open_edge, 4}},
-            false,
-            false,
-            true},
+            "q"},
            {mesh_of({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 1, 0}}, {{0, 1, 2, 3}}),
             {{open_edge, 4}, {duplicate_vertex, 1}},
-            false,
-            false,
-            true},
+            "q"},
            // Within the planes of two of its quads.
            {changed(quad_box(), [](Mesh& m) { m.vertices[7].x() = std::nextafter(m.vertices[7].x(), 2); }),
             {{non_planar_face, 1}},
-            true,
-            true,
-            true},
-           {without_faces(quad_box(), {FaceId(3)}), {{open_edge, 4}}, false, false, true},
-           {open_cylinder(11), {{open_edge, 22}}, false, false, true},
+            "cbq"},
+           {without_faces(quad_box(), {FaceId(3)}), {{open_edge, 4}}, "q"},
+           {open_cylinder(11), {{open_edge, 22}}, "q"},
            // A vertex on the edge of another face; two triangles along a slit.
            {mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 1e-8, 0}},
                     {{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {1, 2, 3}, {2, 0, 3}}),
             {{open_edge, 3}, {t_junction, 1}, {self_intersection, 2}},
-            false,
-            false,
-            true},
+            "q"},
            {mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1 + 1e-9, 0, 0}, {0, 1 + 1e-9, 0}},
                     {{0, 1, 2}, {4, 3, 5}}),
             {{open_edge, 6}, {near_vertex, 2}},
-            false,
-            false,
-            true},
+            "q"},
            // Slivers at every size; none is one with a height of more than 1e-4.
            {scaled(
                 mesh_of({{0, 0, 0}, {1, 0, 0}, {0.5, 0.9e-4, 0}, {0.5, 0, 1.1e-4}}, {{0, 1, 2}, {1, 0, 3}}),
                 1e-200),
             {{sliver, 1}, {open_edge, 4}},
-            false,
-            false,
-            true},
-           {without_faces(circle(6), {FaceId(2)}), {{open_edge, 2}}, false, false, true},
-           {with_vertices(box(), {{5, 5, 5}}), {{unused_vertex, 1}}, true, true, true, {{8, kNull}}},
+            "q"},
+           {without_faces(circle(6), {FaceId(2)}), {{open_edge, 2}}, "q"},
+           {with_vertices(box(), {{5, 5, 5}}), {{unused_vertex, 1}}, "cbq", {{8, kNull}}},
            // Whatever the sign of their zeros.
            {with_vertices(box(), {{0, 0, 0}, {-0.0, 0, 0}, {1, 0, 0}}),
             {{duplicate_vertex, 3}, {unused_vertex, 3}},
-            true,
-            true,
-            true}}) {
+            "cbq"}}) {
     const MeshReport report = check_mesh(row.mesh);
     CAPTURE(report.lines(row.mesh).empty());
     check_faults(report, row.faults);
-    CHECK(report.closed == row.closed);
-    CHECK(report.buildable() == row.buildable);
-    CHECK(report.queryable() == row.queryable);
+    const std::string good_for = std::string(report.closed ? "c" : "") + (report.buildable() ? "b" : "") +
+                                 (report.queryable() ? "q" : "");
+    CHECK(good_for == row.good_for);
     if (!row.first.empty()) CHECK(report[row.faults[0].first].first == row.first);
   }
   const MeshReport open = check_mesh(without_faces(quad_box(), {FaceId(3)}));

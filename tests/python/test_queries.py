@@ -121,7 +121,6 @@ def test_answers_do_not_depend_on_threads(ball):
 BOTH = "cube, cube, "
 REFUSED = [
     (f"collide({BOTH}threads=-1)", InputError, "threads"),
-    (f"first_contact({BOTH}'there')", InputError, "motion_b: expected numbers"),
     ("lrbscope.CoherentQuery(cube, cube).collide(np.eye(3))", InputError, "pose_b"),
     (f"collide({BOTH}np.eye(4) * 2)", InputError, "poses_b: the last row of a pose must be 0 0 0 1"),
     (f"collide({BOTH}np.eye(4) * np.nan)", InputError, "poses_b: the last row"),
@@ -145,7 +144,6 @@ REFUSED = [
     (f"lrbscope.near_pairs({BOTH}within=None)", InputError, "within"),
     (f"lrbscope.near_pairs({BOTH[:-2]})", TypeError, "within"),
     (f"lrbscope.contact_manifolds({BOTH}previous=3)", InputError, "previous"),
-    ("lrbscope.signed_distance(cube, [[0, 0]])", InputError, "3 coordinates"),
     ("lrbscope.explain_pair(cube, cube, (0, 12))", InputError, "simplex of B: expected a number below 12"),
     ("lrbscope.explain_pair(cube, cube, (0, -1))", InputError, "pair: expected numbers of triangles"),
     ("lrbscope.explain_pair(cube, cube, (0, 2**40))", InputError, "pair: expected numbers of triangles"),

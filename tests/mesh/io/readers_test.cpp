@@ -48,22 +48,12 @@ TEST_CASE("OBJ: every form of index") {
     CHECK(obj_corners(face) == expected);
     CHECK(obj_corners(std::string(face) + "\n") == expected);
   }
+  CHECK(read_mesh("f 1 3 2\n" + kFourVertices, "t.obj").face_vertices == expected);
 }
 
 TEST_CASE("OBJ: negative indices count from the vertex before the face") {
   const Mesh m = read_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 1\nf -4 -1 -3\n", "t.obj");
   CHECK(m.face_vertices == std::vector<VertexId>{0, 1, 2, 0, 3, 1});
-}
-
-TEST_CASE("OBJ: a face may precede its vertices") {
-  const Mesh m = read_mesh("f 1 2 3\n" + kFourVertices, "t.obj");
-  CHECK(m.face_vertices == std::vector<VertexId>{0, 1, 2});
-}
-
-TEST_CASE("OBJ: quads and n-gons are kept") {
-  const Mesh m =
-      read_mesh("v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5\nf 1 2 3 4\nf 1 2 3", "t.obj");
-  CHECK(m.face_offsets == std::vector<std::uint32_t>{0, 5, 9, 12});
 }
 
 TEST_CASE("OBJ: weights, colours, groups, materials and comments are ignored") {
