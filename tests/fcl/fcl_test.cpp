@@ -137,18 +137,22 @@ TEST_CASE("distances equal lrb::distance() and agree with FCL up to rounding") {
 // Unit cubes that overlap by 0.25 along x; with sides in one plane, nearly, and far from it. Cf. FCL #106,
 // #503, #491, and a box in the corner of two walls.
 TEST_CASE("contacts have points in both meshes, and the normal and depth of the overlap") {
-  const auto box = model_of<::fcl::OBBRSSd>(shapes::box());
-  const ::fcl::CollisionObjectd o1(box);
-  for (const Eigen::Vector3d& t : {Eigen::Vector3d(0.75, 0, 0), Eigen::Vector3d(0.75, 0.001, 0),
-                                   Eigen::Vector3d(0.75, 0.001, 0.002), Eigen::Vector3d(0.75, 0.25, 0.25)}) {
-    ::fcl::CollisionObjectd o2(box);
+  const auto outward = model_of<::fcl::OBBRSSd>(shapes::box()),
+             inward = model_of<::fcl::OBBRSSd>(shapes::turned_inside_out(shapes::box()));
+  for (int i = 0; i < 16; ++i) {
+    const auto& box = i % 2 == 0 ? outward : inward;
+    const Eigen::Vector3d t =
+        std::array{Eigen::Vector3d(0.75, 0, 0), Eigen::Vector3d(0.75, 0.001, 0),
+                   Eigen::Vector3d(0.75, 0.001, 0.002), Eigen::Vector3d(0.75, 0.25, 0.25)}[i / 4];
+    const ::fcl::CollisionObjectd o1(box);
+    ::fcl::CollisionObjectd o2(i % 4 < 2 ? outward : inward);
     o2.setTranslation(t);
     ::fcl::CollisionResultd result;
     lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(1000, true), result);
     const Body body = lrb::fcl::body_of(*box).value();
     CHECK(pairs_of(result) == brute_force(body, Pose{}, body, Pose::translation(t)).pairs);
-    for (std::size_t i = 0; i < result.numContacts(); ++i) {
-      const ::fcl::Contactd& c = result.getContact(i);
+    for (std::size_t k = 0; k < result.numContacts(); ++k) {
+      const ::fcl::Contactd& c = result.getContact(k);
       CHECK(c.o1 == box.get());
       CHECK(c.normal == Eigen::Vector3d(1, 0, 0));
       CHECK(c.penetration_depth == 0.25);
@@ -157,6 +161,8 @@ TEST_CASE("contacts have points in both meshes, and the normal and depth of the 
     }
     CHECK(lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(3), result) == result.numContacts());
   }
+  CHECK(lrb::fcl::known_bodies().of(inward.get(), lrb::fcl::arrays_of(*inward)) ==
+        lrb::fcl::known_bodies().of(inward.get(), lrb::fcl::arrays_of(*inward)));
 }
 
 TEST_CASE("FCL's names work without qualification; other shapes and moving objects are passed to FCL") {

@@ -8,7 +8,8 @@
 ///
 /// - Contacts list the intersecting pairs of triangles, each once, ascending; only the first one found if
 ///   num_max_contacts is 1. With enable_contact, each has the centroid of the corners of the two triangles'
-///   intersection as its point, and the normal and depth of its contact manifold (ContactManifold).
+///   intersection as its point, and the normal and depth of its contact manifold (ContactManifold), also if
+///   the triangles of a closed mesh are inward-oriented.
 /// - Distances are measured between the surfaces, to 1e-12 of the meshes' size regardless of rel_err and
 ///   abs_err; 0 if they intersect. Nearest points are in the world frame.
 /// - As in FCL, a mesh inside another one does not collide with it unless the surfaces intersect.
@@ -129,7 +130,9 @@ class KnownBodies {
   template <class S>
   Body of(const void* address, const MeshArrays<S>& arrays) {
     if (std::shared_ptr<const Body> known = find(address); known && is_same(*known, arrays)) return *known;
-    const auto made = std::make_shared<const Body>(body_of(arrays, faces_alone()).value());
+    BodyOptions options = faces_alone();
+    options.turn = true;  // for normals and depths of contacts
+    const auto made = std::make_shared<const Body>(body_of(arrays, options).value());
     keep(address, made);
     return *made;
   }
@@ -159,9 +162,12 @@ class KnownBodies {
       return false;
     for (std::size_t i = 0; i < arrays.vertices.size(); ++i)
       if (data.vertices[i] != arrays.vertices[i].template cast<double>()) return false;
-    for (std::size_t i = 0; i < arrays.triangles.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k)
-        if (data.face_vertices[3 * i + k].value() != arrays.triangles[i][static_cast<int>(k)]) return false;
+    for (std::size_t i = 0; i < arrays.triangles.size(); ++i) {
+      const ::fcl::Triangle& t = arrays.triangles[i];
+      const VertexId* c = &data.face_vertices[3 * i];
+      const auto follow = [&](int k, int m) { return c[1].value() == t[k] && c[2].value() == t[m]; };
+      if (c[0].value() != t[0] || !(follow(1, 2) || (body.turned() > 0 && follow(2, 1)))) return false;
+    }
     return true;
   }
 
