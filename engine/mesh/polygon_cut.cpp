@@ -142,7 +142,7 @@ class EarClipping {
   /// Returns true if the outline turns back on itself at b, or b and a neighbour coincide.
   bool is_flat(Corner b) const {
     const Vector2d &p = points_[links_[b].before], &q = points_[b], &r = points_[links_[b].after];
-    if (p == q || q == r || p == r) return true;
+    if (p == q || q == r) return true;
     if (turn_at(b) != 0) return false;
     const int axis = p.x() != q.x() ? 0 : 1;
     return (p[axis] < q[axis]) == (r[axis] < q[axis]);

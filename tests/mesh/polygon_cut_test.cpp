@@ -141,6 +141,20 @@ TEST_CASE("outlines that touch themselves") {
   };
   for (const Outline& o : outlines)
     for (int i = 0; i < 50; ++i) check_cut(o, true, random);
+  // As they are, with the number of their triangles without area.
+  const std::vector<std::pair<Outline, int>> others = {
+      {{{0, 6}, {1, 2}, {1, 1}, {3, 4}, {5, 6}}, 0},                  // a corner on a diagonal
+      {{{2, 3}, {0, 0}, {1, 1}, {0, 0}}, 2},                          // no area
+      {{{4, 3}, {2, 1}, {3, 1}, {4, 4}, {3, 2}, {4, 1}}, 1},          // an edge that enters an ear at its end
+      {{{4, 0}, {5, 2}, {3, 3}, {1, 3}, {4, 2}, {5, 0}, {4, 3}}, 1},  // ears that are none later
+      {{{1, 4}, {1, 5}, {2, 2}, {1, 0}, {1, 5}, {3, 5}, {0, 1}, {0, 4}, {3, 3}, {1, 2}, {0, 1}}, 3}};
+  for (const auto& [outline, flat] : others) {
+    Triangles triangles;
+    CHECK(cut_polygon(positions(outline, 0), triangles) == PolygonCut::ears);
+    int found = 0;
+    for (const auto& t : triangles) found += doubled_area(outline[t[0]], outline[t[1]], outline[t[2]]) == 0;
+    CHECK(found == flat);
+  }
 }
 
 TEST_CASE(
@@ -157,9 +171,9 @@ TEST_CASE(
                                                {{1, 1}, {0, 4}, {0, 0}, {4, 0}}})  // seen from its dent
     for (int plane = 0; plane < 4; ++plane) check(positions(o, plane), PolygonCut::fan);
   check({{0, 0, 0}, {4, 0, 1}, {4, 4, 0}, {0, 4, 1}}, PolygonCut::fan);
-  // A dart, folded a little and much.
+  // A dart, folded by a fiftieth and a fifth of its size.
   check({{0, 4, 0}, {0, 0, 0.1}, {4, 0, 0}, {1, 1, 0.1}}, PolygonCut::ears);
-  check({{0, 4, 0}, {0, 0, 3}, {4, 0, 0}, {1, 1, 3}}, PolygonCut::folded);
+  check({{0, 4, 0}, {0, 0, 1}, {4, 0, 0}, {1, 1, 1}}, PolygonCut::folded);
   check(positions({{0, 2}, {-1, -2}, {2, 1}, {-2, 1}, {1, -2}}, 0), PolygonCut::folded);  // a pentagram
 }
 
