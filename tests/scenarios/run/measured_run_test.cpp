@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/frames/frame_state.hpp"
+#include "scenarios/run/run_charts.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/support/folder.hpp"
 #include <lrbscope/error.hpp>
@@ -37,13 +38,24 @@ bool draws_line(const render::DrawList& list, render::Rgba colour) {
   });
 }
 
-/// The state at the end of a step.
-frames::FrameState at_end(const record::Recording& r, std::size_t step, const render::FrameSpec& spec) {
+frames::RecordedRun played(const record::Recording& r) {
   frames::RecordedRun run;
   run.reps = {&r.bodies[0].rep, &r.bodies[1].rep};
   run.trace = &r.trace;
   run.results = &r.results;
-  frames::FrameState state(run, spec, false);
+  return run;
+}
+
+/// The page's note about the depth at the end of a run.
+std::string note_on_depth(const record::Recording& r) {
+  for (const report::Number& number : run::step_numbers(played(r), r.trace.steps.size() - 1))
+    if (number.label == "Penetration depth") return number.note;
+  return {};
+}
+
+/// The state at the end of a step.
+frames::FrameState at_end(const record::Recording& r, std::size_t step, const render::FrameSpec& spec) {
+  frames::FrameState state(played(r), spec, false);
   state.seek(r.trace.steps[step].first_event + static_cast<trace::EventId>(r.trace.events_of(step).size()) -
              1);
   return state;
@@ -63,10 +75,12 @@ TEST_CASE("measured runs: each step has its distance and clash, and the contact 
   CHECK(r.trace.steps.back().result.clash->kind == ClashKind::protrudes);
   CHECK(r.trace.steps.back().result.clash->depth->at(0) > 0.1);
   CHECK(r.trace.steps.back().result.clash->finished);
+  CHECK(note_on_depth(r).ends_with(", proven"));
   std::string rocks = balls(R"({"clash": 1})");  // not convex: the search for their depth has steps
   for (std::size_t at; (at = rocks.find("ball\"")) != std::string::npos;) rocks.replace(at, 4, "rock");
   const record::Recording limited = record::record(spec::parse_scenario(rocks, "gap.json"), record::kSilent);
   CHECK_FALSE(limited.trace.steps.back().result.clash->finished);
+  CHECK(note_on_depth(limited).ends_with(". The limit of steps was reached"));
   REQUIRE(r.trace.header.first_contact.has_value());
   CHECK(r.trace.header.first_contact->history.size() > 2);
   const record::Recording plain = recorded("{}");
