@@ -330,6 +330,12 @@ Body saved(const Kind& kind, const test::Folder& folder, bool levels) {
   return Body::load(folder / "body.lrb").value();
 }
 
+/// As a program in C++ makes one, which states the properties of its mesh.
+Body of_rep(const Kind& kind) {
+  const bool crosses = !self_intersections(check(kind.mesh)).pairs.empty();
+  return Body::from(LrbRep::without_regions(kind.mesh, kind.solid, crosses));
+}
+
 /// A way to a body.
 struct Door {
   const char* name;
@@ -339,6 +345,7 @@ struct Door {
 constexpr Door kDoors[] = {
     {"faces", [](const Kind& k, const test::Folder&) { return of_mesh(k, false); }},
     {"mesh", [](const Kind& k, const test::Folder&) { return of_mesh(k, true); }},
+    {"LRB-rep", [](const Kind& k, const test::Folder&) { return of_rep(k); }},
     {"arrays", [](const Kind& k, const test::Folder&) { return of_arrays(k); }},
     {"OBJ", [](const Kind& k, const test::Folder& folder) { return of_file(k, folder, "obj"); }},
     {"other file", [](const Kind& k, const test::Folder& folder) { return of_file(k, folder, k.format); }},
