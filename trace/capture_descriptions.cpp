@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 
 namespace lrb::capture {
@@ -43,14 +44,14 @@ void Descriptions::define(std::unordered_map<std::uint32_t, std::uint32_t>& ids,
 
 void Descriptions::read_name() {
   define(names_, u32(), "name");
-  out_.names.push_back(characters(left()));
+  out_.names.push_back(printable_name(characters(left())));
 }
 
 void Descriptions::read_mesh() {
   define(meshes_, u32(), "mesh");
   const std::uint32_t vertices = u32(), triangles = u32(), length = u32();
   Mesh mesh;
-  mesh.name = characters(length);
+  mesh.name = printable_name(characters(length));
   const std::vector<double> xyz = numbers<double>(std::uint64_t{3} * vertices);
   const std::vector<std::uint32_t> corners = numbers<std::uint32_t>(std::uint64_t{3} * triangles);
   mesh.vertices.reserve(vertices);

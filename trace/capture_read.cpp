@@ -112,7 +112,7 @@ class Reader : public Descriptions {
     return false;
   }
 
-  void read_engine() { out_.engine = printable_name(characters(left())); }  // reaches the terminal
+  void read_engine() { out_.engine = printable_name(characters(left())); }
 
   void read_sync() {
     const std::uint64_t wall = u64();

@@ -128,6 +128,10 @@ TEST_CASE("a capture reads back what an engine reported") {
   const Capture c = read(record(a_query));
   CHECK(c.engine == "engine 1");
   CHECK(c.names == std::vector<std::string>{"cache hits"});
+  // Terminals and pages show names.
+  CHECK(read(with(record(a_query), "HEAD", 0, '\x1b')).engine == "\\x1bngine 1");
+  CHECK(read(with(record(a_query), "NAME", 4, '\n')).names[0] == "\\x0aache hits");
+  CHECK(read(with(record(a_query), "MESH", 16, '\x1b', 1)).meshes[1].name == "\\x1bedge");
   CHECK_FALSE(c.cut_off);
   REQUIRE(c.meshes.size() == 2);
   CHECK(c.meshes[1].name == "wedge");
