@@ -210,15 +210,15 @@ std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::
     const std::size_t from = value + kValue.size();
     const std::string found = text.substr(from, range - from);
     const bool is_bounded = high < std::numeric_limits<float>::max();
-    const bool is_finite = std::isfinite(std::strtod(found.c_str(), nullptr));
-    // Ranges of positive numbers begin at the least double, which CLI11 prints as 0.
-    const bool is_above = std::strtod(found.c_str(), nullptr) == low;
+    const double x = std::strtod(found.c_str(), nullptr);
     constexpr std::size_t kLong = 40;
+    // Ranges of positive numbers begin at the least normal double, which CLI11 prints as 0.
     return text.substr(0, value) + ": expected " +
-           (is_bounded  ? number(low) + " to " + number(high)
-            : is_above  ? "a finite number above " + number(low)
-            : is_finite ? "at least " + number(low)
-                        : "a finite number of at least " + number(low)) +
+           (is_bounded                           ? number(low) + " to " + number(high)
+            : !std::isfinite(x)                  ? "a finite number of at least " + number(low)
+            : std::fpclassify(x) == FP_SUBNORMAL ? "a number that is not subnormal"
+            : x == low                           ? "a number above " + number(low)
+                                                 : "at least " + number(low)) +
            ", found " + (found.size() > kLong ? in_quotes(found) : found);
   }
   if (const std::size_t equals = text.find(" = "); text.starts_with(kUnread) && equals != std::string::npos)
