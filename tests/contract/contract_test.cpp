@@ -109,7 +109,7 @@ TEST_CASE_TEMPLATE("a query rejects in one line what it cannot answer, alone and
     return reason;
   };
   for (const auto& [request, part] : Q::rejected())
-    CHECK(rejected(good, request, part) == error_of([&] { Q::check(box, request); }));
+    CHECK(rejected(good, request, part) == error_of([&, &of = request] { Q::check(box, of); }));
   Q::check(box, Q::requests()[0]);
   if constexpr (!std::is_same_v<Q, FirstContact>)  // a motion through such a pose is no motion
     for (const double bad : {kNaN, kInfinite}) {
