@@ -61,6 +61,8 @@ if(library IN_LIST CPACK_COMPONENTS_ALL)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME liblrbscope${lrb_soversion})
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "${lrb_draws}")
+  file(WRITE ${PROJECT_BINARY_DIR}/debs_doc/triggers "activate-noawait ldconfig\n")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debs_doc/triggers)
   set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${lrb_about}This package contains the shared library.")
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
          ", ${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME} (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
