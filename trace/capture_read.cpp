@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "trace/capture_descriptions.hpp"
@@ -35,6 +36,19 @@ double error_as_rotation(const Eigen::Matrix3d& r) {
 }
 
 }  // namespace
+
+Pose pose_of(const Probe& probe) {
+  Pose out;
+  const Eigen::Map<const Eigen::Vector3d> first(probe.numbers.data()), second(probe.numbers.data() + 3);
+  if (probe.shape == ProbeShape::point) out.t = first;
+  if (probe.shape != ProbeShape::ray) return out;
+  Eigen::Vector3d along = second;
+  if (!(std::abs(along.squaredNorm() - 1) < kRigid / 2)) along = along.stableNormalized();
+  const Eigen::Vector3d across = along.unitOrthogonal();
+  out.r << along, across, along.cross(across);
+  out.t = first + probe.numbers[6] * second;
+  return out;
+}
 
 /// A query while its events arrive. Chunks of several threads alternate.
 struct Growing {
@@ -102,10 +116,12 @@ class Reader : public Descriptions {
         {"HEAD", &Reader::read_engine}, {"SYNC", &Reader::read_sync},   {"STOP", &Reader::read_stop},
         {"NAME", &Reader::read_name},   {"MESH", &Reader::read_mesh},   {"TREE", &Reader::read_tree},
         {"QRYB", &Reader::read_begin},  {"QRYE", &Reader::read_answer}, {"EVTS", &Reader::read_events},
-        {"VALU", &Reader::read_value}};
+        {"VALU", &Reader::read_value},  {"RATE", &Reader::read_rate}};
     for (const auto& [kind, read] : kKinds) {
       if (kind_ != kind) continue;
-      if (version_ != 1) fail("expected version 1, found " + text(version_) + "; use a newer lrbscope");
+      const std::uint32_t known = kind_ == "QRYB" ? 2 : 1;  // 2: of a probe
+      if (version_ == 0 || version_ > known)
+        fail("expected version " + text(known) + ", found " + text(version_) + "; use a newer lrbscope");
       (this->*read)();
       return true;
     }
@@ -124,13 +140,18 @@ class Reader : public Descriptions {
     out_.cut_off = false;
   }
 
+  void read_rate() {
+    out_.every = u64();
+    require(out_.every != 0 && last_begun_ == 0,
+            "expected a number above 0 before the first query; call LRBCAP_EVERY after LRBCAP_OPEN");
+  }
+
   void read_begin() {
     u64();  // reserved
     query_ = u32();
     const std::uint32_t kind = u32(), a = u32(), b = u32();
     u64();  // reserved
-    const std::uint32_t thread = u32();
-    u32();  // reserved
+    const std::uint32_t thread = u32(), shape = u32();
     require(query_ != 0, "expected a number of a query above 0; the file is damaged");
     Growing growing;
     Query& query = growing.query;
@@ -141,7 +162,11 @@ class Reader : public Descriptions {
     query.kind = static_cast<QueryKind>(kind - 1);  // kinds of a file begin with 1
     query.trees = {a == 0 ? kNull : index_of(trees_, a, "tree"),
                    b == 0 ? kNull : index_of(trees_, b, "tree")};
-    for (const int side : {0, 1}) query.poses[side] = read_pose(side == 0 ? 'A' : 'B');
+    query.poses[0] = read_pose('A');
+    if (version_ == 1)
+      query.poses[1] = read_pose('B');
+    else
+      read_probe(query, shape);
     query.thread = thread;
     growing.begin_ticks = ticks_;
     growing.parts.push_back({thread, {}, false});
@@ -172,6 +197,31 @@ class Reader : public Descriptions {
     }
     if (!rows.t.allFinite()) fail(pose + "expected a finite translation; give the pose that the engine used");
     return rows;
+  }
+
+  void read_probe(Query& query, std::uint32_t shape) {
+    if (shape < 1 || shape > 3)
+      fail("expected a ray (1), a point (2) or a box (3), found " + text(shape) + "; see docs/capture.md");
+    query.probe.shape = static_cast<ProbeShape>(shape);
+    if (query.trees[0] == kNull || query.trees[1] != kNull || query.kind > QueryKind::distance)
+      fail("expected a query of kind all pairs, any or distance of one described tree with a " +
+           std::string(name_of(query.probe.shape)) + ", found another; see docs/capture.md");
+    const std::vector<double> all = numbers<double>(12);
+    std::array<double, 8>& n = query.probe.numbers;
+    std::copy_n(all.begin(), n.size(), n.begin());
+    const bool is_ray = shape == 1, is_box = shape == 3;
+    bool valid = std::all_of(n.begin(), n.end() - is_ray, [](double x) { return std::isfinite(x); });
+    if (is_ray) valid = valid && (n[3] != 0 || n[4] != 0 || n[5] != 0) && n[6] <= n[7];
+    for (std::size_t k = 0; is_box && k < 3; ++k) valid = valid && n[k] <= n[k + 3];
+    if (!valid) {
+      std::string found;
+      for (const double x : n) found += ' ' + io::number_text(x);
+      fail(
+          "expected finite numbers, of a ray a direction and a range of its multiples, which may be endless, of "
+          "a box least and greatest x, y, z, found" +
+          found + "; give those of the engine");
+    }
+    query.poses[1] = pose_of(query.probe);
   }
 
   Growing& begun() {
@@ -306,6 +356,9 @@ class Reader : public Descriptions {
     std::uint32_t* const numbers[] = {&e.a, &e.b};
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
       const std::uint32_t tree = query.trees[side];
+      if (side == 1 && query.probe.shape != ProbeShape::none && e.b != 0)
+        fail("expected node and triangle 0 of the " + std::string(name_of(query.probe.shape)) +
+             " (B), found " + text(e.b) + "; name it 0");
       if (tree == kNull) continue;
       if (e.kind == EventKind::nodes)
         convert_node(tree, "AB"[side], *numbers[side]);

@@ -39,17 +39,19 @@ FIELDS = {
     "HEAD": "name:text",
     "SYNC": "wall_ns:u8",
     "STOP": "wall_ns:u8",
+    "RATE": "every:u8",
     "NAME": "number:u4 name:text",
     "MESH": "number:u4 n_vertices:u4 n_faces:u4 n_name:u4 name:text:n_name vertices:f8:n_vertices,3 faces:u4:n_faces,3",
     "TREE": "number:u4 mesh:u4 replaces:u4 nodes:u4 volume:u4 n_directions:u4 options:u4 zero:u4 ids:u4:nodes*(options&1) "
     "first_child:u4:nodes+1 child:u4:first_child[-1] first_prim:u4:nodes+1 prim:u4:first_prim[-1] "
     f"volumes:f8:nodes*(~options>>1&1),{_SIZE} float_volumes:f4:nodes*(options>>1&1),{_SIZE} directions:f8:n_directions,3",
-    "QRYB": "zero:u8 query:u4 kind:u4 tree_a:u4 tree_b:u4 zero:u8 thread:u4 zero:u4 pose_a:f8:3,4 pose_b:f8:3,4",
+    "QRYB": "zero:u8 query:u4 kind:u4 tree_a:u4 tree_b:u4 zero:u8 thread:u4 probe:u4 pose_a:f8:3,4 pose_b:f8:3,4",
     "EVTS": "query:u4 thread:u4 before:u8 n_events:u4 part:u4 events:event:n_events",
     "VALU": "query:u8 lower:f8 upper:f8",
     "QRYE": "ticks:u8 query:u4 verdict:u4 pairs:u8 n_events:u8 zero:u8",
 }
-"""dict: for each chunk the fields: name, type, and the shape by the fields before; without one: a number, or the rest as text."""
+"""dict: for each chunk the fields: name, type, and the shape by the fields before; without one: a number, or the rest as text.
+In QRYB, probe is 1 for a ray, 2 for a point and 3 for a box, whose 8, 3 or 6 numbers are then in pose_b, followed by zeros."""
 
 
 def _layout(letters: str) -> list[list[str]]:
@@ -95,6 +97,8 @@ def chunk(letters: str, /, **given: Any) -> Chunk:
     for name, type_, shape in _layout(letters):
         known.append(name)
         default: Any = b"" if type_ == "text" else np.eye(3, 4) if shape == "3,4" else () if shape else 0
+        if name == "pose_b" and given.get("probe"):
+            given[name] = np.pad(np.ravel(given[name]), (0, 12 - np.size(given[name])))
         value = given.get(name, len(given.get(name[2:], ())) if name[:2] == "n_" else default)
         if type_ == "event":
             value = _encoded(value)
@@ -174,7 +178,8 @@ def write(path: _Path, chunks: Iterable[Chunk]) -> None:
     with open(path, "wb") as file:
         file.write(_MAGIC)
         for letters, ticks, content in chunks:
-            file.write(struct.pack("<4sIQQ", letters.encode("latin-1"), 1, len(content), ticks) + content)
+            version = 2 if letters == "QRYB" and any(content[36:40]) else 1  # of a probe
+            file.write(struct.pack("<4sIQQ", letters.encode("latin-1"), version, len(content), ticks) + content)
 
 
 def queries(chunks: Iterable[Chunk]) -> Iterator[SimpleNamespace]:

@@ -8,7 +8,7 @@ namespace {
 
 std::string recorded(std::uint32_t volume, const std::uint32_t* ids) {
   const capture::Bytes bytes = capture::record([&] {
-    const double numbers[36] = {0.5, 1}, directions[] = {1, 0, 0, 0, 1, 1};
+    const double numbers[36] = {0.5, 1, 0, 1}, directions[] = {1, 0, 0, 0, 1, 1};
     const float floats[36] = {0.25F, 1};
     lrbcap_tree tree = capture::shape_of_tree(capture::a_mesh());
     tree.volume = volume;
@@ -20,6 +20,7 @@ std::string recorded(std::uint32_t volume, const std::uint32_t* ids) {
     const std::uint32_t a = LRBCAP_TREE(&tree), name = LRBCAP_NAME("n");
     const auto id = [&](std::uint32_t node) { return ids == nullptr ? node : ids[node]; };
     for (const std::uint32_t b : {a, 0u}) {
+      LRBCAP_RAY(LRBCAP_ANY, a, nullptr, numbers);
       LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, a, nullptr, b, nullptr);
       LRBCAP_PHASE(name);
       LRBCAP_NODE(id(0), id(0), 1, LRBCAP_NO_AXIS);

@@ -24,6 +24,7 @@ int main(int argc, char **argv) {
   uint32_t tree, name;
   lrbcap_tree shape = {0, 0, 0, 0, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL};
   LRBCAP_OPEN("every call", argc > 1 ? argv[1] : NULL);
+  LRBCAP_EVERY(1);
   if (argc > 9) LRBCAP_OPEN_SINK("every call", append, &shape);
   shape.mesh = LRBCAP_MESH("triangle", 3, xyz, 1, corners);
   shape.nodes = 1, shape.volume = LRBCAP_AABB, shape.first_child = none, shape.first_prim = one, shape.prim = none;
@@ -40,6 +41,7 @@ int main(int argc, char **argv) {
     LRBCAP_COUNT(name, q);
     LRBCAP_VALUE(0, 0.5 * q);
     LRBCAP_END(LRBCAP_INTERSECTING, 1);
+    LRBCAP_RAY(LRBCAP_DISTANCE, tree, NULL, xyz); LRBCAP_POINT(LRBCAP_ANY, tree, NULL, xyz); LRBCAP_BOX(LRBCAP_ANY, tree, NULL, box);
   }
   if (argc > 2) return 0; /* without LRBCAP_CLOSE */
   LRBCAP_THREAD_END();

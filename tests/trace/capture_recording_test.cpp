@@ -177,4 +177,13 @@ TEST_CASE("a query without an end, or within another, loses only ends") {
   CHECK_FALSE(c.queries[2].ended);
 }
 
+TEST_CASE("one query of each n in succession is recorded, at changing places") {
+  const Capture c = read(record([] { queries(800); }, {{"LRBCAP_EVERY", "8"}}));
+  std::map<std::uint32_t, int> places;
+  for (const Query& q : c.queries) ++places[q.number % 8], CHECK((q.number - 1) / 8 == &q - c.queries.data());
+  CHECK(c.every == 8);
+  CHECK(c.queries.size() == 100);
+  CHECK(places.size() == 8);
+}
+
 }  // namespace lrb::capture

@@ -400,6 +400,53 @@ TEST_CASE("distances are read with their bounds, once, and of distance queries o
   contains(refusal(with_value(0, 0, 1, LRBCAP_ANY)), {"a value of a distance query only"});
 }
 
+TEST_CASE("rays, points and boxes are read with their frames, and refused if they are none") {
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  using Numbers = std::array<double, 8>;
+  const auto with_probe = [](std::uint32_t shape, const Numbers& n, std::uint32_t kind = LRBCAP_ALL_PAIRS,
+                             std::uint32_t tree = 1, std::uint32_t b = 0) {
+    return record([&] {
+      a_tree();
+      if (shape == 1) LRBCAP_RAY(kind, tree, kPose, n.data());
+      if (shape == 2) LRBCAP_POINT(kind, tree, kPose, n.data());
+      if (shape == 3) LRBCAP_BOX(kind, tree, kPose, n.data());
+      LRBCAP_NODE(0, b, 1, LRBCAP_NO_AXIS);
+      LRBCAP_END(LRBCAP_SEPARATE, 0);
+    });
+  };
+  const Numbers ray{1, 2, 3, 0, 0, 4, 0.5, inf}, box{1, 2, 3, 4, 2, 6};
+  const Query q = read(with_probe(1, ray, LRBCAP_DISTANCE)).queries.at(0);
+  CHECK(q.probe.shape == ProbeShape::ray);
+  CHECK(q.probe.numbers == ray);
+  CHECK(q.trees == std::array<std::uint32_t, 2>{0, kNull});
+  CHECK(q.poses[1].apply({2, 0, 0}) == Eigen::Vector3d(1, 2, 3 + 0.5 * 4 + 2));
+  CHECK(read(with_probe(2, ray)).queries.at(0).poses[1].t == Eigen::Vector3d(1, 2, 3));
+  CHECK(read(with_probe(3, box, LRBCAP_ANY)).queries.at(0).probe.numbers == box);
+  for (const auto& [at, x] :
+       {std::pair{std::size_t{0}, nan}, {4, inf}, {5, 0.0}, {6, nan}, {6, inf}, {7, 0.25}, {7, nan}}) {
+    Numbers wrong = ray;
+    wrong[at] = x;
+    contains(refusal(with_probe(1, wrong)),
+             {"(QRYB at byte ", "expected finite numbers, of a ray a direction"});
+  }
+  contains(refusal(with_probe(2, {1, nan, 3})), {"found 1 nan 3 0"});
+  contains(refusal(with_probe(3, {1, 2, 3, 0, 2, 3})), {"of a box least and greatest"});
+  contains(refusal(with_probe(1, ray, LRBCAP_SELF)), {"any or distance of one described tree with a ray"});
+  contains(refusal(with_probe(1, ray, LRBCAP_ANY, 0)), {"one described tree"});
+  contains(refusal(with_probe(1, ray, LRBCAP_ANY, 7)), {"refers to tree 7, which was not described"});
+  contains(refusal(with_probe(1, ray, LRBCAP_ANY, 1, 2)),
+           {"event 1: expected node and triangle 0 of the ray"});
+  const Bytes good = with_probe(1, ray);
+  contains(refusal(with(good, "QRYB", 36, 4u)), {"expected a ray (1), a point (2) or a box (3), found 4"});
+  // The version of the chunk keeps older readers from taking the numbers for a pose.
+  constexpr std::size_t kVersion = 4 - kHeader;  // from the content backward
+  contains(refusal(with(good, "QRYB", kVersion, 1u)), {"pose of B: expected a rotation"});
+  contains(refusal(with(good, "QRYB", kVersion, 3u)), {"expected version 2, found 3"});
+  Bytes cut = good;
+  cut.resize(find_chunk(good, "QRYB") + 60);
+  CHECK(read(cut).queries.empty());
+}
+
 TEST_CASE("poses must be rigid, row by row") {
   const Bytes good = record(a_query);
   const auto with_pose = [&](std::array<double, 12> pose) { return with(good, "QRYB", 40 + 96, pose); };

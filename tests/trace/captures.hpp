@@ -29,7 +29,7 @@ inline int append(void* user, const void* bytes, std::uint64_t size) {
 /// Records the reports of `body`, with environment variables set.
 inline Bytes record(const std::function<void()>& body, const Settings& settings = {}) {
   for (const char* name :
-       {"LRBCAP_OUT", "LRBCAP_QUERIES", "LRBCAP_SLOWER_US", "LRBCAP_EVENTS", "LRBCAP_MAX_MB"})
+       {"LRBCAP_OUT", "LRBCAP_QUERIES", "LRBCAP_SLOWER_US", "LRBCAP_EVENTS", "LRBCAP_MAX_MB", "LRBCAP_EVERY"})
     unsetenv(name);
   for (const auto& [name, value] : settings) setenv(name.c_str(), value.c_str(), 1);
   Bytes out;

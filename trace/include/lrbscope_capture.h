@@ -1,4 +1,4 @@
-/* lrbscope_capture.h 0.2: records what a collision engine does, for `lrbscope import`.
+/* lrbscope_capture.h 1.0: records what a collision engine does, for `lrbscope import`.
  *
  * One header in C99 or C++11 that needs only the C library. Copy it, or include the installed one.
  * - Without LRBCAP_ENABLE, the macros below do nothing: arguments are not evaluated, and the program contains
@@ -23,11 +23,12 @@
  * Output is only appended: to a file, a FIFO, or your own function (LRBCAP_OPEN_SINK).
  *   LRBCAP_OUT=FILE            where; without it nothing is recorded
  *   LRBCAP_QUERIES=40-60       only these queries, numbered from 1 (also 40 or 40-)
+ *   LRBCAP_EVERY=N             one query, at random, of N in succession
  *   LRBCAP_SLOWER_US=N         events only of queries that take at least N microseconds, or have over 8,192
  *   LRBCAP_EVENTS=0            no tests of nodes and triangles: queries, times, counters and phases only
  *   LRBCAP_MAX_MB=N            after N megabytes no events, after N + N/8 no queries; 0: no limit; default 4096
  *
- * docs/capture.md of lrbscope describes calls and file format. Versions 0.x may change both.
+ * docs/capture.md of lrbscope describes calls and file format, and what versions 1.x keep.
  *
  * MIT License. Copyright (c) 2026 The lrbscope authors
  *
@@ -140,6 +141,8 @@ LRBCAP_INLINE uint32_t lrbcap_none(size_t size) {
 #define LRBCAP_OPEN(engine, path) LRBCAP_CALL(lrbcap_open(engine, path, NULL, NULL))
 #define LRBCAP_OPEN_SINK(engine, sink, user) LRBCAP_CALL(lrbcap_open(engine, NULL, sink, user))
 #define LRBCAP_CLOSE() LRBCAP_CALL(lrbcap_close())
+/* After OPEN: records one query, at random, of n in succession. `check` scales its sums by n. */
+#define LRBCAP_EVERY(n) LRBCAP_CALL(lrbcap_every(LRBCAP_CAST(uint64_t, n)))
 
 /* Describe a mesh (3 doubles per vertex, 3 indices per triangle), a tree, and the name of a counter or phase.
  * They return a number above 0, or 0 if nothing is recorded. The data may be freed afterwards. */
@@ -153,6 +156,13 @@ LRBCAP_INLINE uint32_t lrbcap_none(size_t size) {
  * number of the query for LRBCAP_JOIN, or 0 if it is not recorded. pairs: how many the engine found. */
 #define LRBCAP_BEGIN(kind, tree_a, pose_a, tree_b, pose_b) \
   LRBCAP_RESULT(lrbcap_begin(kind, tree_a, pose_a, tree_b, pose_b))
+/* Begin a query of one tree with a ray, a point or a box of the world; tests name it 0, as b. Kinds: ALL_PAIRS for
+ * all triangles that are hit, ANY, or DISTANCE: for a ray its first hit, whose VALUE is the multiple of the direction.
+ * ray: 8 doubles, origin, direction, the least and the greatest multiple of it (HUGE_VAL: no end); point: x, y, z;
+ * box: 6 doubles, least and greatest x, y, z. */
+#define LRBCAP_RAY(kind, tree, pose, ray) LRBCAP_BEGIN(LRBCAP_CAST(uint32_t, kind) | 256u, tree, pose, 0, ray)
+#define LRBCAP_POINT(kind, tree, pose, point) LRBCAP_BEGIN(LRBCAP_CAST(uint32_t, kind) | 512u, tree, pose, 0, point)
+#define LRBCAP_BOX(kind, tree, pose, box) LRBCAP_BEGIN(LRBCAP_CAST(uint32_t, kind) | 768u, tree, pose, 0, box)
 #define LRBCAP_END(verdict, pairs) \
   LRBCAP_CALL(lrbcap_end(LRBCAP_CAST(uint32_t, verdict), LRBCAP_CAST(uint64_t, pairs)))
 /* Before the END of a query of kind DISTANCE: the engine's distance, which is between these bounds. */
@@ -180,6 +190,7 @@ enum { LRBCAP_KIND_NODES = 0, LRBCAP_KIND_PRIMS = 1, LRBCAP_KIND_COUNT = 2, LRBC
 
 void lrbcap_open(const char* engine, const char* path, lrbcap_sink sink, void* user);
 void lrbcap_close(void);
+void lrbcap_every(uint64_t n);
 uint32_t lrbcap_mesh(const char* name, uint32_t n_vertices, const double* xyz, uint32_t n_triangles,
                      const uint32_t* corners);
 uint32_t lrbcap_add_tree(const lrbcap_tree* tree);
@@ -333,6 +344,7 @@ static struct {
   void* user;
   int events, exits;                        /* 0: LRBCAP_EVENTS=0; 1: lrbcap_at_exit() is registered */
   uint32_t first, last;                     /* queries */
+  uint64_t every;                           /* one query of so many is recorded */
   uint64_t limit;                           /* bytes */
   uint64_t slower, soon;                    /* ticks: of queries whose events are kept, and between flushes */
   lrbcap_shared on, lock, written, flushed; /* flushed: ticks */
@@ -527,6 +539,15 @@ void lrbcap_open(const char* engine, const char* path, lrbcap_sink sink, void* u
   lrbcap_sync("SYNC");
   lrbcap_g.soon = ms * LRBCAP_FLUSH_MS;
   lrbcap_g.slower = lrbcap_setting_number("LRBCAP_SLOWER_US", 0) * ms / 1000u;
+  lrbcap_every(lrbcap_setting_number("LRBCAP_EVERY", 1));
+}
+
+void lrbcap_every(uint64_t n) {
+  const void* parts[1];
+  uint64_t sizes[1];
+  lrbcap_g.every = n > 1 ? n : 1;
+  parts[0] = &lrbcap_g.every, sizes[0] = sizeof lrbcap_g.every;
+  if (n > 1) lrbcap_gather("RATE", parts, sizes, 1);
 }
 
 void lrbcap_close(void) {
@@ -702,6 +723,8 @@ static void lrbcap_leave(void) {
 
 uint32_t lrbcap_begin(uint32_t kind, uint32_t tree_a, const double* pose_a, uint32_t tree_b,
                       const double* pose_b) {
+  static const uint64_t sizes[] = {96, 64, 24, 48}; /* of the numbers of B: a pose, a ray, a point, a box */
+  const uint32_t shape = kind >> 8 & 3;
   static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   unsigned char bytes[LRBCAP_HEADER + 232], *p;
   lrbcap_state* s;
@@ -714,19 +737,25 @@ uint32_t lrbcap_begin(uint32_t kind, uint32_t tree_a, const double* pose_a, uint
   }
   query = LRBCAP_CAST(uint32_t, lrbcap_add(&lrbcap_g.queries, 1)) + 1;
   if (query < lrbcap_g.first || query > lrbcap_g.last) return 0;
+  if (lrbcap_g.every > 1) { /* a hash of the number of its group chooses the query (Knuth, section 6.4) */
+    const uint64_t group = (query - 1) / lrbcap_g.every, place = (query - 1) % lrbcap_g.every;
+    if (((group * 0x9E3779B97F4A7C15u) >> 32) % lrbcap_g.every != place) return 0;
+  }
   s = lrbcap_enter(query);
   if (!s) return 0;
   p = lrbcap_chunk(bytes, "QRYB", 232, lrbcap_ticks());
+  if (shape) bytes[4] = 2; /* the version of the chunk */
   p = lrbcap_u64(p, 0);
   p = lrbcap_u32(p, query);
-  p = lrbcap_u32(p, kind);
+  p = lrbcap_u32(p, kind & 255);
   p = lrbcap_u32(p, tree_a);
   p = lrbcap_u32(p, tree_b);
   p = lrbcap_u64(p, 0);
   p = lrbcap_u32(p, s->thread);
-  p = lrbcap_u32(p, 0);
+  p = lrbcap_u32(p, shape);
   p = lrbcap_put(p, pose_a ? pose_a : identity, sizeof identity);
-  lrbcap_put(p, pose_b ? pose_b : identity, sizeof identity);
+  memset(p, 0, sizeof identity);
+  lrbcap_put(p, pose_b ? pose_b : identity, sizes[shape]);
   lrbcap_write(bytes, sizeof bytes);
   s->open = 1;
   lrbcap_now = &s->buffer;

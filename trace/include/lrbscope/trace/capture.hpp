@@ -21,6 +21,7 @@
 
 #include <Eigen/Core>
 
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/pose.hpp>
 #include <lrbscope/trace/trace.hpp>
@@ -80,6 +81,28 @@ struct Tree {
 using QueryKind = trace::EngineQuery;
 using Verdict = trace::EngineVerdict;
 
+/// A shape of the world instead of B, in a query of one tree. Events name it by the node and the triangle 0.
+enum class ProbeShape : std::uint32_t {
+  none = 0,   ///< B is a body
+  ray = 1,    ///< 8 numbers: origin, direction, its least and its greatest multiple, which may be infinite
+  point = 2,  ///< 3: x, y, z
+  box = 3,    ///< 6: least x, y, z; greatest x, y, z; a solid
+};
+constexpr auto enum_names(ProbeShape) {
+  return std::to_array<EnumName<ProbeShape>>({{ProbeShape::none, "body"},
+                                              {ProbeShape::ray, "ray"},
+                                              {ProbeShape::point, "point"},
+                                              {ProbeShape::box, "box"}});
+}
+struct Probe {
+  ProbeShape shape = ProbeShape::none;
+  std::array<double, 8> numbers{};
+};
+/// Returns the pose of a frame in which a ray begins at the origin along x, and a point is the origin; the
+/// identity for a box. A direction of length 1, within 1e-6, stays as it is, so that x goes exactly along the
+/// ray; others are normalised.
+Pose pose_of(const Probe& probe);
+
 enum class EventKind : std::uint8_t {
   nodes = 0,      ///< bounding volumes of node a of tree A and node b of tree B were tested
   triangles = 1,  ///< triangle a of mesh A and triangle b of mesh B were tested
@@ -111,7 +134,8 @@ struct Query {
   QueryKind kind = QueryKind::all_pairs;
   /// Indices in Capture::trees; kNull: a single triangle or shape (events then name no node of this side).
   std::array<std::uint32_t, 2> trees{kNull, kNull};
-  std::array<Pose, 2> poses;  ///< of A and B: rigid, within 1e-6
+  std::array<Pose, 2> poses;  ///< of A and B: rigid, within 1e-6; of a probe its pose_of()
+  Probe probe;                ///< unless it is none, it is B, and B has no tree
   std::uint32_t thread = 0;   ///< that began it
   double begin_ns = 0;        ///< since the capture began
   double duration_ns = 0;     ///< 0 if the capture was cut off before the end
@@ -133,6 +157,7 @@ struct Capture {
   std::vector<Mesh> meshes;
   std::vector<Tree> trees;
   std::vector<Query> queries;  ///< by number
+  std::uint64_t every = 1;     ///< one query of so many was recorded
   double ns_per_tick = 0;      ///< 0: not known
   bool cut_off = false;        ///< the file ends within a chunk, or without its last chunk
 };
