@@ -24,6 +24,7 @@ struct RecordedRun {
   const std::vector<CollideResult>* results = nullptr;   ///< one for each step, or null
   const std::vector<trace::TreeShape>* trees = nullptr;  ///< A's and B's, or null: as Recording::trees
   const std::vector<std::vector<pictures::WrongPair>>* wrong = nullptr;  ///< as Recording::wrong, or null
+  const std::vector<std::optional<std::string>>* distances = nullptr;    ///< as Recording::distances, or null
   /// Ends of the scale of colours by value; nullopt: as in the frame.
   std::optional<std::array<double, 2>> value_range = {};
   /// Values to colour A's and B's faces by, instead of those computed for FrameSpec::colour_by, and their

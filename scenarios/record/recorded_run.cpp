@@ -129,8 +129,10 @@ std::string trace_of(const std::string& run) {
   std::string path = (std::filesystem::path(run) / "trace.json").string();
   if (!std::filesystem::exists(path, error)) path += ".gz";
   if (!std::filesystem::exists(path, error))
-    throw InputError(printable_name(run) +
-                     ": no trace.json or trace.json.gz found; give the output folder of `lrbscope run`");
+    throw InputError(
+        printable_name(run) +
+        ": no trace.json or trace.json.gz found; give the output folder of `lrbscope run`, or of "
+        "`lrbscope import --trace`");
   return path;
 }
 

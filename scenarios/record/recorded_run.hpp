@@ -30,6 +30,9 @@ struct Recording {
   /// The wrong pairs of another engine, for each step: first those reported wrongly, then those missed. Empty
   /// if only lrbscope was recorded.
   std::vector<std::vector<pictures::WrongPair>> wrong;
+  /// By step: the error of the engine's distance, empty for a right one; nullopt: it reported none. Not in
+  /// traces.
+  std::vector<std::optional<std::string>> distances;
   std::vector<std::string> notes;  ///< notes as text
 };
 

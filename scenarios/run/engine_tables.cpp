@@ -22,6 +22,10 @@ record::AnswerScore score_at(const frames::RecordedRun& p, std::size_t step) {
   return record::score_of(p.trace->steps[step].result, (*p.wrong)[step], (*p.results)[step]);
 }
 
+std::optional<std::string> distance_at(const frames::RecordedRun& p, std::size_t step) {
+  return p.distances != nullptr && step < p.distances->size() ? (*p.distances)[step] : std::nullopt;
+}
+
 /// Sums over the steps of a run.
 struct EngineTotals {
   record::AnswerScore pairs;
@@ -41,10 +45,11 @@ EngineTotals totals_of(const frames::RecordedRun& p) {
     out.face_tests += r.counters.face_tests;
     if (!is_checked(p)) continue;
     const record::AnswerScore s = score_at(p, i);
+    const bool wrong_distance = !distance_at(p, i).value_or("").empty();
     out.pairs.right += s.right, out.pairs.missed += s.missed, out.pairs.false_pairs += s.false_pairs;
     out.verdicts += s.verdict.has_value();
     out.wrong_verdicts += s.verdict == false;
-    out.wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false;
+    out.wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false || wrong_distance;
   }
   return out;
 }
@@ -161,6 +166,8 @@ report::Table engine_table(const frames::RecordedRun& p) {
   const bool has_threads = any([&](const auto& r) { return r.thread != first->thread; });
   const bool has_times = any([](const auto& r) { return r.duration_ns > 0; });
   const bool checked = is_checked(p);
+  const bool has_distances = p.distances != nullptr &&
+                             std::ranges::any_of(*p.distances, [](const auto& d) { return d.has_value(); });
   report::Table t{"Every query", {"query"}};
   // With many queries, the wrong ones are shown, then those with the most tests.
   std::vector<std::size_t> order(trace.steps.size());
@@ -168,7 +175,8 @@ report::Table engine_table(const frames::RecordedRun& p) {
   if (order.size() > kMaxRows) {
     const auto key = [&](std::size_t i) {
       const Counters& c = trace.steps[i].result.counters;
-      const bool is_wrong = checked && (!(*p.wrong)[i].empty() || score_at(p, i).verdict == false);
+      const bool is_wrong = checked && (!(*p.wrong)[i].empty() || score_at(p, i).verdict == false ||
+                                        !distance_at(p, i).value_or("").empty());
       return std::pair(is_wrong, c.box_tests + c.face_tests);
     };
     std::stable_sort(order.begin(), order.end(),
@@ -197,6 +205,8 @@ report::Table engine_table(const frames::RecordedRun& p) {
                                       : group_digits((*p.results)[i].pairs.size()) + " pairs"
                                 : "");
     cell(true, "engine's pairs", group_digits(report.pairs));
+    const std::string error = distance_at(p, i).value_or("-");
+    cell(has_distances, "engine's distance", error.empty() ? "right" : error);
     cell(checked, "right", number(score.right));
     cell(checked, "missed", number(score.missed));
     cell(checked, "false", number(score.false_pairs));

@@ -47,6 +47,7 @@ frames::RecordedRun recorded_run_of(const std::string& title, const std::string&
   p.results = &recording.results;
   p.trees = &recording.trees;
   p.wrong = &recording.wrong;
+  p.distances = &recording.distances;
   for (const bodies::LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
   return p;
 }
@@ -69,9 +70,13 @@ RunOutcome write_run(const spec::Scenario& scenario, const record::Recording& re
   std::error_code error;
   std::filesystem::remove(folder + (scenario.gzip ? "/trace.json" : "/trace.json.gz"),
                           error);  // of an earlier run
-  trace::save_trace(recording.trace, folder + "/" + trace_file);
+  const bool traced = scenario.keeps_trace;
+  if (traced)
+    trace::save_trace(recording.trace, folder + "/" + trace_file);
+  else
+    std::filesystem::remove(folder + "/" + trace_file, error);
   std::filesystem::remove(folder + "/" + record::kTreesFile, error);
-  if (!recording.trace.header.engine.empty() && !recording.trees.empty())
+  if (traced && !recording.trace.header.engine.empty() && !recording.trees.empty())
     io::write_text(folder + "/" + record::kTreesFile, record::trees_text(recording.trees));
   RunOutcome out;
   out.notes = recording.notes;
@@ -91,10 +96,11 @@ RunOutcome write_run(const spec::Scenario& scenario, const record::Recording& re
   const report::Link summary{"summary.json", recording.trace.header.construction
                                                  ? "passes with their caps and reasons of rejection, as JSON"
                                                  : "totals, statistics and time steps, as JSON"};
-  std::vector<report::Link> links = {trace_link(trace_file), summary};
+  std::vector<report::Link> links = {summary};
+  if (traced) links.insert(links.begin(), trace_link(trace_file));
   run_page(recorded, drawn, folder,
-           {scenario.name, scenario.purpose, command, trace_file, std::move(links), out.mismatches,
-            "lrbscope why --run " + io::shell_word(folder)})
+           {scenario.name, scenario.purpose, command, traced ? trace_file : "", std::move(links),
+            out.mismatches, traced ? "lrbscope why --run " + io::shell_word(folder) : ""})
       .write(locked);
   return out;
 }

@@ -417,14 +417,15 @@ std::string thinned_text(const trace::Trace& trace, const record::ThinnedEvents&
   if (events.all(trace)) return {};
   std::string out = "Of the run's " + render::group_digits(trace.events.size()) +
                     " events, this page contains " + render::group_digits(events.kept.size()) + ": ";
-  if (trace.header.construction)
-    return out + "all regions, and others evenly spaced. " + trace_file + " contains all of them.";
+  const std::string whole =
+      trace_file.empty() ? "`import --trace` writes all of them." : trace_file + " contains all of them.";
+  if (trace.header.construction) return out + "all regions, and others evenly spaced. " + whole;
   out += events.cut ? "the first refinements"
          : events.steps < trace.steps.size()
              ? "of " + render::group_digits(events.steps) + " of " +
                    render::group_digits(trace.steps.size()) + " time steps, all refinements"
              : "all refinements, then contacts";
-  return out + ", and others, evenly spaced, up to a size limit. " + trace_file + " contains all of them.";
+  return out + ", and others, evenly spaced, up to a size limit. " + whole;
 }
 
 /// Returns the passes of a construction, with their ends and a description of their results; null for other

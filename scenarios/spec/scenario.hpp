@@ -83,7 +83,7 @@ struct Scenario {
   /// A refinement: only regions between the outside and the face nearest to a point, for one point after the
   /// other, each from the outermost wrapper. Empty: all regions.
   std::vector<Eigen::Vector3d> towards;
-  bool gzip = false;
+  bool gzip = false, keeps_trace = true;
   FrameSpec frames;
   std::vector<Expectation> expect;
   std::uint64_t hash = 0;  ///< FNV-1a hash (64 bits) of the file's bytes

@@ -18,7 +18,7 @@ class TraceLoader {
   /** `loaded`: called when the events have been replaced. */
   constructor(scene, events, loaded) {
     Object.assign(this, { scene, events, loaded });
-    if (!scene.thinned) return;
+    if (!scene.thinned || !scene.trace) return;
     byId("load").hidden = false;
     byId("load-button").textContent = `load ${scene.trace}`;
     byId("load-button").onclick = () => byId("load-file").click();
