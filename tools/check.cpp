@@ -87,6 +87,7 @@ std::string json_lines(const profile::Check& c) {
                     {"advice", profile::advice(sum.prices)}};
   if (!c.pose_error.empty()) last["pose_error"] = c.pose_error;
   if (!c.tree_faults.empty()) last["tree_faults"] = c.tree_faults;
+  if (!c.sample.empty()) last["sample"] = c.sample;
   return out + one_line(std::move(last));
 }
 
@@ -109,7 +110,7 @@ std::string text_of(const std::vector<profile::Check>& checks) {
   out += report::in_columns(profile::verdict_table(checks), 2) + "\n" +
          report::in_columns(profile::price_table(checks), 2) + "\n";
   for (const profile::Check& c : checks) {
-    for (const std::string& doubt : {c.pose_error, c.tree_faults})
+    for (const std::string& doubt : {c.pose_error, c.tree_faults, c.sample})
       if (!doubt.empty()) out += c.engine + ": " + doubt + "\n";
     out += c.engine + ": " + profile::advice(c.sum().prices) + "\n";
   }

@@ -18,7 +18,7 @@ namespace {
 
 struct ImportOptions {
   std::string file, folder, queries;
-  bool no_check = false;
+  bool no_check = false, trace = false;
   PictureOptions picture;
 };
 
@@ -37,6 +37,7 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
   if (c.trees[pair.trees[0]].mesh != c.trees[pair.trees[1]].mesh) note(globals, bodies[1].notes);
   spec::Scenario scenario = profile::captured_scenario(c, pair, bodies, o.file);
   apply(o.picture, scenario.frames);
+  scenario.keeps_trace = o.trace;
   scenario.gzip = true;  // an engine's events are many; viewers read compressed traces as well
   profile::CapturedRunSettings settings = profile::captured_settings(scenario, c, pair, o.file);
   settings.check = !o.no_check;
@@ -73,26 +74,19 @@ void write_list(const std::string& folder, const Globals& globals, const capture
     doc.link({run.folder + "/index.html", profile::words(t), run.name});
   }
   table.note = "Right, missed and false: pairs of triangles, compared with exact answers.";
-  const bool is_wrong = all.missed + all.false_pairs + all.wrong_verdicts > 0;
+  const bool is_wrong = all.missed + all.false_pairs + all.wrong_verdicts + all.wrong_distances > 0;
   doc.verdict(!all.checked ? "answers not checked"
               : is_wrong   ? "wrong answers"
                            : "no wrong answer",
               !is_wrong);
-  doc.command(globals.command_line)
-      .number({"Pairs of trees", group_digits(runs.size())})
-      .number({"Queries", group_digits(all.queries)})
-      .number({"Events", group_digits(all.events)});
-  if (all.checked)
-    doc.number({"Right pairs", group_digits(all.right)})
-        .number({"Missed pairs", group_digits(all.missed)})
-        .number({"False pairs", group_digits(all.false_pairs)});
-  doc.table(table).write(locked);
+  doc.command(globals.command_line).text({"All", profile::words(all)}).table(table).write(locked);
 }
 
 int run_import(const ImportOptions& o, const Globals& globals) {
   const QueryRange range = parse_queries(o.queries);
   capture::Capture c = capture::read_capture(o.file, range.first, range.last);
   if (c.engine.empty()) c.engine = "another engine";
+  profile::describe_probes(c);
   profile::TreePairs found = profile::tree_pairs(c);
   const std::string name = printable_name(o.file);
   if (found.pairs.empty())
@@ -163,8 +157,9 @@ QueryRange parse_queries(const std::string& text) {
   return out;
 }
 
-void write_query_page(const capture::Capture& capture, const std::string& source, const std::string& folder,
+void write_query_page(capture::Capture capture, const std::string& source, const std::string& folder,
                       const Globals& globals) {
+  profile::describe_probes(capture);
   const profile::TreePairs found = profile::tree_pairs(capture);
   if (found.pairs.empty()) throw InputError(source + ": " + without_tree_words(found.without_tree));
   ImportOptions options;
@@ -181,6 +176,8 @@ Command add_import(App& root, const Globals& globals) {
   app->add_option("--queries", o->queries, "FIRST-LAST",
                   "Only these queries, by number from 1: 40-60, 40- or 40");
   app->add_flag("--no-check", o->no_check, "Do not compare the answers with exact ones");
+  app->add_flag("--trace", o->trace,
+                "Also write trace.json.gz, for compare, render, why, figure, export and Perfetto");
   add_picture_options(*app, o->picture);
   return {app, [o, &globals] { return run_import(*o, globals); }};
 }

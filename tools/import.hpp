@@ -20,7 +20,7 @@ QueryRange parse_queries(const std::string& text);
 
 /// Writes the page of a captured query to a folder. `source`: where the capture is from. Throws InputError
 /// for a query with a side without a tree.
-void write_query_page(const capture::Capture& capture, const std::string& source, const std::string& folder,
+void write_query_page(capture::Capture capture, const std::string& source, const std::string& folder,
                       const Globals& globals);
 
 }  // namespace lrb::tools

@@ -153,7 +153,7 @@ class LiveQueries {
       checker_.emplace(bodies_, profile::precision_of(descriptions_));
       known_ = now;
     }
-    const auto trees = profile::CapturedBodies::trees_of(live.query);
+    const auto trees = bodies_.trees_of(live.query);
     const auto walk = trees ? std::make_unique<profile::QueryWalk>(bodies_, live.query, *trees) : nullptr;
     const profile::QueryVerdict verdict = checker_->check(live.query, walk.get());
     sums_ += profile::sums_of(
@@ -164,7 +164,7 @@ class LiveQueries {
       live.explanation = verdict.remark;
     else if (!verdict.wrong.empty())
       live.explanation =
-          sentence(verdict.wrong.front(), descriptions_.trees[(*trees)[0]], descriptions_.trees[(*trees)[1]]);
+          sentence(verdict.wrong.front(), bodies_.tree((*trees)[0]), bodies_.tree((*trees)[1]));
   }
 
   /// Drops old queries, right ones first.
@@ -313,7 +313,10 @@ class Live {
     write_query_page(one, command(), folder.string(), globals_);
   }
 
-  static bool is_shown(const LiveQuery& q) { return q.query.trees[0] != kNull && q.query.trees[1] != kNull; }
+  static bool is_shown(const LiveQuery& q) {
+    return q.query.trees[0] != kNull &&
+           (q.query.trees[1] != kNull || q.query.probe.shape != capture::ProbeShape::none);
+  }
 
   std::string command() const {
     std::string out;

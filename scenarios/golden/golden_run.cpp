@@ -220,7 +220,8 @@ GoldenRun record_scenario(spec::Scenario scenario, const GoldenSpec& spec,
 GoldenRun record_capture(const CapturedQueries& source, const GoldenSpec& spec,
                          const record::ProgressReport& progress) {
   const std::string name = printable_name(source.file);
-  const capture::Capture c = capture::read_capture(source.file);
+  capture::Capture c = capture::read_capture(source.file);
+  profile::describe_probes(c);
   const profile::TreePairs found = profile::tree_pairs(c);
   if (found.pairs.size() != 1)
     throw InputError(name + ": expected queries of one pair of trees, found " +

@@ -11,6 +11,7 @@
 #include "scenarios/frames/framing.hpp"
 #include "scenarios/profile/query_walk.hpp"
 #include "scenarios/profile/tree_report.hpp"
+#include "scenarios/profile/verdicts.hpp"
 #include "scenarios/profile/volumes.hpp"
 #include "scenarios/record/engine_run.hpp"
 #include <lrbscope/body.hpp>
@@ -93,6 +94,30 @@ capture::Capture captured(const record::Recording& recording) {
 using render::counted;
 using render::group_digits;
 
+void describe_probes(capture::Capture& capture) {
+  std::map<std::vector<double>, std::uint32_t> known;  // tree by that of A and the vertices
+  std::map<std::uint32_t, double> reach;               // by mesh
+  for (capture::Query& q : capture.queries) {
+    if (q.probe.shape == capture::ProbeShape::none) continue;
+    const capture::Tree& tree = capture.trees[q.trees[0]];
+    if (!reach.contains(tree.mesh)) reach[tree.mesh] = reach_of(capture.meshes[tree.mesh]);
+    ProbeBody probe = probe_body(q, tree, reach[tree.mesh]);
+    std::vector<double> key{double(q.trees[0]), double(q.probe.shape)};
+    for (const Eigen::Vector3d& x : probe.mesh.vertices) key.insert(key.end(), x.data(), x.data() + 3);
+    const auto [found, is_new] = known.emplace(key, static_cast<std::uint32_t>(capture.trees.size()));
+    q.trees[1] = found->second;
+    if (!is_new) continue;
+    if (q.probe.shape == capture::ProbeShape::point) {  // pictures show its volume as a mark
+      constexpr double kMark = 0.01;
+      for (const std::size_t i : {3, 7, probe.tree.volumes.size() == 12 ? 11 : 9})
+        probe.tree.volumes[i] = kMark * reach[tree.mesh];
+    }
+    probe.tree.mesh = static_cast<std::uint32_t>(capture.meshes.size());
+    capture.meshes.push_back(std::move(probe.mesh));
+    capture.trees.push_back(std::move(probe.tree));
+  }
+}
+
 TreePairs tree_pairs(const capture::Capture& capture) {
   TreePairs out;
   std::map<std::array<std::uint32_t, 2>, std::size_t> at;
@@ -160,7 +185,8 @@ trace::TreeShape captured_shape(const capture::Tree& tree, std::uint32_t triangl
       "links to nodes with other parents are left out");
   add(faults.unreachable, "node is not below the root", "nodes are not below the root");
   add(unknown, "triangle of a leaf does not exist", "triangles of leaves do not exist");
-  add(missing, "triangle is in no leaf", "triangles are in no leaf");
+  // In the leaf of a box, one triangle stands for all.
+  if (tree.id != 0) add(missing, "triangle is in no leaf", "triangles are in no leaf");
   return out;
 }
 
@@ -286,6 +312,8 @@ record::Recording captured_run(const capture::Capture& capture, const TreePair& 
   const bool of_shapes = std::all_of(pair.queries.begin(), pair.queries.end(), [&](std::size_t i) {
     return capture.queries[i].kind == capture::QueryKind::shape;
   });
+  CapturedBodies all(capture);
+  Checker checker(all, precision_of(capture));
   // An engine that records no tests of triangles at all does not say which pairs it found.
   const bool records_triangles = std::ranges::any_of(capture.queries, tests_triangles);
   for (std::size_t i = 0; i < pair.queries.size(); ++i) {
@@ -298,9 +326,17 @@ record::Recording captured_run(const capture::Capture& capture, const TreePair& 
     if (settings.check && !of_shapes) {
       out.results.push_back(record::exact_answer(
           {out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]}, {}, report, answer.pairs));
-      if (report->query == trace::EngineQuery::distance)
+      fill_box(query, capture.meshes[capture.trees[pair.trees[0]].mesh], out.results.back().pairs);
+      if (report->query == trace::EngineQuery::distance && !is_first_hit(query))
         recorder.add(trace::measured(
             distance(out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]), {}));
+    }
+    std::optional<std::string>& distance = out.distances.emplace_back();
+    if (settings.check && query.value) {
+      const QueryWalk walk(all, query, all.trees_of(query).value());
+      distance = checker.check(query, &walk).distance;
+      if (!distance->empty() && out.notes.size() < 10)
+        out.notes.push_back("query " + std::to_string(query.number) + ": " + *distance);
     }
     if (i < out.results.size())
       out.wrong.push_back(record::wrong_pairs(answer.pairs, out.results[i].pairs, report));
@@ -324,7 +360,7 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
   };
   const auto volume_words = [&](capture::VolumeKind kind, const char* name) {
     for (const std::uint32_t tree : pair.trees)
-      if (capture.trees[tree].volume == kind)
+      if (capture.trees[tree].volume == kind && capture.trees[tree].id != 0)
         return add(std::string("Its ") + name + " are drawn as the boxes around them.");
   };
   volume_words(capture::VolumeKind::sphere, "spheres");
@@ -343,6 +379,8 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
     add(counted(n, "query is", "queries are") +
         " of A with a shape: B is drawn as it was described, tests show its first triangle, and the answer is not "
         "checked.");
+  if (capture.every > 1)
+    add("One of " + std::to_string(capture.every) + " queries was recorded; sums are of these.");
   if (const std::uint64_t n = count([](const auto& q) { return !q.complete(); }); n > 0)
     add("The capture does not contain all events of " + counted(n, "query.", "queries."));
   return out;
@@ -393,7 +431,10 @@ spec::Scenario captured_scenario(const capture::Capture& c, const TreePair& pair
 
 std::vector<bodies::LoadedBody> captured_bodies(const capture::Capture& c, const TreePair& pair) {
   std::vector<bodies::LoadedBody> out;
-  for (const std::uint32_t tree : pair.trees) out.push_back(captured_body(c.meshes[c.trees[tree].mesh]));
+  for (const std::uint32_t tree : pair.trees) {
+    out.push_back(captured_body(c.meshes[c.trees[tree].mesh]));
+    if (c.trees[tree].id == 0) out.back().notes.clear();  // a ray is no solid
+  }
   return out;
 }
 
@@ -412,6 +453,7 @@ CapturedTotals& CapturedTotals::operator+=(const CapturedTotals& o) {
   queries += o.queries, events += o.events;
   right += o.right, missed += o.missed, false_pairs += o.false_pairs;
   right_verdicts += o.right_verdicts, wrong_verdicts += o.wrong_verdicts;
+  right_distances += o.right_distances, wrong_distances += o.wrong_distances;
   has_pairs = has_pairs || o.has_pairs;
   checked = checked || o.checked;
   return *this;
@@ -432,6 +474,8 @@ CapturedTotals totals_of(const record::Recording& run) {
     out.false_pairs += score.false_pairs;
     out.right_verdicts += score.verdict == true;
     out.wrong_verdicts += score.verdict == false;
+    if (i >= run.distances.size() || !run.distances[i]) continue;
+    ++(run.distances[i]->empty() ? out.right_distances : out.wrong_distances);
   }
   return out;
 }
@@ -441,6 +485,9 @@ std::string words(const CapturedTotals& t) {
   if (!t.checked) return out + "; answers not checked";
   if (t.right_verdicts + t.wrong_verdicts > 0)
     out += "; verdicts: " + group_digits(t.right_verdicts) + " right, " + group_digits(t.wrong_verdicts) +
+           " wrong";
+  if (t.right_distances + t.wrong_distances > 0)
+    out += "; distances: " + group_digits(t.right_distances) + " right, " + group_digits(t.wrong_distances) +
            " wrong";
   if (t.has_pairs)
     out += "; pairs: " + group_digits(t.right) + " right, " + group_digits(t.missed) + " missed, " +

@@ -31,6 +31,10 @@ namespace lrb::profile {
 /// Throws InputError for a recording of one body, of 2D bodies, or without pairs of nodes.
 capture::Capture captured(const record::Recording& recording);
 
+/// Describes the rays, points and boxes of queries by meshes and trees with the number 0, equal ones once.
+/// Then they are queries of two trees.
+void describe_probes(capture::Capture& capture);
+
 /// The queries of a capture between two trees. A tree that was refitted is another tree.
 struct TreePair {
   std::array<std::uint32_t, 2>
@@ -87,7 +91,7 @@ CapturedRunSettings captured_settings(const spec::Scenario& scenario, const capt
 struct CapturedTotals {
   std::uint64_t queries = 0, events = 0;  ///< events: tests of volumes and of triangles
   std::uint64_t right = 0, missed = 0, false_pairs = 0;
-  std::uint64_t right_verdicts = 0, wrong_verdicts = 0;
+  std::uint64_t right_verdicts = 0, wrong_verdicts = 0, right_distances = 0, wrong_distances = 0;
   bool has_pairs = false;  ///< the tests of some query were captured
   bool checked = false;
 

@@ -78,15 +78,15 @@ std::uint64_t visits_in(const capture::Capture& capture) {
 }
 
 /// Adds the lines about a query.
-void report(const QueryVerdict& v, const capture::Query& query, const capture::Capture& capture, Check& out) {
+void report(const QueryVerdict& v, const capture::Query& query, CapturedBodies& bodies, Check& out) {
   const std::string head = "query " + std::to_string(v.number) + ": ";
   if (v.answer == Judgement::wrong) out.wrong.push_back(head + v.remark);
   if (v.answer == Judgement::undecidable) out.undecidable.push_back(head + v.remark);
   if (v.wrong.empty()) return;
-  const auto trees = CapturedBodies::trees_of(query).value();
+  const auto trees = bodies.trees_of(query).value();
   for (const WrongPair& w : v.wrong)
     (w.undecidable ? out.undecidable : out.wrong)
-        .push_back(head + sentence(w, capture.trees[trees[0]], capture.trees[trees[1]]));
+        .push_back(head + sentence(w, bodies.tree(trees[0]), bodies.tree(trees[1])));
 }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
@@ -209,6 +209,15 @@ CheckSums& CheckSums::operator+=(const CheckSums& other) {
   return *this;
 }
 
+CheckSums& CheckSums::operator*=(std::uint64_t factor) {
+  for (std::uint64_t* count : {&queries, &exact_pairs, &right, &missed, &extra, &undecidable})
+    *count *= factor;
+  for (std::uint64_t& count : outcomes) count *= factor;
+  for (const auto& [name, count] : kPriceCounts) prices.*count *= factor;
+  for (std::int64_t& saved : prices.saved_by_leaves) saved *= static_cast<std::int64_t>(factor);
+  return *this;
+}
+
 CheckSums Check::sum() const {
   CheckSums out;
   for (const auto& [kind, sums] : kinds) out += sums;
@@ -237,7 +246,8 @@ class PoseErrors {
  public:
   void add(const CheckedQuery& checked, const capture::Query& query, const QueryWalk* walk,
            Checker& checker) {
-    const bool has_pairs = query.kind == capture::QueryKind::all_pairs && checked.verdict.found > 0;
+    const bool has_pairs = query.kind == capture::QueryKind::all_pairs && checked.verdict.found > 0 &&
+                           query.probe.shape == capture::ProbeShape::none;
     if (walk == nullptr || !has_pairs) return;
     // A few wrong pairs have another cause.
     const bool mostly_wrong = checked.verdict.extra > checked.verdict.found / 2;
@@ -282,6 +292,20 @@ std::string sentence_of_faults(const std::set<std::uint32_t>& trees, CapturedBod
          ", which `lrbscope tree` lists, so prices and causes may be wrong: " + first + ".";
 }
 
+/// Returns a sentence with the standard error of the sum of visits, from their variance among the queries of
+/// the sample (Cochran 1977, section 2.6).
+std::string sentence_of_sample(const Check& c, std::uint64_t every) {
+  const auto n = static_cast<double>(c.queries.size()), share = 1 / static_cast<double>(every);
+  double sum = 0, squares = 0;
+  for (const CheckedQuery& q : c.queries) sum += static_cast<double>(q.prices.visits);
+  for (const CheckedQuery& q : c.queries)
+    squares += std::pow(static_cast<double>(q.prices.visits) - sum / n, 2);
+  const double error = sum > 0 && n > 1 ? std::sqrt(squares * n / (n - 1) * (1 - share)) / sum : 1;
+  return "One of " + std::to_string(every) +
+         " queries was recorded. Sums are scaled to all; that of visits has a standard error of " +
+         std::to_string(std::lround(std::ceil(100 * error))) + " %.";
+}
+
 }  // namespace
 
 Check check(const capture::Capture& capture, const CheckSettings& settings,
@@ -296,26 +320,29 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
   PoseErrors pose_errors;
   std::set<std::uint32_t> visited;
   for (const capture::Query& query : capture.queries) {
-    const auto trees = CapturedBodies::trees_of(query);
+    const auto trees = bodies.trees_of(query);
     const auto walk = trees ? std::make_unique<QueryWalk>(bodies, query, *trees) : nullptr;
     CheckedQuery checked{checker.check(query, walk.get()), {}};
     checked.prices = book.add(query, walk.get(), checked.verdict.exact, split);
     checked.verdict.exact = {};
     if (walk != nullptr && walk->visits() > 0) visited.insert(trees->begin(), trees->end());
     pose_errors.add(checked, query, walk.get(), checker);
-    report(checked.verdict, query, capture, out);
+    report(checked.verdict, query, bodies, out);
     out.kinds[query.kind] += sums_of(checked);
     out.queries.push_back(std::move(checked));
     progress("check", out.queries.size(), capture.queries.size());
   }
+  for (auto& [kind, sums] : out.kinds) sums *= capture.every;
+  if (capture.every > 1) out.sample = sentence_of_sample(out, capture.every);
   out.waste = most_wasted(capture, book);
   out.pose_error = pose_errors.sentence();
+  visited.erase(CapturedBodies::kProbe);
   out.tree_faults = sentence_of_faults(visited, bodies);
   out.by_depth = book.by_depth();
   out.owners = book.worst_owners(kOwners);
   for (const OwnerWaste& o : out.owners)
-    out.owner_names.push_back({std::to_string(capture.trees[o.trees[0]].id_of(o.nodes[0])),
-                               std::to_string(capture.trees[o.trees[1]].id_of(o.nodes[1]))});
+    out.owner_names.push_back({std::to_string(bodies.tree(o.trees[0]).id_of(o.nodes[0])),
+                               std::to_string(bodies.tree(o.trees[1]).id_of(o.nodes[1]))});
   return out;
 }
 
@@ -372,6 +399,7 @@ std::vector<std::string> add_checks(report::Document& page, std::span<const Chec
   for (const Check& c : checks) {
     if (!c.pose_error.empty()) page.text({"Poses of " + c.engine, c.pose_error});
     if (!c.tree_faults.empty()) page.text({"Trees of " + c.engine, c.tree_faults});
+    if (!c.sample.empty()) page.text({"Sample of " + c.engine, c.sample});
     page.text({"Advice for " + c.engine, advice(c.sum().prices)});
   }
   if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);

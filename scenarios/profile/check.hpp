@@ -46,6 +46,7 @@ struct CheckSums {
   Prices prices;
 
   CheckSums& operator+=(const CheckSums& other);
+  CheckSums& operator*=(std::uint64_t factor);
 };
 
 /// Returns the sums over one query.
@@ -55,7 +56,7 @@ struct Check {
   std::string engine;
   Precision precision = Precision::float64;
   std::vector<CheckedQuery> queries;
-  std::map<capture::QueryKind, CheckSums> kinds;
+  std::map<capture::QueryKind, CheckSums> kinds;  ///< of a sample, scaled to all queries
   std::vector<DepthPrices> by_depth;
   std::vector<OwnerWaste> owners;                       ///< the ten worst
   std::vector<std::array<std::string, 2>> owner_names;  ///< (|owners|) nodes by the engine's numbers
@@ -65,6 +66,8 @@ struct Check {
 
   /// A sentence if most reported pairs are wrong, but right after the reversal of a PoseError.
   std::string pose_error;
+  /// A sentence if the capture has a sample of the queries.
+  std::string sample;
   /// A sentence if trees of the queries have faults, as if their volumes are in another frame.
   std::string tree_faults;
 

@@ -272,10 +272,19 @@ void PriceBook::price_distance(const QueryWalk& walk, std::span<const TrianglePa
     out.unattributed = out.visits;
     return;
   }
+  constexpr double kRounding = 1e-9;  // hits this close to the first one are as close
   // Step 1: the exact distance, and all pairs of triangles at that distance.
+  const bool of_ray = is_first_hit(query);
   std::vector<TrianglePair> closest(exact.begin(), exact.end());
   double distance = 0;
-  if (closest.empty()) {
+  if (of_ray && !exact.empty()) {
+    const capture::Mesh& mesh = bodies_.mesh_of(walk.trees()[0]);
+    distance = std::numeric_limits<double>::infinity();
+    for (const TrianglePair& pair : exact) distance = std::min(distance, hit_of(query, mesh, pair.a)[1]);
+    std::erase_if(closest, [&](const TrianglePair& pair) {
+      return hit_of(query, mesh, pair.a)[0] > distance * (1 + kRounding);
+    });
+  } else if (closest.empty() && !of_ray) {
     DistanceRequest request;
     request.relation = false;
     NearPairsRequest near;
@@ -296,8 +305,12 @@ void PriceBook::price_distance(const QueryWalk& walk, std::span<const TrianglePa
   for (std::size_t i = 0; i < closest.size() && !goal; ++i)
     if (walk.deepest_above(closest[i]) != QueryWalk::kNone) goal = closest[i];
   // Step 3: the visits.
-  if (!goal) return price_visits(walk, {}, false, std::nullopt, out);
-  const bool touching = distance == 0, with_distance = split && !touching;
+  if (!goal) {
+    price_visits(walk, {}, false, std::nullopt, out);
+    if (of_ray) out.volumes = std::exchange(out.unsplit, 0);  // of one tree: no order saves them
+    return;
+  }
+  const bool touching = distance == 0 && !of_ray, with_distance = split && !touching;
   price_visits(walk, {&*goal, 1}, touching, with_distance ? std::optional(distance) : std::nullopt, out);
   if (touching)
     out.order = std::exchange(out.unsplit, 0), out.triangles_by_order = out.triangle_tests_for_nothing;
@@ -321,6 +334,15 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
   // With a distance: at this visit, or above it, the volumes are no closer. Without: they are disjoint, and
   // the engine went on beneath. Unused if one pair is enough: then all waste is of order.
   std::vector<char> ends(events.size(), 0);
+  const Volumes &of_a = bodies_.volumes(walk.trees()[0]), &of_b = bodies_.volumes(walk.trees()[1]);
+  const std::array<Pose, 2>& poses = walk.query().poses;
+  // A ray up to its first hit.
+  const bool is_cut = distance && is_first_hit(walk.query());
+  capture::Tree cut = is_cut ? of_b.tree() : capture::Tree();
+  if (is_cut)
+    for (double& x : cut.volumes)
+      if (x > 0) x *= *distance / bodies_.mesh_of(walk.trees()[1]).vertices[1].x();
+  const Volumes up_to_hit(cut);
   std::uint64_t known = 0;
   for (const std::uint32_t i : walk.from_root()) {
     const Event& e = events[i];
@@ -341,13 +363,12 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     owner[i] = below_needed ? first : owner[up];
     const bool ended_above = !below_needed && ends[up];
     if (distance)
-      ends[i] = ended_above || gap(bodies_.volumes(walk.trees()[0]), e.a, walk.query().poses[0],
-                                   bodies_.volumes(walk.trees()[1]), e.b,
-                                   walk.query().poses[1]) >= *distance * (1 - kRounding);
+      ends[i] = ended_above ||
+                (is_cut ? !overlap(of_a, e.a, poses[0], up_to_hit, e.b, poses[1])
+                        : gap(of_a, e.a, poses[0], of_b, e.b, poses[1]) >= *distance * (1 - kRounding));
     else if (!one_is_enough)
-      ends[i] = ended_above || !((e.met == 0 && !walk.wide()) ||
-                                 overlap(bodies_.volumes(walk.trees()[0]), e.a, walk.query().poses[0],
-                                         bodies_.volumes(walk.trees()[1]), e.b, walk.query().poses[1]));
+      ends[i] =
+          ended_above || !((e.met == 0 && !walk.wide()) || overlap(of_a, e.a, poses[0], of_b, e.b, poses[1]));
     if (below_needed && !repeated && !one_is_enough) {
       ++out.proof;
       ++by_depth_[depth[i]].proof;

@@ -28,7 +28,9 @@
 ///   No engine with these volumes and this descent rule ends the descent above them.
 /// - order: the rest. If d had been known from the start, the descent would have ended above these visits: a
 ///   closer pair found earlier saves them.
-/// If the bodies intersect, d is 0, and all visits but the needed ones are of order.
+/// If the bodies intersect, d is 0, and all visits but the needed ones are of order. For the first hit of a
+/// ray, the closest pairs are the first hits, and volumes count as closer than d if the ray meets them up to
+/// there.
 ///
 /// Tests of triangles are counted separately. A test of triangles that do not intersect is a test for
 /// nothing.

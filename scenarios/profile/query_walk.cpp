@@ -1,6 +1,8 @@
 #include "scenarios/profile/query_walk.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "scenarios/profile/captured_run.hpp"
 
@@ -100,39 +102,135 @@ std::vector<Visit> visits_of(const TreeIndex& tree_a, const TreeIndex& tree_b,
   return out;
 }
 
+ProbeBody probe_body(const capture::Query& query, const capture::Tree& tree, double reach) {
+  ProbeBody out;
+  const bool is_round = tree.volume == capture::VolumeKind::sphere || tree.volume == capture::VolumeKind::rss;
+  const std::array<double, 8>& n = query.probe.numbers;
+  const Pose& pose = query.poses[1];
+  out.mesh.name = name_of(query.probe.shape);
+  out.tree.first_child = {0, 0};
+  out.tree.first_triangle = {0, 1};
+  out.tree.triangle = {0};
+  if (query.probe.shape == capture::ProbeShape::box) {
+    for (unsigned i = 0; i < 8; ++i)
+      out.mesh.vertices.emplace_back(n[i & 1 ? 3 : 0], n[i & 2 ? 4 : 1], n[i & 4 ? 5 : 2]);
+    for (const auto& [a, b, c, d] : std::to_array<std::array<std::uint32_t, 4>>(
+             {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}})) {
+      out.mesh.triangles.push_back({a, b, c});
+      out.mesh.triangles.push_back({a, c, d});
+    }
+    out.tree.volumes.assign(n.begin(), n.begin() + 6);
+    return out;
+  }
+  double length = 0;
+  if (query.probe.shape == capture::ProbeShape::ray) {
+    length = (n[7] - n[6]) * Eigen::Vector3d(n[3], n[4], n[5]).stableNorm() / pose.r.col(0).norm();
+    const double rounding = 1.001;  // also for poses that are rigid within 1e-6
+    const double beyond = rounding * ((pose.t - query.poses[0].t).norm() + reach);
+    if (!(length <= beyond)) length = beyond > 0 ? std::exp2(std::ceil(std::log2(beyond))) : 0;
+  }
+  out.mesh.vertices = {{0, 0, 0}, {length, 0, 0}, {length / 2, 0, 0}};
+  out.mesh.triangles = {{0, 1, 2}};
+  // A volume of the same kind as those of A if these are rounded, for the test of both.
+  out.tree.volume = is_round ? capture::VolumeKind::rss : capture::VolumeKind::obb;
+  out.tree.volumes.assign(is_round ? 10 : 12, 0);
+  out.tree.volumes[3] = is_round ? length : length / 2;
+  if (!is_round) out.tree.volumes[0] = length / 2;
+  return out;
+}
+
+double reach_of(const capture::Mesh& mesh) {
+  double out = 0;
+  for (const Eigen::Vector3d& x : mesh.vertices) out = std::max(out, x.norm());
+  return out;
+}
+
+void fill_box(const capture::Query& query, const capture::Mesh& mesh, std::vector<SimplexPair>& pairs) {
+  if (query.probe.shape != capture::ProbeShape::box) return;
+  for (SimplexPair& pair : pairs) pair.b = SimplexId(0);
+  const Eigen::Map<const Eigen::Vector3d> least(query.probe.numbers.data()),
+      greatest(query.probe.numbers.data() + 3);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    // The corners of a triangle that does not meet the surface are all inside or all outside: the one
+    // farthest from the surface decides.
+    double margin = 0;
+    for (const Eigen::Vector3d& corner : corners_of(mesh, t)) {
+      const Eigen::Vector3d x = query.poses[0].apply(corner);
+      const double inside = std::min((x - least).minCoeff(), (greatest - x).minCoeff());
+      if (std::abs(inside) > std::abs(margin)) margin = inside;
+    }
+    if (margin > 0) pairs.push_back({SimplexId(t), SimplexId(0)});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+std::array<double, 2> hit_of(const capture::Query& query, const capture::Mesh& mesh, std::uint32_t triangle,
+                             double error) {
+  const Eigen::Vector3d along = query.poses[1].r.col(0);
+  std::array<Eigen::Vector3d, 3> corners = corners_of(mesh, triangle);
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (Eigen::Vector3d& x : corners) {
+    x = query.poses[0].apply(x) - query.poses[1].t;
+    const double at = x.dot(along) / along.squaredNorm();
+    least = std::min(least, at - error), greatest = std::max(greatest, at + error);
+  }
+  const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).stableNormalized();
+  const double slope = normal.dot(along);
+  least = std::max(least, 0.0);
+  if (slope == 0) return {least, greatest};  // in one plane
+  const double at = normal.dot(corners[0]) / slope, by = error / std::abs(slope);
+  return {std::max(least, at - by), std::min(greatest, at + by)};
+}
+
 CapturedBodies::CapturedBodies(const capture::Capture& capture) : capture_(&capture) {
   update();
 }
 
 void CapturedBodies::update() {
   // Bodies do not refer to the capture; indices and volumes refer to its trees.
-  bodies_.resize(capture_->meshes.size());
+  if (!bodies_.empty()) bodies_.back().reset();
+  bodies_.resize(capture_->meshes.size() + 1);
+  reach_.resize(capture_->meshes.size(), -1);
   indices_.clear();
-  indices_.resize(capture_->trees.size());
+  indices_.resize(capture_->trees.size() + 1);
   volumes_.clear();
-  volumes_.resize(capture_->trees.size());
+  volumes_.resize(capture_->trees.size() + 1);
+  probe_ = {};
 }
 
 const LrbRep* CapturedBodies::body(std::uint32_t mesh) {
-  const capture::Mesh& m = capture_->meshes[mesh];
+  const capture::Mesh& m = this->mesh(mesh);
   if (m.triangles.empty()) return nullptr;
-  if (!bodies_[mesh]) bodies_[mesh] = std::make_unique<bodies::LoadedBody>(captured_body(m));
-  return &bodies_[mesh]->rep;
+  std::unique_ptr<bodies::LoadedBody>& out = slot(bodies_, mesh);
+  if (!out) out = std::make_unique<bodies::LoadedBody>(captured_body(m));
+  return &out->rep;
 }
 
 const TreeIndex& CapturedBodies::index(std::uint32_t tree) {
-  if (!indices_[tree])
-    indices_[tree] = std::make_unique<TreeIndex>(capture_->trees[tree], mesh_of(tree).triangles.size());
-  return *indices_[tree];
+  std::unique_ptr<TreeIndex>& out = slot(indices_, tree);
+  if (!out) out = std::make_unique<TreeIndex>(this->tree(tree), mesh_of(tree).triangles.size());
+  return *out;
 }
 
 const Volumes& CapturedBodies::volumes(std::uint32_t tree) {
-  if (!volumes_[tree]) volumes_[tree] = std::make_unique<Volumes>(capture_->trees[tree]);
-  return *volumes_[tree];
+  std::unique_ptr<Volumes>& out = slot(volumes_, tree);
+  if (!out) out = std::make_unique<Volumes>(this->tree(tree));
+  return *out;
 }
 
 std::optional<std::array<std::uint32_t, 2>> CapturedBodies::trees_of(const capture::Query& query) {
   std::array<std::uint32_t, 2> out = query.trees;
+  if (query.probe.shape != capture::ProbeShape::none) {
+    double& reach = reach_[tree(out[0]).mesh];
+    if (reach < 0) reach = reach_of(mesh_of(out[0]));
+    ProbeBody probe = probe_body(query, tree(out[0]), reach);
+    out[1] = probe.tree.mesh = kProbe;
+    if (probe.mesh.vertices == probe_.mesh.vertices && probe.tree.volume == probe_.tree.volume) return out;
+    probe_ = std::move(probe);
+    bodies_.back().reset(), indices_.back().reset(), volumes_.back().reset();
+    return out;
+  }
   if (query.kind == capture::QueryKind::self && out[1] == kNull) out[1] = out[0];
   if (out[0] == kNull || out[1] == kNull || query.kind == capture::QueryKind::shape) return std::nullopt;
   return out;

@@ -135,6 +135,28 @@ inline std::array<Eigen::Vector3d, 3> corners_of(const capture::Mesh& mesh, std:
   return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
 }
 
+/// The probe of a query as a body with a tree of one node. A ray and a point are a triangle without area. A
+/// box has twelve triangles, of which the first stands for all in the leaf, as in events.
+struct ProbeBody {
+  capture::Mesh mesh;
+  capture::Tree tree;  ///< without the index of its mesh
+};
+/// Returns the probe of a query of `tree`, no vertex of whose mesh is farther than `reach` from the origin of
+/// the mesh. A ray that goes on beyond them ends at a power of two, so that most rays are the same body.
+ProbeBody probe_body(const capture::Query& query, const capture::Tree& tree, double reach);
+double reach_of(const capture::Mesh& mesh);
+/// Makes the pairs of a query's box, which are those of its surface, pairs of the solid with the triangle 0.
+/// Does nothing for other queries. `mesh`: of A.
+void fill_box(const capture::Query& query, const capture::Mesh& mesh, std::vector<SimplexPair>& pairs);
+/// Returns bounds of the length along a query's ray at which it meets a triangle of the mesh of A that it
+/// hits, if coordinates may be wrong by `error`.
+std::array<double, 2> hit_of(const capture::Query& query, const capture::Mesh& mesh, std::uint32_t triangle,
+                             double error = 0);
+/// Returns true if a query is for the first hit of a ray.
+inline bool is_first_hit(const capture::Query& query) {
+  return query.kind == capture::QueryKind::distance && query.probe.shape == capture::ProbeShape::ray;
+}
+
 /// Returns true if tests of triangles were recorded.
 inline bool tests_triangles(const capture::Query& query) {
   return std::ranges::any_of(query.events,
@@ -150,6 +172,9 @@ struct TrianglePair {
 /// The meshes and trees of a capture, prepared on first use. The capture must outlive this object.
 class CapturedBodies {
  public:
+  /// The number of the tree, and of the mesh, of the last query's probe.
+  static constexpr std::uint32_t kProbe = kNull - 1;
+
   explicit CapturedBodies(const capture::Capture& capture);
 
   /// Call it when meshes or trees were added to the capture. References to trees become invalid.
@@ -161,16 +186,28 @@ class CapturedBodies {
   const LrbRep* body(std::uint32_t mesh);
   const TreeIndex& index(std::uint32_t tree);
   const Volumes& volumes(std::uint32_t tree);
-  const capture::Tree& tree(std::uint32_t tree) const { return capture_->trees[tree]; }
-  const capture::Mesh& mesh_of(std::uint32_t tree) const {
-    return capture_->meshes[capture_->trees[tree].mesh];
+  const capture::Tree& tree(std::uint32_t tree) const {
+    return tree == kProbe ? probe_.tree : capture_->trees[tree];
   }
+  const capture::Mesh& mesh_of(std::uint32_t tree) const { return mesh(this->tree(tree).mesh); }
 
-  /// Returns the trees of both sides, which are the same for a self query; nullopt if a side has none.
-  static std::optional<std::array<std::uint32_t, 2>> trees_of(const capture::Query& query);
+  /// Returns the trees of both sides, which are the same for a self query; nullopt if a side has none. That
+  /// of a probe is valid until the next call.
+  std::optional<std::array<std::uint32_t, 2>> trees_of(const capture::Query& query);
 
  private:
+  const capture::Mesh& mesh(std::uint32_t mesh) const {
+    return mesh == kProbe ? probe_.mesh : capture_->meshes[mesh];
+  }
+  /// Returns the element of a mesh or tree in a vector, whose last one is the probe's.
+  template <class T>
+  static std::unique_ptr<T>& slot(std::vector<std::unique_ptr<T>>& all, std::uint32_t i) {
+    return i == kProbe ? all.back() : all[i];
+  }
+
   const capture::Capture* capture_;
+  ProbeBody probe_;
+  std::vector<double> reach_;                                ///< by mesh, reach_of(); negative: not known
   std::vector<std::unique_ptr<bodies::LoadedBody>> bodies_;  ///< by mesh
   std::vector<std::unique_ptr<TreeIndex>> indices_;
   std::vector<std::unique_ptr<Volumes>> volumes_;

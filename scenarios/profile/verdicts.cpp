@@ -88,8 +88,7 @@ Precision precision_of(const capture::Capture& capture) {
   return capture.trees.empty() ? Precision::float64 : Precision::float32;
 }
 
-double error_bound(const Triangle& a, const Pose& pose_a, const Triangle& b, const Pose& pose_b,
-                   Precision precision) {
+double error_bound(Points a, const Pose& pose_a, Points b, const Pose& pose_b, Precision precision) {
   double of_a = 0, of_b = 0;
   for (const Eigen::Vector3d& x : a) of_a = std::max(of_a, largest_term(pose_a, x));
   for (const Eigen::Vector3d& x : b) of_b = std::max(of_b, largest_term(pose_b, x));
@@ -102,15 +101,15 @@ double gap_of(const Triangle& a, const Triangle& b) {
   return exact::distance_of_simplices(pa, pb, 3).lower;
 }
 
-double overlap_depth(const Triangle& a, const Triangle& b) {
+double overlap_depth(Points a, Points b) {
   // The translation along any axis by the overlap of the projections separates the triangles, so that every
   // axis gives an upper bound. The shortest one is along a normal of a face of the Minkowski sum of A and -B:
   // the normal of a triangle, or of the parallelogram of an edge of each. (Cameron, "Enhancing GJK", 1997,
   // section 4.) The coordinate axes serve where edges are parallel and the sum is flat.
   double least = std::numeric_limits<double>::infinity();
-  Triangle from_a[2] = {a, b};
-  for (Triangle& t : from_a)
-    for (Eigen::Vector3d& x : t) x -= a[0];
+  std::vector<Eigen::Vector3d> from_a[2] = {{a.begin(), a.end()}, {b.begin(), b.end()}};
+  for (auto& points : from_a)
+    for (Eigen::Vector3d& x : points) x -= a[0];
   const auto along = [&](const Eigen::Vector3d& direction) {
     const double length = direction.norm();
     if (!(length > 0)) return;
@@ -118,7 +117,7 @@ double overlap_depth(const Triangle& a, const Triangle& b) {
   };
   Eigen::Vector3d edges[2][3];
   for (int side = 0; side < 2; ++side) {
-    const Triangle& t = side == 0 ? a : b;
+    const Points t = side == 0 ? a : b;
     for (std::size_t i = 0; i < 3; ++i) edges[side][i] = t[(i + 1) % 3] - t[i];
     along(edges[side][0].cross(edges[side][1]));
   }
@@ -141,6 +140,8 @@ struct Checker::Posed {
   std::array<Pose, 2> poses;
 
   bool is_self() const { return query.kind == QueryKind::self; }
+  bool is_box() const { return query.probe.shape == capture::ProbeShape::box; }
+  bool has_probe() const { return query.probe.shape != capture::ProbeShape::none; }
 };
 
 Checker::Checker(CapturedBodies& bodies, Precision precision) : bodies_(bodies), precision_(precision) {
@@ -221,7 +222,8 @@ QueryVerdict Checker::check(const Query& query, const QueryWalk* walk) {
   const Posed posed = posed_bodies(query, *walk);
   out.exact = exact_pairs(posed);
   out.exact_pairs = out.exact.size();
-  if (query.kind == QueryKind::all_pairs || query.kind == QueryKind::any || posed.is_self())
+  if (query.kind == QueryKind::all_pairs || query.kind == QueryKind::any || posed.is_self() ||
+      is_first_hit(query))
     check_pairs(posed, *walk, out);
   check_answer(posed, out);
   if (query.value) check_value(posed, out);
@@ -237,7 +239,9 @@ std::vector<TrianglePair> Checker::exact_pairs(const Posed& posed) {
   if (posed.bodies[0] == nullptr || posed.bodies[1] == nullptr) return out;
   const Expected<CollideResult&> found = collide(*posed.bodies[0], posed.poses[0], *posed.bodies[1],
                                                  posed.poses[1], CollideRequest{}, workspace_);
-  for (const SimplexPair& pair : found.value().pairs) {
+  std::vector<SimplexPair>& pairs = found.value().pairs;
+  fill_box(posed.query, *posed.meshes[0], pairs);
+  for (const SimplexPair& pair : pairs) {
     const TrianglePair triangles{pair.a, pair.b};
     if (posed.is_self() && (triangles.a >= triangles.b || share_a_vertex(*posed.meshes[0], triangles)))
       continue;
@@ -254,6 +258,13 @@ WrongPair Checker::describe(const Posed& posed, const TrianglePair& pair, bool m
   const Triangle world_a = moved(a, posed.poses[0]), world_b = moved(b, posed.poses[1]);
   out.margin = missed ? overlap_depth(world_a, world_b) : gap_of(world_a, world_b);
   out.bound = error_bound(a, posed.poses[0], b, posed.poses[1], precision_);
+  if (posed.is_box()) {  // its pose is the identity
+    const capture::Mesh& box = *posed.meshes[1];
+    out.bound = error_bound(a, posed.poses[0], box.vertices, posed.poses[1], precision_);
+    if (missed) out.margin = overlap_depth(world_a, box.vertices);
+    for (std::uint32_t t = 0; !missed && t < box.triangles.size(); ++t)
+      out.margin = std::min(out.margin, gap_of(world_a, corners_of(box, t)));
+  }
   out.undecidable = out.margin <= out.bound;
   return out;
 }
@@ -311,8 +322,17 @@ void Checker::check_pairs(const Posed& posed, const QueryWalk& walk, QueryVerdic
   const bool all = query.verdict == Verdict::separate || (query.kind != QueryKind::any && query.complete());
   out.pairs_checked = all || !tested.met.empty() || !tested.disjoint.empty();
   if (!out.pairs_checked) out.remark = "events are not recorded";
+  // Of the hits of a ray, those behind the first one that was found need not be found.
+  double first_found = std::numeric_limits<double>::infinity();
+  const auto hit = [&](const TrianglePair& pair) {
+    return hit_of(query, *posed.meshes[0], pair.a, describe(posed, pair, true).bound);
+  };
+  if (is_first_hit(query))
+    for (const TrianglePair& pair : tested.met)
+      if (contains(out.exact, pair)) first_found = std::min(first_found, hit(pair)[0]);
   std::vector<WrongPair> wrong;
   for (const TrianglePair& pair : out.exact) {
+    if (is_first_hit(query) && !contains(tested.met, pair) && hit(pair)[1] >= first_found) continue;
     const bool tested_disjoint = contains(tested.disjoint, pair);
     if (contains(tested.met, pair)) {
       ++out.right;
@@ -343,8 +363,19 @@ double Checker::error_of_distance(const Posed& posed) const {
 void Checker::check_value(const Posed& posed, QueryVerdict& out) {
   if (posed.bodies[0] == nullptr || posed.bodies[1] == nullptr) return;
   // Between surfaces. An engine may give negative numbers for bodies that intersect.
-  double lower = 0, upper = 0;
-  if (out.exact.empty()) {
+  double lower = 0, upper = 0, error = error_of_distance(posed);
+  if (is_first_hit(posed.query)) {
+    if (out.exact.empty()) return;
+    // The least bounds of all hits, as multiples of the direction.
+    const auto& n = posed.query.probe.numbers;
+    const double unit = posed.poses[1].r.col(0).norm() / Eigen::Vector3d(n[3], n[4], n[5]).stableNorm();
+    lower = upper = std::numeric_limits<double>::infinity();
+    for (const TrianglePair& pair : out.exact) {
+      const auto hit = hit_of(posed.query, *posed.meshes[0], pair.a, describe(posed, pair, true).bound);
+      lower = std::min(lower, n[6] + unit * hit[0]), upper = std::min(upper, n[6] + unit * hit[1]);
+    }
+    error = 0;
+  } else if (out.exact.empty()) {
     DistanceRequest request;
     request.relation = false;
     const auto& exact =
@@ -354,13 +385,13 @@ void Checker::check_value(const Posed& posed, QueryVerdict& out) {
   }
   const auto [least, most] = *posed.query.value;
   const double by = std::max({lower - std::max(most, 0.0), std::max(least, 0.0) - upper, 0.0});
-  const bool is_error = by > error_of_distance(posed);
+  const bool is_error = by > error;
   worsen(out.answer, is_error ? Judgement::wrong : by > 0 ? Judgement::undecidable : Judgement::right);
   if (!is_error) return;
   const auto number = [](double x) { return io::number_text(x, 9); };
-  if (!out.remark.empty()) out.remark += "; ";
-  out.remark += "the engine's distance is " + number(least) + (most > least ? " to " + number(most) : "") +
-                "; it is " + number(upper);
+  out.distance = "the engine's distance is " + number(least) + (most > least ? " to " + number(most) : "") +
+                 "; it is " + number(upper);
+  out.remark += (out.remark.empty() ? "" : "; ") + out.distance;
 }
 
 void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
@@ -390,14 +421,17 @@ void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
           .within.value_or(false);
     }();
     out.answer = close ? Judgement::undecidable : Judgement::wrong;
-    out.remark = "the engine's verdict is intersecting; the bodies are separate";
+    out.remark = std::string("the engine's verdict is intersecting; ") +
+                 (posed.has_probe() ? "nothing is hit" : "the bodies are separate");
     return;
   }
   if (!reported && meet) {
     const bool all_undecidable = undecidable_pairs() == static_cast<std::ptrdiff_t>(out.exact.size());
     out.answer = all_undecidable ? Judgement::undecidable : Judgement::wrong;
     out.remark = "the engine's verdict is separate; " + std::to_string(out.exact.size()) +
-                 (out.exact.size() == 1 ? " pair of triangles intersects" : " pairs of triangles intersect");
+                 (posed.has_probe()       ? " triangles are hit"
+                  : out.exact.size() == 1 ? " pair of triangles intersects"
+                                          : " pairs of triangles intersect");
     return;
   }
   // The number of pairs. 0 with an intersection: the engine does not count. A number that agrees with the
@@ -412,21 +446,24 @@ void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
                         : query.pairs - exact <= extra;
   out.answer = near ? Judgement::undecidable : Judgement::wrong;
   out.remark = "the engine counted " + std::to_string(query.pairs) + " pairs of triangles; " +
-               std::to_string(exact) + " intersect";
+               std::to_string(exact) + (posed.has_probe() ? " are hit" : " intersect");
 }
 
 std::string sentence(const WrongPair& wrong, const capture::Tree& a, const capture::Tree& b) {
   constexpr int kDigits = 3;
   const auto number = [](double x) { return io::number_text(x, kDigits); };
-  const std::string pair = std::to_string(wrong.triangles.a) + "," + std::to_string(wrong.triangles.b);
-  std::string out = (wrong.missed ? "missed " : "false ") + pair + ": ";
+  const bool of_probe = b.id == 0;  // a ray, point or box
+  std::string out = (wrong.missed ? "missed " : "false ") + std::to_string(wrong.triangles.a) +
+                    (of_probe ? "" : "," + std::to_string(wrong.triangles.b)) + ": ";
   const auto nodes = [&] {
-    return "nodes " + std::to_string(a.id_of(wrong.nodes[0])) + " and " +
-           std::to_string(b.id_of(wrong.nodes[1])) + ", which contain them, ";
+    const std::string node = std::to_string(a.id_of(wrong.nodes[0]));
+    return of_probe ? "node " + node + ", which contains it, and the probe "
+                    : "nodes " + node + " and " + std::to_string(b.id_of(wrong.nodes[1])) +
+                          ", which contain them, ";
   };
   switch (wrong.culprit) {
     case Culprit::none:
-      out += "the triangles are disjoint";
+      out += of_probe ? "it is not hit" : "the triangles are disjoint";
       break;
     case Culprit::triangle_test:
       out += "the triangle test called them disjoint";

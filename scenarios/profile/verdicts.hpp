@@ -8,6 +8,9 @@
 /// - self: the pairs of triangles without a common vertex, as all pairs. Engines differ about neighbours, so
 ///   neither these nor the number of pairs are compared.
 /// - distance: the verdict, and the distance if it was recorded.
+/// - rays, points and boxes as above. They hit triangles with a common point, a box as a solid. With
+/// distance,
+///   no hit of a ray may be before the first one found; the distance is the multiple of its direction there.
 /// - first contact: the bodies must not be called separate if they intersect at the poses of the query, where
 ///   the motion begins. Nothing else is known about the motion.
 ///
@@ -16,6 +19,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,17 +41,17 @@ constexpr auto enum_names(Precision) {
 Precision precision_of(const capture::Capture& capture);
 
 using Triangle = std::array<Eigen::Vector3d, 3>;  ///< corners in the world
+using Points = std::span<const Eigen::Vector3d>;  ///< those of a triangle, or of a box
 
 /// Units in the last place by which the coordinates in a floating test of two triangles may be wrong: those
 /// of a pose product, its application to the corners, and the projections on an axis.
 inline constexpr double kTestUlps = 16;
 /// Returns the gap or overlap depth up to which a test of two triangles in floating point may err: kTestUlps
 /// units in the last place of the sum of both triangles' largest terms, |R| |x| + |t| of a corner x.
-double error_bound(const Triangle& a, const Pose& pose_a, const Triangle& b, const Pose& pose_b,
-                   Precision precision);
+double error_bound(Points a, const Pose& pose_a, Points b, const Pose& pose_b, Precision precision);
 /// Returns the length of the shortest translation that separates two intersecting triangles, up to rounding:
 /// the least overlap along the normals of their Minkowski sum (for triangles in one plane: 0).
-double overlap_depth(const Triangle& a, const Triangle& b);
+double overlap_depth(Points a, Points b);
 /// Returns the gap of two disjoint triangles, rounded down.
 double gap_of(const Triangle& a, const Triangle& b);
 
@@ -104,6 +108,7 @@ struct QueryVerdict {
   Judgement outcome = Judgement::unchecked;  ///< the worst of the answer's and the pairs'
   Judgement answer = Judgement::unchecked;   ///< of the verdict and the number of pairs
   std::string remark;                        ///< the error of the answer, or why something is unchecked
+  std::string distance;                      ///< the error of the distance, which is in `remark`, too
   bool pairs_checked = false;                ///< the recorded tests of triangles were compared
   std::uint64_t exact_pairs = 0;
   std::uint64_t found = 0;              ///< pairs whose recorded tests say that they intersect

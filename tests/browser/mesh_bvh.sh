@@ -29,7 +29,7 @@ if [ $code != 0 ] || [ ! -f "$work/found.json" ]; then
 fi
 grep -q '^three-mesh-bvh: 8 queries: 8 not checked' "$work/said" || { echo "mesh_bvh.sh: live: $(cat "$work/said")" >&2 && exit 1; }
 "$lrbscope" --quiet tree "$work/run.lrbcap" --json >"$work/trees.json" # exit code 1 for a fault
-"$lrbscope" --quiet import "$work/run.lrbcap" -o "$work/import" >/dev/null
+"$lrbscope" --quiet import "$work/run.lrbcap" -o "$work/import" --trace >/dev/null
 cat >"$work/compare.mjs" <<'END'
 import assert from "assert";
 import fs from "fs";

@@ -310,6 +310,13 @@ TEST_CASE("what counts as wrong depends on the kind of query") {
     CHECK(totals.false_pairs == 0);
     CHECK(totals.wrong_verdicts == c.is_wrong_verdict);
     CHECK((run.trace.steps[0].result.distance.has_value()) == (c.kind == QueryKind::distance));
+    if (c.kind != QueryKind::distance) continue;
+    for (const double value : {0.0, 1.5}) {  // they intersect
+      q.value = {value, value};
+      const profile::CapturedTotals valued = profile::totals_of(recorded(engine.capture));
+      CHECK(valued.wrong_distances == (value > 0));
+      CHECK(valued.right_distances == (value == 0));
+    }
   }
 }
 

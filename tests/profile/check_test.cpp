@@ -75,6 +75,12 @@ TEST_CASE("A capture's sums are those of its queries") {
   CHECK(sum.outcomes[static_cast<std::size_t>(Judgement::wrong)] == 1);
   CHECK(sum.missed == 1);
   CHECK(sum.right == sum.exact_pairs - 1);
+  c.engine.capture.every = 3;
+  const Check scaled = check(c.engine.capture, {});
+  CHECK(scaled.sum().queries == 6);
+  CHECK(scaled.sum().prices.visits == 3 * sum.prices.visits);
+  CHECK(scaled.sample.ends_with("that of visits has a standard error of 0 %."));  // all have as many
+  c.engine.capture.every = 1;
   REQUIRE(checked.wrong.size() == 1);
   CHECK(checked.wrong[0].find("query 2: missed " + std::to_string(lost[0]) + "," + std::to_string(lost[1]) +
                               ": the triangle test called them disjoint") == 0);

@@ -30,9 +30,7 @@ struct Priced {
   Prices prices;
 
   explicit Priced(const capture::Capture& c, std::size_t query = 0, bool split = true)
-      : bodies(c),
-        walk(bodies, c.queries[query], CapturedBodies::trees_of(c.queries[query]).value()),
-        book(bodies) {
+      : bodies(c), walk(bodies, c.queries[query], bodies.trees_of(c.queries[query]).value()), book(bodies) {
     exact = Checker(bodies, Precision::float64).check(c.queries[query], &walk).exact;
     prices = book.add(c.queries[query], &walk, exact, split);
   }

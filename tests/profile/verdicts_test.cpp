@@ -1,11 +1,13 @@
 #include "scenarios/profile/verdicts.hpp"
 
 #include <limits>
+#include <map>
 #include <memory>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
+#include "scenarios/profile/prices.hpp"
 #include "tests/support/faulty_engine.hpp"
 #include <lrbscope/distance.hpp>
 #include <lrbscope/error.hpp>
@@ -13,7 +15,7 @@
 namespace lrb::profile {
 
 using namespace lrb::test;
-using capture::QueryKind;
+using capture::ProbeShape, capture::QueryKind;
 
 namespace {
 
@@ -21,7 +23,7 @@ QueryVerdict verdict_of(const capture::Capture& c, std::size_t query = 0,
                         Precision precision = Precision::float64) {
   CapturedBodies bodies(c);
   Checker checker(bodies, precision);
-  const auto trees = CapturedBodies::trees_of(c.queries[query]);
+  const auto trees = bodies.trees_of(c.queries[query]);
   std::unique_ptr<QueryWalk> walk;
   if (trees) walk = std::make_unique<QueryWalk>(bodies, c.queries[query], *trees);
   return checker.check(c.queries[query], walk.get());
@@ -29,7 +31,7 @@ QueryVerdict verdict_of(const capture::Capture& c, std::size_t query = 0,
 
 std::string first_sentence(const capture::Capture& c, const QueryVerdict& v) {
   const auto& trees = c.queries[v.number - 1].trees;
-  return sentence(v.wrong.at(0), c.trees[trees[0]], c.trees[trees[1]]);
+  return sentence(v.wrong.at(0), c.trees[trees[0]], trees[1] == kNull ? capture::Tree() : c.trees[trees[1]]);
 }
 
 Pose tilted(const Eigen::Vector3d& t = {0.05, 0.07, 0.02}) {
@@ -177,9 +179,10 @@ TEST_CASE("The depth of two triangles is the shortest translation that separates
   CHECK(overlap_depth(flat, pierces) == doctest::Approx(0.25));
   CHECK(overlap_depth(pierces, flat) == doctest::Approx(0.25));
   // In one plane, and degenerate ones: a motion out of the plane separates them.
-  CHECK(overlap_depth(flat, {Eigen::Vector3d(1, 1, 0), {2, 1, 0}, {1, 2, 0}}) == 0);
-  CHECK(overlap_depth({flat[0], flat[1], flat[0]}, {flat[0], flat[1], flat[1]}) == doctest::Approx(0));
-  CHECK(overlap_depth(flat, {Eigen::Vector3d(1, 1, 0), {1, 1, 0}, {1, 1, 0}}) == doctest::Approx(0));
+  CHECK(overlap_depth(flat, Triangle{Eigen::Vector3d(1, 1, 0), {2, 1, 0}, {1, 2, 0}}) == 0);
+  CHECK(overlap_depth(Triangle{flat[0], flat[1], flat[0]}, Triangle{flat[0], flat[1], flat[1]}) ==
+        doctest::Approx(0));
+  CHECK(overlap_depth(flat, Triangle{Eigen::Vector3d(1, 1, 0), {1, 1, 0}, {1, 1, 0}}) == doctest::Approx(0));
   // No direction of many separates random ones by less.
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
@@ -318,6 +321,136 @@ TEST_CASE("The distance that an engine recorded is compared with the proven one"
     touching.value = {value, value};
     CHECK(verdict_of(crossing.engine.capture).outcome == outcome);
   }
+}
+
+namespace {
+
+/// Triangles in the unit cube, with rays, points and boxes around it.
+struct Probes {
+  FaultyEngine engine;
+  std::mt19937_64 random{11};
+  std::uint32_t tree = engine.grow(engine.add(soup_mesh(random, 60)), random, 2);
+  const capture::Mesh mesh = engine.capture.meshes[0];
+
+  capture::Probe probe(ProbeShape shape) {
+    capture::Probe out{shape, {}};
+    auto& n = out.numbers;
+    for (double& x : n) x = 1.4 * static_cast<double>(random() >> 11) * 0x1p-53 - 0.2;
+    n[6] = std::max(n[6] - 1, 0.0), n[7] = n[7] < 0.5 ? std::numeric_limits<double>::infinity() : n[6] + n[7];
+    for (std::size_t k = 0; k < 3; ++k)
+      n[k + 3] = shape == ProbeShape::ray ? n[k + 3] - n[k] : n[k] + std::abs(n[k + 3]) / 2;
+    return out;
+  }
+  capture::Capture& ask(const capture::Probe& probe, const FaultyQuery& how = {}, const Pose& pose = {}) {
+    return engine.ask(tree, pose, probe, how), engine.capture;
+  }
+};
+
+/// Möller and Trumbore 1997.
+std::optional<double> ray_hit(const capture::Probe& ray, const Triangle& t) {
+  const auto& n = ray.numbers;
+  const Eigen::Vector3d o(n[0], n[1], n[2]), d(n[3], n[4], n[5]), u = t[1] - t[0], v = t[2] - t[0],
+                                                                  p = d.cross(v), q = (o - t[0]).cross(u);
+  const double det = u.dot(p), a = (o - t[0]).dot(p) / det, b = d.dot(q) / det, at = v.dot(q) / det;
+  return a >= 0 && b >= 0 && a + b <= 1 && at >= n[6] && at <= n[7] ? std::optional(at) : std::nullopt;
+}
+
+}  // namespace
+
+TEST_CASE("Rays, points and boxes hit the triangles that an independent test finds") {
+  Probes s;
+  capture::Mesh posed = s.mesh;
+  for (Eigen::Vector3d& x : posed.vertices) x = tilted().apply(x);
+  std::array<std::uint64_t, 4> hits{};
+  std::size_t all = 0;
+  for (const auto shape : {ProbeShape::ray, ProbeShape::point, ProbeShape::box})
+    for (std::uint32_t round = 0; round < 100; ++round) {
+      capture::Probe probe = s.probe(shape);
+      const bool at_corner = round % 3 == 0;
+      if (at_corner && shape != ProbeShape::box)
+        std::copy_n(corners_of(posed, round % 60)[1].data(), 3, probe.numbers.data());
+      if (shape == ProbeShape::box && round % 9 == 1)  // around everything
+        probe.numbers = {-9, -9, -9, 9, 9, 9};
+      const QueryVerdict v = verdict_of(s.ask(probe, {}, tilted()), all++, Precision::float32);
+      CHECK(v.outcome != Judgement::wrong);
+      hits[static_cast<std::size_t>(shape)] += v.exact_pairs;
+      if (shape != ProbeShape::ray || at_corner) continue;
+      std::vector<TrianglePair> expected;
+      for (std::uint32_t f = 0; f < 60; ++f)
+        if (ray_hit(probe, corners_of(posed, f))) expected.push_back({f, 0});
+      CHECK(v.exact == expected);
+    }
+  CHECK(hits[1] > 100);
+  CHECK(hits[2] > 0);
+  CHECK(hits[3] > 500);
+}
+
+TEST_CASE("The faults of a ray tracer are named by node and triangle; its first hit may hide others") {
+  Probes s;
+  capture::Probe ray{ProbeShape::ray, {0.1, 0.2, -3, 0.1, 0.08, 2, 0, 100}};
+  std::map<double, std::uint32_t> hits;
+  for (std::uint32_t f = 0; f < 60; ++f)
+    if (const auto at = ray_hit(ray, corners_of(s.mesh, f))) hits[*at] = f;
+  REQUIRE(hits.size() > 1);
+  const auto priced = [&](std::size_t query) {
+    CapturedBodies bodies(s.engine.capture);
+    const capture::Query& q = s.engine.capture.queries[query];
+    const QueryWalk walk(bodies, q, bodies.trees_of(q).value());
+    const QueryVerdict v = Checker(bodies, Precision::float64).check(q, &walk);
+    return PriceBook(bodies).add(q, &walk, v.exact, true);
+  };
+  const QueryVerdict sound = verdict_of(s.ask(ray));
+  CHECK(sound.outcome == Judgement::right);
+  CHECK(sound.exact.size() == hits.size());
+  const Prices all = priced(0);
+  CHECK(all.needed > hits.size());
+  CHECK(all.needed + all.proof + all.volumes == all.visits);
+  // A test of triangles that lies; a box that is elsewhere.
+  FaultyQuery how;
+  for (const capture::Event& e : s.engine.capture.queries[0].events)
+    if (e.kind == capture::EventKind::triangles && e.met == 0) how.lies = {{e.a, 0}};
+  CHECK(first_sentence(s.engine.capture, verdict_of(s.ask(ray, how), 1))
+            .starts_with("false " + std::to_string(how.lies.begin()->front()) + ": it is not hit (gap "));
+  // The first hit alone is right, the second one not, and a wrong distance neither.
+  how = {.kind = QueryKind::distance};
+  const capture::Query first = s.ask(ray, how).queries[2];
+  const auto judge = [&](std::size_t found, double factor) {
+    const auto [at, f] = *std::next(hits.begin(), static_cast<std::ptrdiff_t>(found));
+    capture::Query& q = s.engine.capture.queries[2] = first;
+    std::erase_if(q.events,
+                  [&](const auto& e) { return e.kind == capture::EventKind::triangles && e.a != f; });
+    FaultyEngine::close(q);
+    q.value = {at * factor, at * factor};
+    return verdict_of(s.engine.capture, 2);
+  };
+  CHECK(judge(0, 1).outcome == Judgement::right);
+  CHECK(judge(0, 1.01).remark.starts_with("the engine's distance is "));
+  CHECK(judge(1, 1).missed == 1);
+  CHECK(judge(1, 1).wrong.at(0).triangles.a == hits.begin()->second);
+  // Visits behind the first hit are of order. A ray that ends there has none.
+  s.engine.capture.queries[2] = first;
+  const Prices whole = priced(2);
+  CHECK(whole.order > 0);
+  CHECK(whole.needed + whole.proof + whole.volumes + whole.order == whole.visits);
+  ray.numbers[7] = hits.begin()->first * (1 + 1e-9);
+  s.ask(ray, how);
+  CHECK(priced(3).order == 0);
+  // Distances of a point, and of a box, which is 0 around the triangles.
+  for (const auto& [probe, distance] : {std::pair{capture::Probe{ProbeShape::point, {0.5, 0.5, -9}}, 8.0},
+                                        {{ProbeShape::box, {-9, -9, -9, 9, 9, 9}}, 0.0}})
+    for (const double wrong : {0.0, 3.0}) {
+      capture::Query& q = s.ask(probe, how).queries.back();
+      q.value = {distance + wrong, distance + wrong + (distance > 0 ? 2 : 0)};
+      CHECK((verdict_of(s.engine.capture, q.number - 1).outcome == Judgement::wrong) == (wrong > 0));
+    }
+  // A node whose box is elsewhere.
+  auto& volumes = s.engine.capture.trees[s.tree].volumes;
+  const std::uint32_t f = hits.begin()->second, leaf = TreeIndex(s.engine.capture.trees[s.tree], 60).leaf[f];
+  volumes[6 * leaf] = 50, volumes[6 * leaf + 3] = 51;
+  s.engine.capture.queries.clear();
+  CHECK(first_sentence(s.engine.capture, verdict_of(s.ask(ray)))
+            .starts_with("missed " + std::to_string(f) + ": node " + std::to_string(leaf) +
+                         ", which contains it, and the probe were found disjoint"));
 }
 
 TEST_CASE("A self query is checked for triangles without a common vertex") {

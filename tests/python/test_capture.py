@@ -74,17 +74,25 @@ def test_files_that_are_cut_off_or_none(recorded, tmp_path):
 
 @pytest.mark.skipif(not os.path.exists(PROGRAM), reason="the program was not built")
 def test_answers_are_checked(tmp_path):
-    """A triangle does not meet one that is 9 away, whatever the engine says."""
+    """The ray hits the triangle at 2/3 of its direction, a point is its corner, one box is around it, the other and a second triangle are not."""
     far = np.eye(3, 4) + np.diag([9, 0, 0, 0])[:3, [3, 1, 2, 0]]
-    for verdict, said in ((0, "right"), (1, "wrong")):
-        made = capture.begin("python")
-        made.append(capture.chunk("MESH", number=1, vertices=np.eye(3), faces=[[0, 1, 2]]))
-        leaf = {"first_child": [0, 0], "first_prim": [0, 1], "prim": [0], "volumes": [[0, 0, 0, 1, 1, 1]]}
-        made.append(capture.chunk("TREE", number=1, mesh=1, volume=1, **leaf))
-        made.append(capture.chunk("QRYB", query=1, kind=2, tree_a=1, tree_b=1, thread=1, pose_b=far))
-        made.append(capture.chunk("QRYE", query=1, verdict=verdict))
-        capture.write(tmp_path / "made.lrbcap", made)
-        query, sums = capture.check(tmp_path / "made.lrbcap", program=PROGRAM)
-        assert query["verdict"] == said and sums["verdicts"][said] == 1
+    leaf = {"first_child": [0, 0], "first_prim": [0, 1], "prim": [0], "volumes": [[0, 0, 0, 1, 1, 1]]}
+    made = [*capture.begin("python"), capture.chunk("MESH", number=1, vertices=np.eye(3), faces=[[0, 1, 2]])]
+    made.append(capture.chunk("TREE", number=1, mesh=1, volume=1, **leaf))
+    ray = [-1 / 3, -1 / 3, -1 / 3, 1, 1, 1, 0, np.inf]
+    probes = (1, ray, 1), (2, [1, 0, 0], 1), (3, [-1, -1, -1, 2, 2, 2], 1), (3, [2, 2, 2, 3, 3, 3], 1)
+    for n, (probe, numbers, verdict) in enumerate((*probes, (0, far, 0), (0, far, 1)), 1):
+        made.append(capture.chunk("QRYB", query=n, kind=(2, 3, 1, 1)[probe], tree_a=1, tree_b=probe == 0, thread=1, probe=probe, pose_b=numbers))
+        if probe:
+            made.append(capture.chunk("EVTS", query=n, thread=1, events=[(0, 0, 0, 1, 255, 1), (1, 0, 0, 1, 255, 1)]))
+        if probe == 1:
+            made.append(capture.chunk("VALU", query=n, lower=2 / 3, upper=2 / 3))
+        made.append(capture.chunk("QRYE", query=n, verdict=verdict, pairs=verdict, n_events=2 * (probe > 0)))
+    capture.write(tmp_path / "made.lrbcap", made)
+    first = next(capture.queries(capture.read(tmp_path / "made.lrbcap")))
+    assert first.probe == 1 and first.pose_b.ravel()[:8].tolist() == ray
+    *queries, sums = capture.check(tmp_path / "made.lrbcap", program=PROGRAM)
+    assert [q["verdict"] for q in queries] == ["right", "right", "right", "wrong", "right", "wrong"] and sums["verdicts"]["wrong"] == 2
+    assert [q["exact_pairs"] for q in queries] == [1, 1, 1, 0, 0, 0] and queries[3]["remark"].endswith("intersecting; nothing is hit")
     with pytest.raises(ValueError, match="nothing.lrbcap: no such file"):
         capture.check(tmp_path / "nothing.lrbcap", program=PROGRAM)

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include "scenarios/profile/query_walk.hpp"
 #include "scenarios/profile/volumes.hpp"
 #include "tests/support/captured_trees.hpp"
 #include <lrbscope/contact.hpp>
@@ -101,6 +102,36 @@ class FaultyEngine {
     close(q);
     capture.queries.push_back(std::move(q));
     return capture.queries.back();
+  }
+
+  /// Runs a query of a tree with a probe. A box hits triangles as a solid.
+  capture::Query& ask(std::uint32_t a, const Pose& pose, const capture::Probe& probe,
+                      const FaultyQuery& how) {
+    capture::Query described;
+    described.trees[0] = a, described.poses = {pose, capture::pose_of(probe)}, described.probe = probe;
+    profile::CapturedBodies bodies(capture);
+    capture::Tree tree = bodies.tree(bodies.trees_of(described).value()[1]);
+    const capture::Mesh body = bodies.mesh_of(profile::CapturedBodies::kProbe);
+    const std::uint32_t mesh_a = capture.trees[a].mesh, b = static_cast<std::uint32_t>(capture.trees.size());
+    tree.mesh = add(body);
+    capture.trees.push_back(tree);
+    capture::Query& q = ask(a, pose, b, described.poses[1], how);
+    const Eigen::Map<const Eigen::Array3d> least(probe.numbers.data()), greatest(probe.numbers.data() + 3);
+    q.pairs = 0;
+    for (capture::Event& e : q.events) {
+      if (e.kind != capture::EventKind::triangles) continue;
+      const Eigen::Array3d x = pose.apply(profile::corners_of(capture.meshes[mesh_a], e.a)[0]).array();
+      bool hit = probe.shape == capture::ProbeShape::box && (x > least).all() && (x < greatest).all();
+      for (std::uint32_t g = 0; g < body.triangles.size(); ++g)
+        hit = hit || triangles_meet(capture.meshes[mesh_a], e.a, pose, body, g, q.poses[1]);
+      q.pairs += e.met = hit != (how.lies.count({e.a, 0}) > 0);
+    }
+    q.verdict = q.pairs > 0 ? capture::Verdict::intersecting : capture::Verdict::separate;
+    q.probe = probe;
+    q.trees[1] = kNull;
+    capture.trees.pop_back();
+    capture.meshes.pop_back();
+    return q;
   }
 
   /// Makes a query complete after its events have been changed.
