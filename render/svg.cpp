@@ -6,6 +6,7 @@
 #include "render/canvas.hpp"
 #include "render/page_palette.hpp"
 #include "render/paint_list.hpp"
+#include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
 #include <lrbscope/render/svg.hpp>
@@ -41,8 +42,16 @@ std::string escape_markup(std::string_view text) {
       case '"':
         out += "&quot;";
         break;
-      default:
+      case '\t':
+      case '\n':
         out += c;
+        break;
+      default:
+        // Other control characters are not allowed in XML: as in messages, \xhh.
+        if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f)
+          out += printable_name({&c, 1});
+        else
+          out += c;
     }
   }
   return out;

@@ -214,11 +214,11 @@ std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::
     constexpr std::size_t kLong = 40;
     // Ranges of positive numbers begin at the least normal double, which CLI11 prints as 0.
     return text.substr(0, value) + ": expected " +
-           (is_bounded                           ? number(low) + " to " + number(high)
-            : !std::isfinite(x)                  ? "a finite number of at least " + number(low)
-            : std::fpclassify(x) == FP_SUBNORMAL ? "a number that is not subnormal"
-            : x == low                           ? "a number above " + number(low)
-                                                 : "at least " + number(low)) +
+           (is_bounded          ? number(low) + " to " + number(high)
+            : !std::isfinite(x) ? "a finite number of at least " + number(low)
+            : std::fpclassify(x) == FP_SUBNORMAL && x > 0 && low == 0 ? "a number that is not subnormal"
+            : x == low                                                ? "a number above " + number(low)
+                                                                      : "at least " + number(low)) +
            ", found " + (found.size() > kLong ? in_quotes(found) : found);
   }
   if (const std::size_t equals = text.find(" = "); text.starts_with(kUnread) && equals != std::string::npos)

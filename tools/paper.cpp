@@ -374,7 +374,11 @@ int run_paper(PaperOptions o, const Globals& globals) {
     return kOk;
   }
   std::vector<paper::ContactStep> contacts;
-  if (experiment.reports(paper::PaperPart::incremental) || experiment.reports(paper::PaperPart::structures))
+  bool needs_contacts = experiment.reports(paper::PaperPart::incremental);
+#ifdef LRB_BUILD_BENCH
+  needs_contacts |= experiment.reports(paper::PaperPart::structures);
+#endif
+  if (needs_contacts)
     contacts = run_sweep(objects, {paper::first_contacts(protocol, kContacts), {}, sweep.jobs, true});
   if (experiment.reports(paper::PaperPart::incremental))
     more.push_back(paper::incremental_table(objects, contacts));

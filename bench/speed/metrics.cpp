@@ -1,5 +1,6 @@
 #include "bench/speed/metrics.hpp"
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <limits>
@@ -96,6 +97,8 @@ Region region_of(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
 
 double deviation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
                  const std::vector<Eigen::Vector3d>& points) {
+  if (!std::all_of(points.begin(), points.end(), [](const Eigen::Vector3d& x) { return x.allFinite(); }))
+    return std::numeric_limits<double>::infinity();
   const PointDistanceRequest request{.relative_tolerance = 1e-6, .side = false};
   const std::vector<PointDistance> to_a = point_distances(a, pose_a, points, request, 1),
                                    to_b = point_distances(b, pose_b, points, request, 1);

@@ -310,6 +310,8 @@ Mesh convex_hull_mesh(std::span<const Eigen::Vector3d> points) {
 }
 
 std::vector<std::uint32_t> convex_outline(std::span<const Eigen::Vector3d> points) {
+  const FloatMode float_mode;
+  // Monotone chains (Andrew 1979).
   // Step 1: sort by x, then y, then index. Equal points become adjacent, and the lowest index remains.
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -351,9 +353,8 @@ std::vector<std::uint32_t> convex_outline(std::span<const Eigen::Vector3d> point
 namespace lrb::construct {
 
 // Convex polygons in 2D.
-// - convex_outline(): monotone chains (Andrew 1979). Sort the points, then build the lower and the upper
-//   chain.
-// - enclosing_polygon(): move the convex hull of the points outward; then remove sides greedily, always the
+// - enclosing_polygon(): move the convex outline of the points outward; then remove sides greedily, always
+// the
 //   one that adds the least area; finally confirm the result exactly, with a box as the fallback.
 
 namespace {

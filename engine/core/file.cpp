@@ -24,11 +24,16 @@ namespace {
 std::string escaped(std::string_view text, bool keep_high) {
   static constexpr char kHex[] = "0123456789abcdef";
   std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    // Printable ASCII as it is. Bytes from 0x80 may be UTF-8, and are kept on request. Others as \xhh.
-    if ((byte >= 0x20 && byte < 0x7f) || (keep_high && byte >= 0x80)) {
-      out += c;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    // Printable ASCII as it is. Bytes from 0x80 may be UTF-8, and are kept on request, but for control
+    // characters (C2 80 to C2 9F). Others as \xhh.
+    const auto is_c1 = [&](std::size_t at) {
+      return at + 1 < text.size() && text[at] == '\xc2' && (text[at + 1] & 0xe0) == 0x80;
+    };
+    const bool keeps = keep_high && byte >= 0x80 && !is_c1(i) && !(i > 0 && is_c1(i - 1));
+    if ((byte >= 0x20 && byte < 0x7f) || keeps) {
+      out += text[i];
     } else {
       out += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};
     }

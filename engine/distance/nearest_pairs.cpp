@@ -3,7 +3,7 @@
 /// 1. Bound each pair in double, with proven rounding errors (pair_bounds.hpp).
 /// 2. If the interval is still too wide or contains 0, decide by the exact query whether the surfaces
 ///    intersect.
-/// 3. If they do not, measure the relevant pairs in integers (exact/pair_distance.hpp).
+/// 3. If they do not, measure the relevant pairs in integers (pair_distance.hpp).
 /// 4. Complete the answer: decision on `within`, relation of the bodies, closest points.
 
 #include "engine/distance/nearest_pairs.hpp"

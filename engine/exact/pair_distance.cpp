@@ -12,6 +12,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include <lrbscope/core/float_mode.hpp>
 #include <lrbscope/pair_distance.hpp>
 
 namespace lrb::exact {
@@ -240,6 +241,7 @@ Eigen::Vector3d place(const ClosestFeature& spot, const double* const* corners, 
 }  // namespace
 
 PairDistance distance_of_simplices(const double* const* a, const double* const* b, int n) {
+  const FloatMode float_mode;
   const Pair pair(a, b, n);
   const Nearest& nearest = pair.nearest();
   PairDistance out;
@@ -252,6 +254,7 @@ PairDistance distance_of_simplices(const double* const* a, const double* const* 
 }
 
 int compare_distance(const double* const* a, const double* const* b, int n, double distance) {
+  const FloatMode float_mode;
   const Pair pair(a, b, n, distance);
   // Compare squares: both are non-negative, so the order is the same.
   const cpp_int whole = pair.to_integer(distance);

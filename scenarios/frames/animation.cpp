@@ -211,6 +211,8 @@ void animate(const std::string& folder, const std::string& file) {
   const std::string part =
       (path.parent_path() / ("." + path.stem().string() + ".part" + path.extension().string())).string();
   const io::Finished ran = io::run_program(animation_command(folder, part));
+  if (!ran.not_started.empty())
+    throw EnvironmentError(program() + ": cannot start the program: " + ran.not_started);
   std::fputs(ran.errors.c_str(), stderr);
   std::error_code error;
   if (ran.code != 0) {

@@ -5,15 +5,17 @@
 #include <cstring>
 #include <system_error>
 
+#ifndef _WIN32
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+extern char** environ;
+#endif
+
 #include "engine/platform/platform.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
-
-extern char** environ;
 
 namespace lrb::io {
 
@@ -108,6 +110,11 @@ TemporaryFolder::~TemporaryFolder() {
   fs::remove_all(path, ignored);
 }
 
+#ifdef _WIN32
+Finished run_program(std::vector<std::string>, const std::string&) {
+  return {.not_started = "not supported on Windows"};
+}
+#else
 namespace {
 
 /// An unnamed temporary file: removed when it is closed, however the process ends.
@@ -152,9 +159,12 @@ Finished run_program(std::vector<std::string> words, const std::string& input) {
   arguments.push_back(nullptr);
   pid_t child = -1;
   Finished out;
-  out.started = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ) == 0;
+  const int error = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (!out.started) return out;
+  if (error != 0) {
+    out.not_started = std::strerror(error);
+    return out;
+  }
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -163,6 +173,7 @@ Finished run_program(std::vector<std::string> words, const std::string& input) {
   out.errors = files[STDERR_FILENO].text();
   return out;
 }
+#endif
 
 namespace {
 

@@ -77,8 +77,8 @@ struct TemporaryFolder {
 
 /// How a program ended.
 struct Finished {
-  bool started = false;  ///< there is such a program
-  int code = 1;          ///< exit code; 1 also after a signal
+  std::string not_started;  ///< why it could not be started; empty if it was
+  int code = 1;             ///< exit code; 1 also after a signal
   std::string output, errors;
 };
 /// Runs a program, found in PATH unless its name is a path, with `input` as its standard input.

@@ -91,7 +91,8 @@ std::string drawn(const Gnuplot& chart, const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
   io::Finished finished = io::run_program(
       {program(), "-"}, "set terminal " + terminal(chart, ending) + "\nset encoding utf8\n" + chart.script);
-  if (!finished.started) throw EnvironmentError(path + ": there is no program " + program() + kInstall);
+  if (!finished.not_started.empty())
+    throw EnvironmentError(path + ": there is no program " + program() + kInstall);
   if (finished.code != 0 || finished.output.empty())
     throw EnvironmentError(path + ": " + program() + " failed: " + last_lines(finished.errors));
   return std::move(finished.output);

@@ -155,7 +155,7 @@ TEST_CASE("the convex outline is counter-clockwise and keeps points on its sides
         REQUIRE(exact::orient2d(cloud[corners[i]].data(), cloud[corners[(i + 1) % corners.size()]].data(),
                                 p.data()) >= 0);
   }
-  CHECK(convex_outline(random_points(10, 1, {1, 0, 0})).size() < 3);
+  CHECK(convex_outline(random_points(10, 1, {1, 0, 0})).empty());
 }
 
 TEST_CASE("the outermost polygon has few sides and contains all points") {

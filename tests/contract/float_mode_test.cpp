@@ -86,7 +86,7 @@ void check_bodies(const Mesh& mesh) {
     cut_polygon(mesh, FaceId(0), cut);
     return std::tuple(checked.report().lines(mesh), report.lines(mesh), use, cut, crossing, joined.joined,
                       bytes(self_intersections(checked).segments), close_holes(checked).mesh.face_vertices,
-                      bytes(convex_hull_mesh(mesh.vertices).vertices));
+                      bytes(convex_hull_mesh(mesh.vertices).vertices), convex_outline(mesh.vertices));
   });
   check_modes([&] {
     const test::Folder folder;

@@ -24,7 +24,7 @@ NOT_RUN = [
         r"^(cd examples/data$|\./run|\.ci/run|\./check|cmake |cmake/release|pip |ctest |export PYTHONPATH|\(cd build/release && cpack\)|apt-get )",
         "builds; tests/fresh_install, ./check",
     ),
-    ("", r"^(build/|tests/guard/)", "programs of tests and benchmarks, named by their tests"),
+    ("", r"^((\w+=\S+ )?build/|tests/guard/)", "programs of tests and benchmarks, named by their tests"),
     ("", r"^lrbscope (stability|bench|chart)\b(?!.*(--percentiles|--search))", "measures for minutes; measure_tests, stability_tests"),
     ("", r"^lrbscope (paper|crowd)$", "takes minutes at its full size; cli tests have smaller ones"),
     (
@@ -63,6 +63,7 @@ def stand_ins(tree, page, run):
         ("b.obj", 0.8),
         ("cow.obj", 1.0),
         ("mesh.obj", 1.0),
+        ("part.obj", 1.0),
         ("twin.obj", 1.0),
     ):
         shell.ball(name, fine, scale, hole=name == "mesh.obj" and page == "docs/debugging.md")

@@ -239,9 +239,9 @@ struct BruteForceResult {
   Relation relation = Relation::separate;
 };
 
-/// Tests all pairs of real simplices with intersecting world AABBs, as the reference for collide(), with
-/// which it shares only predicates and world coordinates. Throws InputError as collide(), or beyond
-/// kMaxPairs.
+/// Tests all pairs of real simplices with intersecting world AABBs (others cannot meet), as the reference for
+/// collide(), with which it shares only predicates and world coordinates. Throws InputError as collide(), or
+/// beyond kMaxPairs.
 BruteForceResult brute_force(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b);
 
 }  // namespace lrb

@@ -131,7 +131,7 @@ class KnownBodies {
   Body of(const void* address, const MeshArrays<S>& arrays) {
     if (std::shared_ptr<const Body> known = find(address); known && is_same(*known, arrays)) return *known;
     BodyOptions options = faces_alone();
-    options.turn = true;  // for normals and depths of contacts
+    options.turn = true;  // for normals and depths of contacts; a component inside another one is a void
     const auto made = std::make_shared<const Body>(body_of(arrays, options).value());
     keep(address, made);
     return *made;

@@ -6,10 +6,12 @@
 namespace lrb {
 
 /// Clips a convex polygon to value(x) >= 0, where `value` is linear (Sutherland and Hodgman 1974). `corners`:
-/// a range of points of any dimension, in order. Calls add(x, i, is_new, along_cut) for each corner of the
-/// result, in the same order, and not at all if nothing is left. is_new: x is a point of the edge from corner
-/// i to the next, rounded, else it is corner i. along_cut: the edge that begins at x is the cut, else a part
-/// of the edge from corner i.
+/// an array or vector of points of any dimension, in order. Calls add(x, i, is_new, along_cut) for each
+/// corner of the result, in the same order, and not at all if nothing is left; a polygon that only touches
+/// the half-space gives the one or two corners there. is_new: x is a point of the edge from corner i to the
+/// next, rounded, else it is corner i. x may be an expression of Eigen, valid only during the call. Values
+/// must be finite, and so must their differences. along_cut: the edge that begins at x is the cut, else a
+/// part of the edge from corner i.
 template <class Points, class Value, class Add>
 void clip_polygon(const Points& corners, const Value& value, const Add& add) {
   const std::size_t n = std::size(corners);
