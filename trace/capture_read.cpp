@@ -46,7 +46,7 @@ Pose pose_of(const Probe& probe) {
   if (!(std::abs(along.squaredNorm() - 1) < kRigid / 2)) along = along.stableNormalized();
   const Eigen::Vector3d across = along.unitOrthogonal();
   out.r << along, across, along.cross(across);
-  out.t = first + probe.numbers[6] * second;
+  out.t = first;
   return out;
 }
 
@@ -142,8 +142,9 @@ class Reader : public Descriptions {
 
   void read_rate() {
     out_.every = u64();
-    require(out_.every != 0 && last_begun_ == 0,
-            "expected a number above 0 before the first query; call LRBCAP_EVERY after LRBCAP_OPEN");
+    require(
+        out_.every != 0 && out_.every >> 32 == 0 && last_begun_ == 0,
+        "expected a number from 1 to 2^32 - 1 before the first query; call LRBCAP_EVERY after LRBCAP_OPEN");
   }
 
   void read_begin() {
@@ -210,14 +211,16 @@ class Reader : public Descriptions {
     std::array<double, 8>& n = query.probe.numbers;
     std::copy_n(all.begin(), n.size(), n.begin());
     const bool is_ray = shape == 1, is_box = shape == 3;
-    bool valid = std::all_of(n.begin(), n.end() - is_ray, [](double x) { return std::isfinite(x); });
+    // Squares and sums of larger numbers overflow.
+    constexpr double kMost = 1e150;
+    bool valid = std::all_of(n.begin(), n.end() - is_ray, [&](double x) { return std::abs(x) <= kMost; });
     if (is_ray) valid = valid && (n[3] != 0 || n[4] != 0 || n[5] != 0) && n[6] <= n[7];
     for (std::size_t k = 0; is_box && k < 3; ++k) valid = valid && n[k] <= n[k + 3];
     if (!valid) {
       std::string found;
       for (const double x : n) found += ' ' + io::number_text(x);
       fail(
-          "expected finite numbers, of a ray a direction and a range of its multiples, which may be endless, of "
+          "expected numbers of at most 1e150, of a ray a direction and a range of its multiples, which may be endless, of "
           "a box least and greatest x, y, z, found" +
           found + "; give those of the engine");
     }

@@ -131,14 +131,19 @@ void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, std::vector<
 
 CheckedMesh weld_corners(const CheckedMesh& mesh, double distance, WeldedCorners& done) {
   const FloatMode float_mode;
-  if (!(distance > 0 && distance < kMaxDiagonal))
-    throw InputError("weld: expected a length above 0, found " + io::number_text(distance));
   if (mesh.mesh().dim != 3)
     throw InputError(mesh.mesh().name + ": expected a 3D mesh to weld, found a 2D one");
   Mesh out = mesh.mesh();
   const OpenCorners open(mesh.topology().open_edges);
+  Box box;
+  for (const VertexId v : open.corners) box.extend(out.vertices[v]);
+  const double most = std::min(box.isEmpty() ? kMaxDiagonal : norm3(box.diagonal()), kMaxDiagonal);
+  if (!(distance > 0 && distance <= most))
+    throw InputError(mesh.mesh().name + ": weld: expected a length above 0 and at most " +
+                     io::number_text(most, 3) + ", the size of all open edges, found " +
+                     io::number_text(distance));
   done = {};
-  // 1. Move each corner to the first one within the distance that has not moved itself.
+  // 1. Move each corner to one before it, within the distance, that has not moved itself.
   std::vector<bool> moved(out.vertices.size());
   for_each_near_pair(mesh.mesh(), open.keys, open.corners, distance, [&](VertexId u, VertexId v) {
     if (moved[u]) return false;

@@ -98,6 +98,9 @@ def chunk(letters: str, /, **given: Any) -> Chunk:
         known.append(name)
         default: Any = b"" if type_ == "text" else np.eye(3, 4) if shape == "3,4" else () if shape else 0
         if name == "pose_b" and given.get("probe"):
+            sizes = {1: (8,), 2: (3,), 3: (6,)}.get(given["probe"], (12,))
+            if np.size(given.get(name, ())) not in (*sizes, 12):
+                raise ValueError(f"{letters}: pose_b: expected {sizes[0]} numbers of a probe, got {np.size(given.get(name, ()))}")
             given[name] = np.pad(np.ravel(given[name]), (0, 12 - np.size(given[name])))
         value = given.get(name, len(given.get(name[2:], ())) if name[:2] == "n_" else default)
         if type_ == "event":

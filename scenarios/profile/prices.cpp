@@ -292,7 +292,7 @@ void PriceBook::price_distance(const QueryWalk& walk, std::span<const TrianglePa
         lrb::distance(*a, query.poses[0], *b, query.poses[1], request, workspace_).value().upper;
     for (const NearPair& pair :
          near_pairs(*a, query.poses[0], *b, query.poses[1], near, workspace_).value().pairs)
-      closest.push_back({pair.a.value(), pair.b.value()});
+      closest.push_back({pair.a.value(), query.probe.shape == capture::ProbeShape::box ? 0 : pair.b.value()});
   }
   // Step 2: the one that the engine tested first, or if none was, the first in a visited pair of leaves.
   std::optional<TrianglePair> goal;

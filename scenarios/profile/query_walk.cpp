@@ -102,6 +102,16 @@ std::vector<Visit> visits_of(const TreeIndex& tree_a, const TreeIndex& tree_b,
   return out;
 }
 
+namespace {
+
+/// The length of a ray's direction in the frame of its pose, whose x axis has that direction.
+double ray_unit(const capture::Query& query) {
+  const std::array<double, 8>& n = query.probe.numbers;
+  return Eigen::Vector3d(n[3], n[4], n[5]).stableNorm() / query.poses[1].r.col(0).norm();
+}
+
+}  // namespace
+
 ProbeBody probe_body(const capture::Query& query, const capture::Tree& tree, double reach) {
   ProbeBody out;
   const bool is_round = tree.volume == capture::VolumeKind::sphere || tree.volume == capture::VolumeKind::rss;
@@ -122,26 +132,29 @@ ProbeBody probe_body(const capture::Query& query, const capture::Tree& tree, dou
     out.tree.volumes.assign(n.begin(), n.begin() + 6);
     return out;
   }
-  double length = 0;
+  double begin = 0, end = 0;
   if (query.probe.shape == capture::ProbeShape::ray) {
-    length = (n[7] - n[6]) * Eigen::Vector3d(n[3], n[4], n[5]).stableNorm() / pose.r.col(0).norm();
+    const double unit = ray_unit(query);
     const double rounding = 1.001;  // also for poses that are rigid within 1e-6
-    const double beyond = rounding * ((pose.t - query.poses[0].t).norm() + reach);
-    if (!(length <= beyond)) length = beyond > 0 ? std::exp2(std::ceil(std::log2(beyond))) : 0;
+    const double beyond = rounding * ((pose.t - query.poses[0].t).stableNorm() + reach);
+    // The mesh is between -beyond and beyond: the ray is cut at a power of two outside of it.
+    const double cut = beyond > 0 ? std::exp2(std::min(std::ceil(std::log2(beyond)), 1023.0)) : 0;
+    begin = std::clamp(n[6] * unit, -cut, cut), end = std::clamp(n[7] * unit, -cut, cut);
   }
-  out.mesh.vertices = {{0, 0, 0}, {length, 0, 0}, {length / 2, 0, 0}};
+  const double length = end - begin;
+  out.mesh.vertices = {{begin, 0, 0}, {end, 0, 0}, {begin + length / 2, 0, 0}};
   out.mesh.triangles = {{0, 1, 2}};
   // A volume of the same kind as those of A if these are rounded, for the test of both.
   out.tree.volume = is_round ? capture::VolumeKind::rss : capture::VolumeKind::obb;
   out.tree.volumes.assign(is_round ? 10 : 12, 0);
   out.tree.volumes[3] = is_round ? length : length / 2;
-  if (!is_round) out.tree.volumes[0] = length / 2;
+  out.tree.volumes[0] = is_round ? begin : begin + length / 2;
   return out;
 }
 
 double reach_of(const capture::Mesh& mesh) {
   double out = 0;
-  for (const Eigen::Vector3d& x : mesh.vertices) out = std::max(out, x.norm());
+  for (const Eigen::Vector3d& x : mesh.vertices) out = std::max(out, x.stableNorm());
   return out;
 }
 
@@ -177,7 +190,7 @@ std::array<double, 2> hit_of(const capture::Query& query, const capture::Mesh& m
   }
   const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).stableNormalized();
   const double slope = normal.dot(along);
-  least = std::max(least, 0.0);
+  least = std::max(least, query.probe.numbers[6] * ray_unit(query));
   if (slope == 0) return {least, greatest};  // in one plane
   const double at = normal.dot(corners[0]) / slope, by = error / std::abs(slope);
   return {std::max(least, at - by), std::min(greatest, at + by)};

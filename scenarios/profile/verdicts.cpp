@@ -329,7 +329,8 @@ void Checker::check_pairs(const Posed& posed, const QueryWalk& walk, QueryVerdic
   };
   if (is_first_hit(query))
     for (const TrianglePair& pair : tested.met)
-      if (contains(out.exact, pair)) first_found = std::min(first_found, hit(pair)[0]);
+      if (contains(out.exact, pair) || describe(posed, pair, false).undecidable)
+        first_found = std::min(first_found, hit(pair)[0]);
   std::vector<WrongPair> wrong;
   for (const TrianglePair& pair : out.exact) {
     if (is_first_hit(query) && !contains(tested.met, pair) && hit(pair)[1] >= first_found) continue;
@@ -363,18 +364,27 @@ double Checker::error_of_distance(const Posed& posed) const {
 void Checker::check_value(const Posed& posed, QueryVerdict& out) {
   if (posed.bodies[0] == nullptr || posed.bodies[1] == nullptr) return;
   // Between surfaces. An engine may give negative numbers for bodies that intersect.
-  double lower = 0, upper = 0, error = error_of_distance(posed);
-  if (is_first_hit(posed.query)) {
+  const bool of_ray = is_first_hit(posed.query);
+  double lower = 0, upper = 0, error = of_ray ? 0 : error_of_distance(posed);
+  // Of a ray: the least and greatest multiple that rounding of the engine's tests explains.
+  double possible = std::numeric_limits<double>::infinity(), sure = possible;
+  if (of_ray) {
     if (out.exact.empty()) return;
     // The least bounds of all hits, as multiples of the direction.
     const auto& n = posed.query.probe.numbers;
     const double unit = posed.poses[1].r.col(0).norm() / Eigen::Vector3d(n[3], n[4], n[5]).stableNorm();
     lower = upper = std::numeric_limits<double>::infinity();
     for (const TrianglePair& pair : out.exact) {
-      const auto hit = hit_of(posed.query, *posed.meshes[0], pair.a, describe(posed, pair, true).bound);
-      lower = std::min(lower, n[6] + unit * hit[0]), upper = std::min(upper, n[6] + unit * hit[1]);
+      const WrongPair d = describe(posed, pair, true);
+      const auto hit = hit_of(posed.query, *posed.meshes[0], pair.a, d.bound);
+      lower = std::min(lower, unit * hit[0]), upper = std::min(upper, unit * hit[1]);
+      if (!d.undecidable) sure = std::min(sure, unit * hit[1]);
     }
-    error = 0;
+    possible = lower;
+    for (const WrongPair& w : out.wrong)
+      if (!w.missed && w.undecidable)
+        possible =
+            std::min(possible, unit * hit_of(posed.query, *posed.meshes[0], w.triangles.a, w.bound)[0]);
   } else if (out.exact.empty()) {
     DistanceRequest request;
     request.relation = false;
@@ -384,8 +394,9 @@ void Checker::check_value(const Posed& posed, QueryVerdict& out) {
     lower = exact.lower, upper = exact.upper;
   }
   const auto [least, most] = *posed.query.value;
-  const double by = std::max({lower - std::max(most, 0.0), std::max(least, 0.0) - upper, 0.0});
-  const bool is_error = by > error;
+  const double floor = of_ray ? -std::numeric_limits<double>::infinity() : 0;
+  const double by = std::max({lower - std::max(most, floor), std::max(least, floor) - upper, 0.0});
+  const bool is_error = by > error && !(of_ray && most >= possible && least <= sure);
   worsen(out.answer, is_error ? Judgement::wrong : by > 0 ? Judgement::undecidable : Judgement::right);
   if (!is_error) return;
   const auto number = [](double x) { return io::number_text(x, 9); };

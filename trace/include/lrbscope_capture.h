@@ -545,9 +545,14 @@ void lrbcap_open(const char* engine, const char* path, lrbcap_sink sink, void* u
 void lrbcap_every(uint64_t n) {
   const void* parts[1];
   uint64_t sizes[1];
+  const int changes = n > 1 || lrbcap_g.every > 1;
+  if (lrbcap_load(&lrbcap_g.queries)) {
+    lrbcap_warn("has no effect after the first query", "LRBCAP_EVERY");
+    return;
+  }
   lrbcap_g.every = n > 1 ? n : 1;
   parts[0] = &lrbcap_g.every, sizes[0] = sizeof lrbcap_g.every;
-  if (n > 1) lrbcap_gather("RATE", parts, sizes, 1);
+  if (changes) lrbcap_gather("RATE", parts, sizes, 1);
 }
 
 void lrbcap_close(void) {
@@ -737,9 +742,11 @@ uint32_t lrbcap_begin(uint32_t kind, uint32_t tree_a, const double* pose_a, uint
   }
   query = LRBCAP_CAST(uint32_t, lrbcap_add(&lrbcap_g.queries, 1)) + 1;
   if (query < lrbcap_g.first || query > lrbcap_g.last) return 0;
-  if (lrbcap_g.every > 1) { /* a hash of the number of its group chooses the query (Knuth, section 6.4) */
-    const uint64_t group = (query - 1) / lrbcap_g.every, place = (query - 1) % lrbcap_g.every;
-    if (((group * 0x9E3779B97F4A7C15u) >> 32) % lrbcap_g.every != place) return 0;
+  if (lrbcap_g.every > 1) { /* a hash of the number of its group chooses the query (splitmix64: Steele et al. 2014) */
+    uint64_t hash = ((query - 1) / lrbcap_g.every + 1) * 0x9E3779B97F4A7C15u;
+    hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9u;
+    hash = (hash ^ (hash >> 27)) * 0x94D049BB133111EBu;
+    if ((hash ^ (hash >> 31)) % lrbcap_g.every != (query - 1) % lrbcap_g.every) return 0;
   }
   s = lrbcap_enter(query);
   if (!s) return 0;

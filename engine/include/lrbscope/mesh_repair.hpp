@@ -103,12 +103,13 @@ struct WeldedCorners {
 };
 
 /// Closes the slits between nearly coincident vertices of open edges of a 3D mesh: moves each such vertex to
-/// the first one within `distance` (the mesh's unit) that no open edge joins to it, and merges the two as
-/// join_corners() does. All other vertices keep their coordinates, and faces keep their numbers.
+/// one with a smaller number within `distance` (the mesh's unit) that no open edge joins to it, and merges
+/// the two as join_corners() does. All other vertices keep their coordinates, and faces keep their numbers.
 ///
-/// Throws InputError if the distance is not above 0, or if the result has a fault that the mesh did not have:
-/// a face that loses its area or a corner, two equal faces, an edge with more than two faces, inconsistent
-/// orientation, or a face that begins to intersect another one (exact).
+/// Throws InputError if the distance is not above 0 or exceeds the size of all open edges, or if the result
+/// has more of a fault than the mesh: faces without area, with a repeated corner, equal or folded faces,
+/// edges with more than two faces, inconsistent orientation, or a face that intersects others and did not
+/// before (exact).
 CheckedMesh weld_corners(const CheckedMesh& mesh, double distance, WeldedCorners& done);
 
 }  // namespace lrb
