@@ -336,7 +336,7 @@ struct Probes {
     capture::Probe out{shape, {}};
     auto& n = out.numbers;
     for (double& x : n) x = 1.4 * static_cast<double>(random() >> 11) * 0x1p-53 - 0.2;
-    n[6] = std::max(n[6] - 1, 0.0), n[7] = n[7] < 0.5 ? std::numeric_limits<double>::infinity() : n[6] + n[7];
+    n[6] -= 1, n[7] = n[7] < 0.5 ? std::numeric_limits<double>::infinity() : n[6] + n[7];
     for (std::size_t k = 0; k < 3; ++k)
       n[k + 3] = shape == ProbeShape::ray ? n[k + 3] - n[k] : n[k] + std::abs(n[k + 3]) / 2;
     return out;
@@ -371,6 +371,7 @@ TEST_CASE("Rays, points and boxes hit the triangles that an independent test fin
         std::copy_n(corners_of(posed, round % 60)[1].data(), 3, probe.numbers.data());
       if (shape == ProbeShape::box && round % 9 == 1)  // around everything
         probe.numbers = {-9, -9, -9, 9, 9, 9};
+      if (shape == ProbeShape::ray && round % 7 == 1) probe.numbers[6] = -1e20;  // nearly a line
       const QueryVerdict v = verdict_of(s.ask(probe, {}, tilted()), all++, Precision::float32);
       CHECK(v.outcome != Judgement::wrong);
       hits[static_cast<std::size_t>(shape)] += v.exact_pairs;
@@ -443,6 +444,15 @@ TEST_CASE("The faults of a ray tracer are named by node and triangle; its first 
       q.value = {distance + wrong, distance + wrong + (distance > 0 ? 2 : 0)};
       CHECK((verdict_of(s.engine.capture, q.number - 1).outcome == Judgement::wrong) == (wrong > 0));
     }
+  // A multiple below 0: the origin is behind the triangles.
+  capture::Probe behind = ray;
+  for (std::size_t k = 0; k < 3; ++k) behind.numbers[k] += 10 * ray.numbers[k + 3];
+  behind.numbers[6] = -100;
+  for (const double wrong : {0.0, 0.1}) {
+    capture::Query& q = s.ask(behind, how).queries.back();
+    q.value = {hits.begin()->first - 10 + wrong, hits.begin()->first - 10 + wrong};
+    CHECK((verdict_of(s.engine.capture, q.number - 1).outcome == Judgement::wrong) == (wrong > 0));
+  }
   // A node whose box is elsewhere.
   auto& volumes = s.engine.capture.trees[s.tree].volumes;
   const std::uint32_t f = hits.begin()->second, leaf = TreeIndex(s.engine.capture.trees[s.tree], 60).leaf[f];
