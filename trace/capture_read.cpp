@@ -212,15 +212,15 @@ class Reader : public Descriptions {
     std::copy_n(all.begin(), n.size(), n.begin());
     const bool is_ray = shape == 1, is_box = shape == 3;
     // Squares and sums of larger numbers overflow.
-    constexpr double kMost = 1e150;
-    bool valid = std::all_of(n.begin(), n.end() - is_ray, [&](double x) { return std::abs(x) <= kMost; });
+    constexpr double kMax = 1e150;
+    bool valid = std::all_of(n.begin(), n.end() - is_ray, [&](double x) { return std::abs(x) <= kMax; });
     if (is_ray) valid = valid && (n[3] != 0 || n[4] != 0 || n[5] != 0) && n[6] <= n[7];
     for (std::size_t k = 0; is_box && k < 3; ++k) valid = valid && n[k] <= n[k + 3];
     if (!valid) {
       std::string found;
       for (const double x : n) found += ' ' + io::number_text(x);
       fail(
-          "expected numbers of at most 1e150, of a ray a direction and a range of its multiples, which may be endless, of "
+          "expected finite numbers of at most 1e150, of a ray a direction and a range of its multiples, which may be endless, of "
           "a box least and greatest x, y, z, found" +
           found + "; give those of the engine");
     }
