@@ -84,12 +84,13 @@ void for_each_near_pair(const Mesh& mesh, const OpenKeys& open, std::span<const 
   }
 }
 
-/// The ends of open edges, ascending, and the edges themselves.
+/// The ends of open edges of usable faces, ascending, and the edges themselves.
 struct OpenCorners {
   OpenKeys keys;
   std::vector<VertexId> corners;
-  explicit OpenCorners(const std::vector<OpenEdge>& edges) {
+  OpenCorners(const std::vector<OpenEdge>& edges, const std::vector<FaceUse>& use) {
     for (const OpenEdge& e : edges) {
+      if (use[e.face] < FaceUse::points) continue;
       keys.insert(seam_key(e.from, e.to));
       corners.insert(corners.end(), {e.from, e.to});
     }
@@ -115,7 +116,7 @@ void check_seams(const Mesh& mesh, const std::vector<FaceUse>& use, std::vector<
                  MeshReport& report) {
   std::erase_if(edges, [&](const OpenEdge& e) { return use[e.face] < FaceUse::points; });
   if (edges.empty()) return;
-  auto [open, corners] = OpenCorners(edges);
+  auto [open, corners] = OpenCorners(edges, use);
   Box box;
   for (const VertexId v : corners) box.extend(mesh.vertices[v]);
   const double diagonal = box.isEmpty() ? 0 : norm3(box.diagonal());
@@ -134,7 +135,7 @@ CheckedMesh weld_corners(const CheckedMesh& mesh, double distance, WeldedCorners
   if (mesh.mesh().dim != 3)
     throw InputError(mesh.mesh().name + ": expected a 3D mesh to weld, found a 2D one");
   Mesh out = mesh.mesh();
-  const OpenCorners open(mesh.topology().open_edges);
+  const OpenCorners open(mesh.topology().open_edges, mesh.use());
   Box box;
   for (const VertexId v : open.corners) box.extend(out.vertices[v]);
   const double most = std::min(box.isEmpty() ? kMaxDiagonal : norm3(box.diagonal()), kMaxDiagonal);
