@@ -282,7 +282,7 @@ void PriceBook::price_distance(const QueryWalk& walk, std::span<const TrianglePa
     distance = std::numeric_limits<double>::infinity();
     for (const TrianglePair& pair : exact) distance = std::min(distance, hit_of(query, mesh, pair.a)[1]);
     std::erase_if(closest, [&](const TrianglePair& pair) {
-      return hit_of(query, mesh, pair.a)[0] > distance * (1 + kRounding);
+      return hit_of(query, mesh, pair.a)[0] > distance + kRounding * std::abs(distance);
     });
   } else if (closest.empty() && !of_ray) {
     DistanceRequest request;
@@ -339,9 +339,7 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
   // A ray up to its first hit.
   const bool is_cut = distance && is_first_hit(walk.query());
   capture::Tree cut = is_cut ? of_b.tree() : capture::Tree();
-  if (is_cut)
-    for (double& x : cut.volumes)
-      if (x > 0) x *= *distance / bodies_.mesh_of(walk.trees()[1]).vertices[1].x();
+  if (is_cut) set_segment(cut, bodies_.mesh_of(walk.trees()[1]).vertices[0].x(), *distance);
   const Volumes up_to_hit(cut);
   std::uint64_t known = 0;
   for (const std::uint32_t i : walk.from_root()) {

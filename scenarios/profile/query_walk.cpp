@@ -112,6 +112,14 @@ double ray_unit(const capture::Query& query) {
 
 }  // namespace
 
+void set_segment(capture::Tree& tree, double begin, double end) {
+  const bool is_round = tree.volume == capture::VolumeKind::rss;
+  const double length = end - begin;
+  tree.volumes.assign(is_round ? 10 : 12, 0);
+  tree.volumes[0] = is_round ? begin : begin + length / 2;
+  tree.volumes[3] = is_round ? length : length / 2;
+}
+
 ProbeBody probe_body(const capture::Query& query, const capture::Tree& tree, double reach) {
   ProbeBody out;
   const bool is_round = tree.volume == capture::VolumeKind::sphere || tree.volume == capture::VolumeKind::rss;
@@ -146,9 +154,7 @@ ProbeBody probe_body(const capture::Query& query, const capture::Tree& tree, dou
   out.mesh.triangles = {{0, 1, 2}};
   // A volume of the same kind as those of A if these are rounded, for the test of both.
   out.tree.volume = is_round ? capture::VolumeKind::rss : capture::VolumeKind::obb;
-  out.tree.volumes.assign(is_round ? 10 : 12, 0);
-  out.tree.volumes[3] = is_round ? length : length / 2;
-  out.tree.volumes[0] = is_round ? begin : begin + length / 2;
+  set_segment(out.tree, begin, end);
   return out;
 }
 

@@ -141,6 +141,8 @@ struct ProbeBody {
   capture::Mesh mesh;
   capture::Tree tree;  ///< without the index of its mesh
 };
+/// Makes the volume of a ray's tree, an OBB or RSS, the part of its x axis from `begin` to `end`.
+void set_segment(capture::Tree& tree, double begin, double end);
 /// Returns the probe of a query of `tree`, no vertex of whose mesh is farther than `reach` from the origin of
 /// the mesh. A ray that goes on beyond them ends at a power of two, so that most rays are the same body.
 ProbeBody probe_body(const capture::Query& query, const capture::Tree& tree, double reach);

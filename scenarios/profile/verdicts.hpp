@@ -8,7 +8,7 @@
 /// - self: the pairs of triangles without a common vertex, as all pairs. Engines differ about neighbours, so
 ///   neither these nor the number of pairs are compared.
 /// - distance: the verdict, and the distance if it was recorded.
-/// - rays, points and boxes as above. They hit triangles with a common point, a box as a solid. With
+/// - rays, points and boxes as above. They hit triangles with a common point; a box is a solid. With
 /// distance,
 ///   no hit of a ray may be before the first one found; the distance is the multiple of its direction there.
 /// - first contact: the bodies must not be called separate if they intersect at the poses of the query, where

@@ -452,6 +452,9 @@ TEST_CASE("The faults of a ray tracer are named by node and triangle; its first 
     capture::Query& q = s.ask(behind, how).queries.back();
     q.value = {hits.begin()->first - 10 + wrong, hits.begin()->first - 10 + wrong};
     CHECK((verdict_of(s.engine.capture, q.number - 1).outcome == Judgement::wrong) == (wrong > 0));
+    const Prices same = priced(q.number - 1);
+    CHECK(std::array{same.needed, same.volumes, same.order} ==
+          std::array{whole.needed, whole.volumes, whole.order});
   }
   // A node whose box is elsewhere.
   auto& volumes = s.engine.capture.trees[s.tree].volumes;
