@@ -11,39 +11,32 @@
 
 namespace lrb::python {
 
-/// Version of what pickles have. Increase it when a class that can be pickled gets other members.
-inline constexpr int kPickleVersion = 1;
-
 /// Calls visit(members...) for a record without bases.
 template <class Record, class Visit>
 void with_members(Record& record, const Visit& visit) {
   constexpr std::size_t n = lrb::detail::member_count<Record>();
-  if constexpr (n == 2) {
-    auto& [a, b] = record;
-    visit(a, b);
-  } else if constexpr (n == 3) {
-    auto& [a, b, c] = record;
-    visit(a, b, c);
-  } else if constexpr (n == 5) {
-    auto& [a, b, c, d, e] = record;
-    visit(a, b, c, d, e);
-  } else if constexpr (n == 7) {
-    auto& [a, b, c, d, e, f, g] = record;
-    visit(a, b, c, d, e, f, g);
-  } else if constexpr (n == 9) {
-    auto& [a, b, c, d, e, f, g, h, i] = record;
-    visit(a, b, c, d, e, f, g, h, i);
-  } else if constexpr (n == 11) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k] = record;
-    visit(a, b, c, d, e, f, g, h, i, j, k);
-  } else if constexpr (n == 13) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = record;
-    visit(a, b, c, d, e, f, g, h, i, j, k, l, m);
-  } else {
-    static_assert(n == 16, "add a line for this number of members");
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = record;
-    visit(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q);
+  static_assert(2 <= n && n <= 16, "add a line for this number of members");
+#define LRB_MEMBERS(N, ...)       \
+  if constexpr (n == N) {         \
+    auto& [__VA_ARGS__] = record; \
+    visit(__VA_ARGS__);           \
   }
+  LRB_MEMBERS(2, a, b);
+  LRB_MEMBERS(3, a, b, c);
+  LRB_MEMBERS(4, a, b, c, d);
+  LRB_MEMBERS(5, a, b, c, d, e);
+  LRB_MEMBERS(6, a, b, c, d, e, f);
+  LRB_MEMBERS(7, a, b, c, d, e, f, g);
+  LRB_MEMBERS(8, a, b, c, d, e, f, g, h);
+  LRB_MEMBERS(9, a, b, c, d, e, f, g, h, i);
+  LRB_MEMBERS(10, a, b, c, d, e, f, g, h, i, j);
+  LRB_MEMBERS(11, a, b, c, d, e, f, g, h, i, j, k);
+  LRB_MEMBERS(12, a, b, c, d, e, f, g, h, i, j, k, l);
+  LRB_MEMBERS(13, a, b, c, d, e, f, g, h, i, j, k, l, m);
+  LRB_MEMBERS(14, a, b, c, d, e, f, g, h, i, j, k, l, m, q);
+  LRB_MEMBERS(15, a, b, c, d, e, f, g, h, i, j, k, l, m, q, o);
+  LRB_MEMBERS(16, a, b, c, d, e, f, g, h, i, j, k, l, m, q, o, p);
+#undef LRB_MEMBERS
 }
 
 /// Appends values to bytes, or reads them back: all members of records that own memory, unless there is a
@@ -54,10 +47,10 @@ class Archive {
   Archive() = default;  ///< for writing
   /// For reading a pickle's state. Throws InputError for one of another version of lrbscope.
   explicit Archive(const py::tuple& state);
-  py::tuple state() const;
+  py::tuple state();
   bool reads() const { return reads_; }
-  /// Throws InputError if a state has more than was read.
-  void check_end() const;
+  /// Throws InputError if a state has more than was read, or is of classes with other members.
+  void check_end();
 
   template <class... Values>
   void operator()(Values&... values) {
@@ -67,6 +60,7 @@ class Archive {
  private:
   template <class Value>
   void one(Value& value) {
+    layout_ = layout_ * 31 + sizeof(Value);
     if constexpr (requires { members(*this, value); }) {
       members(*this, value);
     } else if constexpr (std::is_trivially_destructible_v<Value>) {
@@ -97,6 +91,7 @@ class Archive {
 
   std::string all_;
   std::size_t next_ = 0;
+  std::size_t layout_ = 0;  ///< hash of the sizes of all values
   bool reads_ = false;
 };
 

@@ -16,14 +16,14 @@ py::object parsed_json(const std::string& json) {
 }
 
 Archive::Archive(const py::tuple& state) : reads_(true) {
-  const py::tuple expected = this->state();
-  if (state.size() != 3 || !state[0].equal(expected[0]) || !state[1].equal(expected[1]))
+  if (state.size() != 2 || !py::object(state[0]).equal(py::str(trace::lrbscope_version())))
     throw InputError("the pickle comes from another version of lrbscope; pickle the object again");
-  all_ = state[2].cast<std::string>();
+  all_ = state[1].cast<std::string>();
 }
 
-py::tuple Archive::state() const {
-  return py::make_tuple(trace::lrbscope_version(), kPickleVersion, py::bytes(all_));
+py::tuple Archive::state() {
+  bytes(reinterpret_cast<char*>(&layout_), sizeof layout_);
+  return py::make_tuple(trace::lrbscope_version(), py::bytes(all_));
 }
 
 void Archive::bytes(char* at, std::size_t n) {
@@ -40,8 +40,11 @@ void Archive::check(std::size_t n) const {
   if (n > all_.size() - next_) throw InputError("the pickle is damaged: it ends early");
 }
 
-void Archive::check_end() const {
-  if (next_ != all_.size()) throw InputError("the pickle is damaged: it does not end where it should");
+void Archive::check_end() {
+  std::size_t written = 0;
+  bytes(reinterpret_cast<char*>(&written), sizeof written);
+  if (written != layout_ || next_ != all_.size())
+    throw InputError("the pickle is damaged, or of another build of lrbscope; pickle the object again");
 }
 
 std::size_t checked_index(const py::object& i, std::size_t n) {
