@@ -141,6 +141,9 @@ struct PosedQuestion : PosedFiles {
     return bodies::load_faces_of_two(a, b, corners);
   }
   static bool has_picture(const auto&) { return true; }
+  static auto picture(const auto& answer, const auto& bodies, const render::Look& look) {
+    return pictures::picture_of(answer, bodies, look);
+  }
 };
 
 template <class Q>

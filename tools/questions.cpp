@@ -67,9 +67,6 @@ struct DistanceQuestion : PosedQuestion {
     us(w);
   }
 
-  static auto picture(const DistanceResult& result, const PosedBodies& p, const render::Look& look) {
-    return pictures::picture_of(result, p, look);
-  }
   std::optional<report::Gnuplot> chart() const {
     return bounds_chart(reported.history, "distance", kWorkOfDistance);
   }
@@ -283,9 +280,6 @@ struct ClashQuestion : PosedQuestion {
     if (table) print(report::in_columns(rows, rows[0].size()));
   }
 
-  static auto picture(const ClashResult& result, const PosedBodies& p, const render::Look& look) {
-    return pictures::picture_of(result, p, look);
-  }
   std::optional<report::Gnuplot> chart() const {
     if (history().empty()) return std::nullopt;
     return reported.of_depth.empty()
