@@ -102,7 +102,7 @@ struct NearQuestion : PosedQuestion {
   }
 
   static void write(JsonWriter& w, const NearPairsResult& result, const PosedBodies& p, const auto& us) {
-    w.member("found", result.found);
+    for (const auto& n : NearPairsNumbers::kShown) w.member(n.name, result.*n.member);
     us(w);
     w.key("pairs").begin_array();
     for (const NearPair& pair : result.pairs) {
@@ -188,11 +188,10 @@ std::string interval_text(const std::optional<ProvedInterval>& interval) {
   if (!interval) return "-";
   std::ostringstream out;
   out << std::setprecision(9);
-  if (interval->upper - interval->lower <= 1e-9 * interval->upper) {
+  if (interval->upper - interval->lower <= 1e-9 * interval->upper)
     out << interval->upper;
-  } else {
+  else
     out << std::setprecision(6) << interval->lower << " .. " << interval->upper;
-  }
   return out.str();
 }
 

@@ -65,7 +65,9 @@ void members(auto& io, Is<MeasuredClash> auto& m) {
 
 void members(auto& io, Is<MeasuredNearPairs> auto& m) {
   io.member("within", m.within);
-  io.member("pairs", m.pairs);
+  for (const auto& n : NearPairsNumbers::kShown)
+    n.required ? io.member(n.in_traces, m.*n.member)
+               : io.member_unless(std::uint64_t{0}, n.in_traces, m.*n.member);
   io.rows("nearest", m.nearest, 10, "10 numbers", [](auto& row, auto& p) {
     row.cell(p.a);
     row.cell(p.b);

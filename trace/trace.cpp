@@ -54,7 +54,7 @@ MeasuredClash measured(const ClashResult& result, std::vector<Bounds> history) {
 }
 
 MeasuredNearPairs measured(const NearPairsResult& result, double within) {
-  MeasuredNearPairs out{within, result.found, {}};
+  MeasuredNearPairs out{result, within, {}};
   std::vector<NearPair> nearest(std::min(MeasuredNearPairs::kMaxListed, result.pairs.size()));
   // Ties are resolved by the order of pairs, so that the list is reproducible.
   std::partial_sort_copy(result.pairs.begin(), result.pairs.end(), nearest.begin(), nearest.end(),
@@ -122,7 +122,7 @@ std::string to_text(const MeasuredClash& m) {
 }
 
 std::string to_text(const MeasuredNearPairs& m) {
-  std::string out = std::to_string(m.pairs) + " pairs within " + digits(m.within);
+  std::string out = std::to_string(m.found) + " pairs within " + digits(m.within);
   if (!m.nearest.empty())
     out += ", nearest [" + digits(m.nearest[0].lower) + ", " + digits(m.nearest[0].upper) + "]";
   return out;

@@ -493,7 +493,9 @@ class TraceWriter {
     const StepResult& r = t_.steps[t_.step_of(i)].result;
     if (r.distance) write_history("distance", i, 0, r.distance->history);
     if (r.clash) write_history("depth", i, 0.5, r.clash->history);
-    if (r.near) write_count("near pairs", i, "pairs", r.near->pairs);
+    if (r.near)
+      for (const auto& n : NearPairsNumbers::kShown)
+        write_count(n.on_pages, i, n.in_traces, (*r.near).*n.member);
     if (r.manifold) write_count("manifold points", i, "points", r.manifold->found);
     if (r.points) write_count("points inside", i, "points", r.points->inside);
   }

@@ -313,7 +313,7 @@ void near_pairs_into(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
   check_query(a, pose_a, b, pose_b);
   check_request(request);
   result.pairs.clear();
-  result.found = 0;
+  static_cast<NearPairsNumbers&>(result) = {};
   result.counters = {};
   if (a.tree().empty() || b.tree().empty()) return;
   if (rotation_defect(pose_a.r) <= kMaxDefect &&

@@ -20,7 +20,7 @@ struct NearPairs : NearPairsResult {
   std::vector<std::array<FaceId, 2>> faces;
 };
 void members(Archive& archive, NearPairs& x) {
-  archive(static_cast<NearPairsResult&>(x), x.faces);
+  archive(static_cast<NearPairsNumbers&>(x), x.pairs, x.counters, x.faces);
 }
 
 NearPairs near_pairs(const Given& given) {
@@ -44,9 +44,8 @@ void bind_near_pairs(py::module_& m) {
       m, "NearPairs",
       R"(Pairs of triangles (2D: segments) within a distance: arrays with a row for each pair. Made by near_pairs().)");
   const auto of_pair = rows_of(c, "pairs", &NearPairs::pairs);
-  property(c, "found",
-           "int: number of all pairs within the distance; more than len() if `nearest` was given.",
-           &NearPairs::found);
+  for (const auto& n : NearPairsNumbers::kShown)
+    property(c, n.name, (std::string("int: ") + n.meaning + ".").c_str(), n.member);
   of_pair("triangles", "(n, 2) uint32: a triangle of A and one of B.", kPairOf);
   property(c, "faces", "(n, 2) uint32: the faces of these triangles.", &NearPairs::faces);
   of_pair("meet", "(n,) uint8: 0 disjoint, 1 touch, 2 cross.", &NearPair::meet);

@@ -190,7 +190,7 @@ void write_step(JsonWriter& w, const CrowdStep& step, std::size_t index, std::si
     }
     if (q.result.near) {
       w.key("near").begin_object();
-      w.member("within", q.result.near->within).member("pairs", q.result.near->pairs).end_object();
+      w.member("within", q.result.near->within).member("pairs", q.result.near->found).end_object();
     }
     w.end_object();
   }

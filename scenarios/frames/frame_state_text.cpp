@@ -190,7 +190,7 @@ std::string FrameState::node_pair_text(const trace::Event& e) {
 }
 
 std::string text_of(const trace::MeasuredNearPairs& near) {
-  return render::counted(near.pairs, "pair", "pairs") + " of faces within " +
+  return render::counted(near.found, "pair", "pairs") + " of faces within " +
          render::short_number(near.within);
 }
 

@@ -48,9 +48,11 @@ void add_measured(const trace::StepResult& r, std::vector<report::Number>& out) 
                    std::string("of the surfaces, proven") +
                        (r.distance->solids_meet && r.distance->upper > 0 ? ". The solids overlap" : "")});
   if (r.near)
-    out.push_back(
-        {"Near pairs", render::group_digits(r.near->pairs),
-         "pairs of triangles at most " + render::short_number(r.near->within) + " apart, none missed"});
+    for (const auto& n : NearPairsNumbers::kShown) {
+      out.push_back({n.on_pages, render::group_digits((*r.near).*n.member),
+                     "within a distance of " + render::short_number(r.near->within)});
+      out.back().label[0] += 'A' - 'a';
+    }
   if (r.manifold)
     out.push_back({"Contact manifolds", render::group_digits(r.manifold->manifolds),
                    render::counted(r.manifold->found, "point", "points")});
@@ -314,7 +316,8 @@ report::Table steps_table(const trace::Trace& trace) {
   measured("depth", &StepResult::clash, [](const auto& c) {
     return c.depth ? pictures::interval_text((*c.depth)[0], (*c.depth)[1]) : "";
   });
-  measured("near pairs", &StepResult::near, [](const auto& n) { return group_digits(n.pairs); });
+  for (const auto& n : NearPairsNumbers::kShown)
+    measured(n.on_pages, &StepResult::near, [&](const auto& m) { return group_digits(m.*n.member); });
   measured("contact manifolds", &StepResult::manifold,
            [](const auto& m) { return group_digits(m.manifolds); });
   measured("points", &StepResult::manifold, [](const auto& m) { return group_digits(m.found); });

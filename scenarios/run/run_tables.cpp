@@ -74,7 +74,6 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     {"contact kind", "clash class of the contact"},
     {"points inside", "points of B inside A"},
     {"smallest distance", "of the points of B to A, negative inside A"},
-    {"near pairs", "pairs of triangles closer than the requested distance"},
     {"contact manifolds", "groups of contact points with one normal"},
     {"points", "contact points of all manifolds, before reduction"},
     {"nodes", "nodes of the tree at this depth"},
@@ -130,6 +129,8 @@ std::string_view meaning_of_column(std::string_view name) {
   for (const std::string_view key : {name, std::string_view(column)})
     for (const auto& [entry, meaning] : kMeaningOfNames)
       if (entry == key) return meaning;
+  for (const auto& n : NearPairsNumbers::kShown)
+    if (n.on_pages == column) return n.meaning;
   return {};
 }
 

@@ -56,7 +56,7 @@ inline auto content(const CollideResult& x) {
                     x.finished, x.separation, content(x.regions), x.contacts.size(), x.counters);
 }
 inline auto content(const NearPairsResult& x) {
-  return std::tuple(content(x.pairs), x.found, x.counters);
+  return std::tuple(content(x.pairs), static_cast<const NearPairsNumbers&>(x), x.counters);
 }
 inline auto content(const ManifoldResult& x) {
   return std::tuple(content(x.pairs), content(x.manifolds), x.next_id);

@@ -98,7 +98,7 @@ void change(Value& value) {
                           {{1, 0.1, 0.5}},
                           false};
   else if constexpr (std::is_same_v<Value, std::optional<MeasuredNearPairs>>)
-    value = MeasuredNearPairs{0.5, 3, {{7, 8, 0.25, 0.375, {{{1, -2, 3}, {4, 5, 6}}}}}};
+    value = MeasuredNearPairs{{3}, 0.5, {{7, 8, 0.25, 0.375, {{{1, -2, 3}, {4, 5, 6}}}}}};
   else if constexpr (std::is_same_v<Value, std::optional<MeasuredManifolds>>)
     value = MeasuredManifolds{0.5, 2, 3, {{1ULL << 33, 1, -0.25, {0, 0, 1}, {{{1, -2, 3}, {4, 5, 6}}}}}};
   else if constexpr (std::is_same_v<Value, std::optional<MeasuredPoints>>)

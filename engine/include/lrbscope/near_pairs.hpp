@@ -52,10 +52,23 @@ struct NearPairsCounters {
   friend bool operator==(const NearPairsCounters&, const NearPairsCounters&) = default;
 };
 
-struct NearPairsResult {
+/// The numbers of the answer, with all that lines, Python, traces and pages show of them.
+struct NearPairsNumbers {
+  std::uint64_t found = 0;
+
+  struct Shown {
+    const char *name, *in_traces, *on_pages, *meaning;
+    std::uint64_t NearPairsNumbers::*member;
+    bool required;  ///< in traces; other numbers are written unless they are 0
+  };
+  static constexpr Shown kShown[] = {{"found", "pairs", "near pairs",
+                                      "all pairs of triangles within the distance, listed or not",
+                                      &NearPairsNumbers::found, true}};
+  friend bool operator==(const NearPairsNumbers&, const NearPairsNumbers&) = default;
+};
+
+struct NearPairsResult : NearPairsNumbers {
   std::vector<NearPair> pairs;
-  std::uint64_t found =
-      0;  ///< number of all pairs at most `within` apart; more than listed if `nearest` is set
   NearPairsCounters counters;
 };
 

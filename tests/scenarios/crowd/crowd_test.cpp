@@ -304,7 +304,7 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
         const Pose pose_a = run.motion.pose(i, step), pose_b = run.motion.pose(j2, step);
         const auto pairs = trace::measured(near_pairs(a, pose_a, b, pose_b, near), kWithin);
         if (next == run.steps[step].queries.end() || next->bodies != BodyPair{i, j2}) {
-          CHECK(pairs.pairs == 0);  // no face of the one is near one of the other
+          CHECK(pairs.found == 0);  // no face of the one is near one of the other
           continue;
         }
         const trace::StepResult& r = next->result;
@@ -318,7 +318,7 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
         CHECK(*r.clash == trace::measured(clash(a, pose_a, b, pose_b), {}));
         separate += r.distance->lower > 0;
         deep += r.clash->depth && (*r.clash->depth)[0] > 0;
-        near_by += r.relation == Relation::separate && r.near->pairs > 0;
+        near_by += r.relation == Relation::separate && r.near->found > 0;
       }
     CHECK(next == run.steps[step].queries.end());
   }
@@ -330,7 +330,7 @@ TEST_CASE("distance, clash and near pairs of a crowd are those of each pair of b
   const json first = json::parse(crowd::crowd_summary(crowd, run))["steps"][0]["queries"][0];
   CHECK(first["distance"]["upper"] == run.steps[0].queries[0].result.distance->upper);
   CHECK(first["clash"]["kind"] == std::string(name_of(run.steps[0].queries[0].result.clash->kind)));
-  CHECK(first["near"]["pairs"] == run.steps[0].queries[0].result.near->pairs);
+  CHECK(first["near"]["pairs"] == run.steps[0].queries[0].result.near->found);
   const spec::Scenario pair = crowd::scenario_of_pair(crowd, run.motion, {0, 1});
   CHECK(pair.more.clash);
   CHECK(pair.more.near == kWithin);

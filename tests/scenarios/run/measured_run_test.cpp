@@ -147,12 +147,12 @@ TEST_CASE("measured runs: near pairs and contact manifolds of each step are thos
     REQUIRE(step.result.manifold.has_value());
     const trace::MeasuredNearPairs& near = *step.result.near;
     const NearPairsResult all = near_pairs(a, step.pose_a, b, step.pose_b, {.within = 0.6});
-    CHECK(near.pairs == all.found);
+    CHECK(near.found == all.found);
     REQUIRE(near.nearest.size() == std::min(all.pairs.size(), trace::MeasuredNearPairs::kMaxListed));
-    CHECK(near.nearest.empty() == (near.pairs == 0));
+    CHECK(near.nearest.empty() == (near.found == 0));
     for (std::size_t i = 1; i < near.nearest.size(); ++i)
       CHECK(near.nearest[i - 1].lower <= near.nearest[i].lower);
-    near_steps += near.pairs > 0 && step.result.relation == Relation::separate;
+    near_steps += near.found > 0 && step.result.relation == Relation::separate;
     const trace::MeasuredManifolds& found = *step.result.manifold;
     before = contact_manifolds(a, step.pose_a, b, step.pose_b, {.margin = 0.05}, before ? &*before : nullptr);
     CHECK(found == trace::measured(*before, 0.05));

@@ -48,7 +48,7 @@ struct MeasuredClash {
 };
 
 /// A NearPairsResult: the number of pairs, and the nearest of them.
-struct MeasuredNearPairs {
+struct MeasuredNearPairs : NearPairsNumbers {
   struct Pair {
     SimplexId a = kNull, b = kNull;
     double lower = 0, upper = 0;                    ///< bounds of the distance
@@ -58,7 +58,6 @@ struct MeasuredNearPairs {
   };
 
   double within = 0;          ///< the requested distance
-  std::uint64_t pairs = 0;    ///< number of pairs found
   std::vector<Pair> nearest;  ///< at most kMaxListed, by ascending lower bounds
 
   static constexpr std::size_t kMaxListed = 1000;
