@@ -267,12 +267,11 @@ struct ClashQuestion : PosedQuestion {
     const std::string reason(name_of(r.reason));
     std::ostringstream move;
     move << std::setprecision(6) << r.translation.x() << " " << r.translation.y() << " " << r.translation.z();
-    std::vector<std::string>& row = rows.emplace_back();
-    row = {std::to_string(pose),          to_string(r.kind) + (reason.empty() ? "" : ": " + reason),
-           r.shares_faces ? "yes" : "no", interval_text(r.distance),
-           interval_text(r.depth),        r.depth && std::isfinite(r.depth->upper) ? move.str() : "-"};
-    if (request.along) row.push_back(interval_text(r.along));
-    row.push_back(interval_text(r.volume));
+    rows.push_back({std::to_string(pose), to_string(r.kind) + (reason.empty() ? "" : ": " + reason),
+                    r.shares_faces ? "yes" : "no", interval_text(r.distance), interval_text(r.depth),
+                    r.depth && std::isfinite(r.depth->upper) ? move.str() : "-"});
+    if (request.along) rows.back().push_back(interval_text(r.along));
+    rows.back().push_back(interval_text(r.volume));
     return true;
   }
   void end() const {
