@@ -38,6 +38,9 @@ Trace measured_run(Clock clock) {
     ClashHistory clashed;
     const ClashResult kind = clash(ball(), {}, ball(), pose, {}, clashed);
     recorder.add(measured(kind, clashed.of_depth));
+    recorder.add(measured(near_pairs(ball(), {}, ball(), pose, {.within = 0.5}), 0.5));
+    recorder.add(measured(contact_manifolds(ball(), {}, ball(), pose, {.margin = 0.1}), 0.1));
+    recorder.add(measured(point_distances(ball(), {}, std::array{pose.t}), std::array{pose.t}, true));
     recorder.end_step(result);
   }
   Trace trace = recorder.take();
