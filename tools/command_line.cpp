@@ -93,9 +93,12 @@ LRB_OPTION(std::uint32_t)
 LRB_OPTION(std::uint64_t)
 LRB_OPTION(double)
 LRB_OPTION(std::string)
+LRB_OPTION(std::vector<std::uint32_t>)
+LRB_OPTION(std::vector<double>)
 LRB_OPTION(std::vector<std::string>)
 LRB_OPTION(std::optional<int>)
 LRB_OPTION(std::optional<std::uint32_t>)
+LRB_OPTION(std::optional<std::uint64_t>)
 LRB_OPTION(std::optional<double>)
 #undef LRB_OPTION
 template Option* App::add_option_function(const std::string&, const std::function<void(const std::string&)>&,

@@ -5,8 +5,7 @@ namespace lrb::tools {
 
 std::vector<Command> add_commands(App& root, const Globals& globals) {
   std::vector<Command> commands;
-// A command's file defines add_NAME(), which adds the command with its options and returns the function that
-// runs it.
+// A command's file defines add_NAME(), which adds the command and returns the function that runs it.
 #define LRB_COMMAND(NAME)                       \
   Command add_##NAME(App& app, const Globals&); \
   commands.push_back(add_##NAME(root, globals))
