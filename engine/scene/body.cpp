@@ -111,20 +111,37 @@ std::string note_polygons(const LrbRep& rep) {
          "regions; build it again from the mesh";
 }
 
-LrbRep proven(LrbRep rep, std::vector<std::string>& notes) {
-  if (std::string note = note_polygons(rep); !note.empty()) notes.push_back(std::move(note));
-  std::string fault = note_unproven(rep);
-  if (fault.empty()) return rep;
-  notes.push_back(std::move(fault));
-  return LrbRep::without_regions(rep);
-}
-
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes) {
   const std::uint32_t turned = mesh.turn_outward();
   if (turned > 0)
     notes.push_back(mesh.mesh().name + ": flipped " + std::to_string(turned) +
                     (turned == 1 ? " inside-out component" : " inside-out components"));
   return turned;
+}
+
+namespace {
+
+/// Returns the real faces of an LRB-rep if its cells are not proven, else nullopt. Adds notes.
+std::optional<LrbRep> faces_if_unproven(const LrbRep& rep, std::vector<std::string>& notes) {
+  if (std::string note = note_polygons(rep); !note.empty()) notes.push_back(std::move(note));
+  std::string fault = note_unproven(rep);
+  if (fault.empty()) return std::nullopt;
+  notes.push_back(std::move(fault));
+  return LrbRep::without_regions(rep);
+}
+
+}  // namespace
+
+LrbRep proven(LrbRep rep, std::vector<std::string>& notes, std::uint32_t* turned) {
+  if (std::optional<LrbRep> faces = faces_if_unproven(rep, notes)) rep = std::move(*faces);
+  if (rep.region_count() > 0 || !rep.closed()) return rep;
+  // Without regions no proof needs the solid behind each face, but normals and depths of contacts do.
+  CheckedMesh mesh = check(rep.real_mesh());
+  const std::uint32_t count = turn_outward(mesh, notes);
+  if (turned != nullptr) *turned = count;
+  if (count == 0) return rep;
+  return LrbRep::without_regions(LrbRep::without_regions(mesh.mesh(), true, rep.self_intersecting()),
+                                 rep.dropped_fans());
 }
 
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
@@ -150,21 +167,19 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
   }
   // Step 4. Without regions, the body still stores whether it intersects itself.
   notes.push_back(note_without_regions(mesh, turn));
+  const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
   Workers workers(options.threads);
   const bool self_intersecting = !mesh.self_intersecting_faces(workers).empty();
   return {
       LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, self_intersecting, options.threads),
-      std::move(notes)};
+      std::move(notes), 0, turned};
 }
 
 MadeBody make_body_of_faces(CheckedMesh mesh, bool turn, unsigned threads) {
   reject_unless_queryable(mesh);
   std::vector<std::string> notes = notes_on_polygons(mesh);
-  std::uint32_t turned = 0;
-  if (!can_be_built(mesh, turn))
-    notes.push_back(note_without_regions(mesh, turn));
-  else if (turn)
-    turned = turn_outward(mesh, notes);
+  if (!can_be_built(mesh, turn)) notes.push_back(note_without_regions(mesh, turn));
+  const std::uint32_t turned = turn ? turn_outward(mesh, notes) : 0;
   constexpr bool kSelfIntersecting = false;  // self-intersection matters only for regions
   return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kSelfIntersecting, threads),
           std::move(notes), 0, turned};
@@ -300,24 +315,28 @@ Expected<Body> Body::from(Mesh mesh, const BodyOptions& options) try {
 }
 
 Body Body::from(LrbRep rep) {
-  return from(std::make_shared<const LrbRep>(std::move(rep)));
+  std::vector<std::string> notes;
+  std::uint32_t turned = 0;
+  rep = proven(std::move(rep), notes, &turned);
+  add_notes_on(rep, notes);
+  return Body(std::make_shared<const Impl>(
+      Impl{std::make_shared<const LrbRep>(std::move(rep)), std::move(notes), turned}));
 }
 
 Body Body::from(std::shared_ptr<const LrbRep> rep) {
-  // An LRB-rep from elsewhere is not trusted: if the proof of its cells fails, only its real faces are kept.
   std::vector<std::string> notes;
-  if (std::string note = note_polygons(*rep); !note.empty()) notes.push_back(std::move(note));
-  if (std::string fault = note_unproven(*rep); !fault.empty()) {
-    notes.push_back(std::move(fault));
-    rep = std::make_shared<const LrbRep>(LrbRep::without_regions(*rep));
-  }
+  if (std::optional<LrbRep> faces = faces_if_unproven(*rep, notes))
+    rep = std::make_shared<const LrbRep>(std::move(*faces));
   add_notes_on(*rep, notes);
   return Body(std::make_shared<const Impl>(Impl{std::move(rep), std::move(notes), 0}));
 }
 
 Expected<Body> Body::load(const std::string& path, const BodyOptions& options) try {
   // By content, not by extension.
-  if (is_lrb_file(path)) return from(load_lrb(path));
+  if (is_lrb_file(path)) {
+    LrbRep rep = load_lrb(path);
+    return options.turn ? from(std::move(rep)) : from(std::make_shared<const LrbRep>(std::move(rep)));
+  }
   Mesh mesh = read_mesh(path);
   std::vector<std::string> notes;
   if (options.join)

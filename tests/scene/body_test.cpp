@@ -9,6 +9,7 @@
 #include "tests/support/folder.hpp"
 #include <lrbscope/body.hpp>
 #include <lrbscope/collide.hpp>
+#include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
@@ -110,6 +111,25 @@ TEST_CASE("inward-oriented bodies are flipped with a note, or kept on request") 
   CHECK(left.rep().face(0)[1] == mesh.face(0)[1]);
   CHECK(!left.has_regions());
   CHECK(left.notes()[0].find("a component is inside out") != std::string::npos);
+
+  // Normals and depths of contacts of LRB-reps without regions, and of meshes with a fault, depend on it,
+  // too.
+  const LrbRep inward = LrbRep::without_regions(mesh, true, false);
+  const test::Folder folder;
+  save_lrb(inward, folder / "inward.lrb");
+  Mesh faulty = mesh;
+  faulty.add_face(std::array<VertexId, 3>{0, 0, 1});
+  BodyOptions plain;
+  plain.regions = false;
+  for (const Body& body : {Body::from(inward), Body::load(folder / "inward.lrb").value(),
+                           Body::from(faulty).value(), Body::from(faulty, plain).value()}) {
+    CHECK(body.turned() == 1);
+    const ManifoldResult found = contact_manifolds(body, {}, turned, Pose::translation({0.75, 0.25, 0.25}));
+    REQUIRE(found.manifolds.size() == 1);
+    CHECK(found.manifolds[0].points[0].depth == 0.25);
+  }
+  CHECK(Body::load(folder / "inward.lrb", options).value().rep().face(0)[1] == mesh.face(0)[1]);
+  CHECK(Body::from(std::make_shared<const LrbRep>(inward)).turned() == 0);
 }
 
 TEST_CASE("an open mesh is a body with a note on unavailable queries") {

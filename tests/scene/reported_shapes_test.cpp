@@ -90,21 +90,6 @@ TEST_CASE("an outline with a bridge to a hole is a plate with a hole") {
   CHECK(collide(plate, Pose{}, pin, Pose::translation({1, 0, 0})).relation == Relation::crossing);
 }
 
-TEST_CASE("T-junctions and near vertices are named, from whatever door") {
-  Mesh m;  // a tetrahedron with a vertex on an edge, and two triangles along a slit
-  m.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 1e-8, 0}};
-  for (const auto& f : {std::array{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {1, 2, 3}, {2, 0, 3}})
-    m.add_face(std::array{VertexId(f[0]), VertexId(f[1]), VertexId(f[2])});
-  test::add_loose(m, {{3, 0, 0}, {4, 0, 0}, {3, 1, 0}});
-  test::add_loose(m, {{4 + 1e-9, 0, 0}, {4, 1, 0}, {3, 1 + 1e-9, 0}});
-  for (const Mesh& mesh : {m, read_mesh(test::to_off(m), "m.off"), read_mesh(test::to_ply_ascii(m), "m.ply"),
-                           read_mesh(test::to_stl_ascii(m), "m.stl")}) {
-    const std::string note = body_of(mesh).notes()[0];
-    CHECK(note.find("(T-junction) (1 time): vertex ") != std::string::npos);
-    CHECK(note.find("two vertices of open edges nearly coincide (2 times): vertex ") != std::string::npos);
-  }
-}
-
 TEST_CASE("polygons without triangles that cover them are fans, with a note") {
   std::vector<Eigen::Vector2d> pentagram;
   for (int i = 0; i < 5; ++i)

@@ -60,11 +60,13 @@ class Body {
   /// Creates a body from a mesh. Its name is used, unless it is empty.
   static Expected<Body> from(Mesh mesh, const BodyOptions& options = default_body_options());
 
-  /// Wraps an existing LRB-rep, which may be shared.
+  /// Creates a body from an LRB-rep. Reorients inward-oriented components, with a note, if it has no regions.
   static Body from(LrbRep rep);
+  /// Wraps an existing LRB-rep, which may be shared. Never reorients it.
   static Body from(std::shared_ptr<const LrbRep> rep);
 
-  /// Reads a mesh file as read_mesh() does, or an .lrb file; detected by content.
+  /// Reads a mesh file as read_mesh() does, or an .lrb file; detected by content. Of the options of a build,
+  /// an .lrb file uses `turn` alone.
   static Expected<Body> load(const std::string& path, const BodyOptions& options = default_body_options());
 
   const LrbRep& rep() const { return *impl_->rep; }
@@ -141,7 +143,8 @@ std::string note_unproven(const LrbRep& rep);
 /// LrbRep::folded_faces(), LrbRep::dropped_fans().
 std::string note_polygons(const LrbRep& rep);
 /// Returns the LRB-rep if its cells are proven; otherwise its real faces without regions, and adds that note.
-LrbRep proven(LrbRep rep, std::vector<std::string>& notes);
+/// Of an LRB-rep without regions, reorients inward-oriented components, writes their number and adds a note.
+LrbRep proven(LrbRep rep, std::vector<std::string>& notes, std::uint32_t* turned = nullptr);
 
 /// Reorients inward-oriented components and returns their number. Adds a note if there were any.
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes);
