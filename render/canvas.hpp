@@ -87,7 +87,8 @@ std::string paint_pdf(const PaperPage& page, const std::function<void(Canvas&)>&
 /// Returns the page as pixels, `dpi` per inch; sizes are rounded up to whole pixels.
 Image paint_pixels(const PaperPage& page, double dpi, const std::function<void(Canvas&)>& paint);
 
-/// Escapes text for SVG and HTML, for elements and for quoted attributes.
+/// Escapes text for SVG and HTML, for elements and for quoted attributes. Bytes that are not UTF-8 become
+/// U+FFFD.
 std::string escape_markup(std::string_view text);
 
 /// Returns the outlines of a line of text as the data of an SVG path.

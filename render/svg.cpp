@@ -7,6 +7,7 @@
 #include "render/page_palette.hpp"
 #include "render/paint_list.hpp"
 #include <lrbscope/core/file.hpp>
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
 #include <lrbscope/render/svg.hpp>
@@ -28,7 +29,7 @@ std::string base64(const std::uint8_t* bytes, std::size_t size) {
 
 std::string escape_markup(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : io::valid_utf8(text)) {
     switch (c) {
       case '&':
         out += "&amp;";

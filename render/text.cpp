@@ -8,6 +8,7 @@
 
 #include <dlfcn.h>
 
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
 
@@ -248,22 +249,11 @@ char32_t next_code_point(std::string_view& text) {
   constexpr char32_t kBad = 0xFFFD;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
-  // The first byte determines the length; bytes that cannot start a sequence are replaced one at a time.
-  const std::size_t length = first < 0x80 ? 1 : first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC2 ? 2 : 0;
-  if (length == 0 || length > text.size() || first > 0xF4) {
-    text.remove_prefix(1);
-    return kBad;
-  }
-  char32_t code = length == 1 ? first : first & (0x7F >> length);
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) {
-      text.remove_prefix(i);
-      return kBad;
-    }
-    // Continuation bytes carry six bits each.
-    code = code << 6 | (byte(i) & 0x3F);
-  }
-  text.remove_prefix(length);
+  const std::size_t length = io::utf8_length(text);
+  char32_t code = length == 0 ? kBad : length == 1 ? first : first & (0x7F >> length);
+  // Continuation bytes carry six bits each.
+  for (std::size_t i = 1; i < length; ++i) code = code << 6 | (byte(i) & 0x3F);
+  text.remove_prefix(std::max<std::size_t>(length, 1));  // invalid bytes are replaced one at a time
   return code;
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/trace/json_write.hpp>
 
 namespace lrb::trace {
@@ -27,39 +28,12 @@ void JsonOut::number(float value) {
   floating(value);
 }
 
-namespace {
-
-/// Returns the length of the UTF-8 sequence at the start of `text`, or 0 if it is not valid (RFC 3629: no
-/// surrogates, no overlong forms, nothing beyond U+10FFFF).
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const auto within = [&](std::size_t i, unsigned low, unsigned high) {
-    return i < text.size() && byte(i) >= low && byte(i) <= high;
-  };
-  const unsigned first = byte(0);
-  // ASCII, then sequences of two, three and four bytes. The second byte's range excludes overlong forms and
-  // surrogates.
-  if (first < 0x80) return 1;
-  if (first >= 0xc2 && first <= 0xdf) return within(1, 0x80, 0xbf) ? 2 : 0;
-  if (first >= 0xe0 && first <= 0xef) {
-    const unsigned low = first == 0xe0 ? 0xa0 : 0x80, high = first == 0xed ? 0x9f : 0xbf;
-    return within(1, low, high) && within(2, 0x80, 0xbf) ? 3 : 0;
-  }
-  if (first >= 0xf0 && first <= 0xf4) {
-    const unsigned low = first == 0xf0 ? 0x90 : 0x80, high = first == 0xf4 ? 0x8f : 0xbf;
-    return within(1, low, high) && within(2, 0x80, 0xbf) && within(3, 0x80, 0xbf) ? 4 : 0;
-  }
-  return 0;
-}
-
-}  // namespace
-
 void JsonOut::string(std::string_view text) {
   raw('"');
   while (!text.empty()) {
     const char c = text[0];
     // Invalid bytes become U+FFFD one by one, so the output is always valid UTF-8.
-    const std::size_t length = utf8_length(text);
+    const std::size_t length = io::utf8_length(text);
     if (length == 0) {
       raw("\xef\xbf\xbd");
     } else if (c == '"' || c == '\\') {

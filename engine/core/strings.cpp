@@ -45,6 +45,38 @@ std::string in_words(std::string_view name) {
   return out;
 }
 
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const auto within = [&](std::size_t i, unsigned low, unsigned high) {
+    return i < text.size() && byte(i) >= low && byte(i) <= high;
+  };
+  const unsigned first = byte(0);
+  // ASCII, then sequences of two, three and four bytes. The second byte's range excludes overlong forms and
+  // surrogates.
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first <= 0xdf) return within(1, 0x80, 0xbf) ? 2 : 0;
+  if (first >= 0xe0 && first <= 0xef) {
+    const unsigned low = first == 0xe0 ? 0xa0 : 0x80, high = first == 0xed ? 0x9f : 0xbf;
+    return within(1, low, high) && within(2, 0x80, 0xbf) ? 3 : 0;
+  }
+  if (first >= 0xf0 && first <= 0xf4) {
+    const unsigned low = first == 0xf0 ? 0x90 : 0x80, high = first == 0xf4 ? 0x8f : 0xbf;
+    return within(1, low, high) && within(2, 0x80, 0xbf) && within(3, 0x80, 0xbf) ? 4 : 0;
+  }
+  return 0;
+}
+
+std::string valid_utf8(std::string_view text) {
+  std::string out;
+  for (std::size_t length = 1; !text.empty(); text.remove_prefix(length)) {
+    length = utf8_length(text);
+    const std::string_view code = text.substr(0, length);
+    out += length == 0 || code == "\xef\xbf\xbe" || code == "\xef\xbf\xbf" ? "\xef\xbf\xbd" : code;
+    length = std::max<std::size_t>(length, 1);
+  }
+  return out;
+}
+
 std::string shell_word(const std::string& word) {
   const bool plain = !word.empty() && word.find_first_not_of(
                                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"

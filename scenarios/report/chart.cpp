@@ -89,8 +89,9 @@ std::string gnuplot_data_text(std::string_view text) {
 
 std::string drawn(const Gnuplot& chart, const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  io::Finished finished = io::run_program(
-      {program(), "-"}, "set terminal " + terminal(chart, ending) + "\nset encoding utf8\n" + chart.script);
+  io::Finished finished =
+      io::run_program({program(), "-"}, "set terminal " + terminal(chart, ending) + "\nset encoding utf8\n" +
+                                            io::valid_utf8(chart.script));
   if (!finished.not_started.empty())
     throw EnvironmentError(path + ": there is no program " + program() + kInstall);
   if (finished.code != 0 || finished.output.empty())

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "render/canvas.hpp"
 #include "tests/render/font_guard.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>
@@ -25,10 +26,12 @@ render::PixelRect ink(const render::Image& image) {
 }  // namespace
 
 TEST_CASE("UTF-8 is decoded, and invalid bytes become a replacement mark") {
-  std::string_view text = "aé€\U0001F600\xff\xc3";
+  std::string_view text = "aé€\U0001F600\xff\xed\xa0\x80\xc3";
   std::vector<char32_t> got;
   while (!text.empty()) got.push_back(render::next_code_point(text));
-  CHECK(got == std::vector<char32_t>{U'a', U'é', U'€', U'\U0001F600', 0xFFFD, 0xFFFD});
+  CHECK(got ==
+        std::vector<char32_t>{U'a', U'é', U'€', U'\U0001F600', 0xFFFD, 0xFFFD, 0xFFFD, 0xFFFD, 0xFFFD});
+  CHECK(render::escape_markup("\xe9<\xef\xbf\xbf\x1b") == "\ufffd&lt;\ufffd\\x1b");
 }
 
 TEST_CASE("a text stays within its measured box" * doctest::test_suite("font")) {

@@ -1,6 +1,7 @@
 #pragma once
 /// Locale-independent conversion of numbers to text, and other text helpers.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,14 @@ std::string exact_text(double x);
 
 /// Returns a snake_case name as words: "a_inside_b" as "a inside b".
 std::string in_words(std::string_view name);
+
+/// Returns the length of the UTF-8 sequence at the start of a text, or 0 if it is not valid (RFC 3629: no
+/// surrogates, no overlong forms, nothing beyond U+10FFFF).
+std::size_t utf8_length(std::string_view text);
+
+/// Returns a text in which U+FFFD replaces each byte that is not UTF-8, and U+FFFE and U+FFFF, which XML
+/// forbids.
+std::string valid_utf8(std::string_view text);
 
 /// Quotes a word, if necessary, for use in a shell command line.
 std::string shell_word(const std::string& word);
