@@ -99,15 +99,38 @@ struct OpenCorners {
   }
 };
 
-/// The faults that a weld must not add: all that an edit of corners can cause.
-constexpr MeshFault kOfWelds[] = {MeshFault::repeated_corner,     MeshFault::zero_area_face,
-                                  MeshFault::folded_face,         MeshFault::duplicate_face,
-                                  MeshFault::non_manifold_edge,   MeshFault::flipped_face,
-                                  MeshFault::non_manifold_vertex, MeshFault::inside_out};
+/// The faults that a weld must not add: all that an edit of corners can cause. Whether a component faces
+/// inwards is known only once a weld has closed it.
+constexpr MeshFault kOfWelds[] = {MeshFault::repeated_corner,    MeshFault::zero_area_face,
+                                  MeshFault::folded_face,        MeshFault::duplicate_face,
+                                  MeshFault::non_manifold_edge,  MeshFault::flipped_face,
+                                  MeshFault::non_manifold_vertex};
 
 [[noreturn]] void reject_weld(const Mesh& mesh, double distance, const std::string& what) {
   throw InputError(mesh.name + ": a weld of vertices " + io::number_text(distance) +
                    " apart would spoil it: " + what + "; choose a smaller distance");
+}
+
+/// Returns in words a fault that a welded mesh has at other faces, edges or vertices than the mesh; empty if
+/// there is none.
+std::string added_fault(const Mesh& mesh, const Mesh& welded, MeshFault fault) {
+  MeshFinding before = examine(mesh, kMaxId).report[fault];
+  const MeshFinding after = examine(welded, kMaxId).report[fault];
+  // Vertices that were merged have other numbers in the welded mesh.
+  std::vector<VertexId> became(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.face_vertices.size(); ++i)
+    if (mesh.face_vertices[i] < became.size()) became[mesh.face_vertices[i]] = welded.face_vertices[i];
+  const bool is_edge = fault == MeshFault::non_manifold_edge;
+  for (auto& [first, second] : before.first) {
+    if (is_edge || fault == MeshFault::non_manifold_vertex) first = became[first].value();
+    if (is_edge || fault == MeshFault::repeated_corner) second = became[second].value();
+    if (is_edge && first > second) std::swap(first, second);
+  }
+  std::sort(before.first.begin(), before.first.end());
+  if (std::includes(before.first.begin(), before.first.end(), after.first.begin(), after.first.end()))
+    return {};
+  return io::in_words(name_of(fault)) + " (" + std::to_string(after.count) + " in place of " +
+         std::to_string(before.count) + (after.count > before.count ? ")" : " elsewhere)");
 }
 
 }  // namespace
@@ -154,14 +177,13 @@ CheckedMesh weld_corners(const CheckedMesh& mesh, double distance, WeldedCorners
     out.vertices[v] = out.vertices[u];
     return true;
   });
-  // 2. Merge corners with equal coordinates, and prove that no face became worse.
+  // 2. Merge corners with equal coordinates, and prove that no face, edge or vertex became worse.
   join_corners(out);
   CheckedMesh welded = check(std::move(out));
   for (const MeshFault fault : kOfWelds)
-    if (welded.report()[fault].count > mesh.report()[fault].count)
-      reject_weld(mesh.mesh(), distance,
-                  io::in_words(name_of(fault)) + " (" + std::to_string(welded.report()[fault].count) +
-                      " in place of " + std::to_string(mesh.report()[fault].count) + ")");
+    if (welded.report()[fault].count > 0)
+      if (const std::string added = added_fault(mesh.mesh(), welded.mesh(), fault); !added.empty())
+        reject_weld(mesh.mesh(), distance, added);
   Workers workers(0);
   const std::vector<FaceId> before = mesh.self_intersecting_faces(workers);
   for (const FaceId f : welded.self_intersecting_faces(workers))

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/bodies.hpp"
 #include "tests/support/faulty_meshes.hpp"
 #include "tests/support/random_simplices.hpp"
 #include <lrbscope/error.hpp>
@@ -40,9 +41,9 @@ MeshReport joined_report(Mesh m, JoinedCorners* said = nullptr) {
 
 }  // namespace
 
-TEST_CASE("a triangle soup is merged into the body that it came from") {
-  for (const Mesh& body :
-       {box(), quad_box(), comb(3), torus(8, 5), icosphere(2), box_with_void(), l_shape()}) {
+TEST_CASE("a soup of triangles or segments is merged into the body that it came from") {
+  for (const Mesh& body : {box(), quad_box(), comb(3), torus(8, 5), icosphere(2), box_with_void(), l_shape(),
+                           star(5), ring_2d(12)}) {
     JoinedCorners said;
     const MeshReport was = check_mesh(body), is = joined_report(as_soup(body), &said);
     CHECK(said.open_before == as_soup(body).face_vertices.size());
@@ -77,7 +78,32 @@ TEST_CASE("a soup with displaced corners is welded into its body, or rejected; c
     // Corners of different edges of a face would become one.
     CHECK_THROWS_WITH_AS(weld_corners(slit, 3, done), doctest::Contains("weld"), InputError);
     CHECK_THROWS_WITH_AS(weld_corners(slit, 0, done), doctest::Contains("above 0"), InputError);
+    CHECK(weld_corners(check(turned_inside_out(soup)), kDistance, done).report().closed);
   }
+  const auto loose = [](std::initializer_list<std::vector<Point3>> faces) {
+    Mesh m;
+    for (const auto& face : faces) add_loose(m, face);
+    return check(m);
+  };
+  WeldedCorners done;
+  // No corner moves further, from one that moved to another.
+  weld_corners(loose({{{0, 0, 0}, {9, 1, 0}, {9, 2, 0}},
+                      {{0.9, 0, 0}, {9, 5, 0}, {9, 6, 0}},
+                      {{1.8, 0, 0}, {9, 9, 0}, {5, 9, 0}}}),
+               0.95, done);
+  CHECK(done.welded == 1);
+  // The weld gives a face an area, and takes it from another; moves a face through another.
+  CHECK_THROWS_WITH_AS(weld_corners(loose({{{2, 1e-7, 0}, {3, 0, 1}, {3, 1, 1}},
+                                           {{1, 5, 0}, {1, 6, 1}, {2, 6, 1}},
+                                           {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+                                           {{0, 5, 0}, {1, 5, 1e-7}, {2, 5, 0}}}),
+                                    1e-6, done),
+                       doctest::Contains("zero area face (1 in place of 1 elsewhere)"), InputError);
+  CHECK_THROWS_WITH_AS(weld_corners(loose({{{0, 0, 0}, {1, 0, -2}, {-1, 0, -2}},
+                                           {{0, 0, 1}, {1, 0, 3}, {-1, 0, 3}},
+                                           {{-9, -9, 0.5}, {9, -9, 0.5}, {0, 9, 0.5}}}),
+                                    1.2, done),
+                       doctest::Contains("would intersect another one"), InputError);
 }
 
 TEST_CASE("closed bodies are unchanged, wherever they touch") {
@@ -141,14 +167,6 @@ TEST_CASE("0 and -0 coincide, values an ulp apart do not") {
   CHECK(joined_report(m).buildable());
   m.vertices[0].x() = std::nextafter(m.vertices[0].x(), 2);
   CHECK(joined_report(m)[MeshFault::open_edge].count > 0);
-}
-
-TEST_CASE("separate segments are merged into a polygon") {
-  for (const Mesh& body : {star(5), ring_2d(12)}) {
-    JoinedCorners said;
-    CHECK(joined_report(as_soup(body), &said).buildable());
-    CHECK(said.open_before == 2 * body.face_count());
-  }
 }
 
 TEST_CASE("faces with invalid indices or coordinates are left unchanged") {

@@ -107,9 +107,9 @@ struct WeldedCorners {
 /// the two as join_corners() does. All other vertices keep their coordinates, and faces keep their numbers.
 ///
 /// Throws InputError if the distance is not above 0 or exceeds the size of all open edges, or if the result
-/// has more of a fault than the mesh: faces without area, with a repeated corner, equal or folded faces,
+/// has a fault where the mesh had none: faces without area, with a repeated corner, equal or folded faces,
 /// edges with more than two faces, inconsistent orientation, or a face that intersects others and did not
-/// before (exact).
+/// before (exact). A component that the weld closes may face inwards: see CheckedMesh::turn_outward().
 CheckedMesh weld_corners(const CheckedMesh& mesh, double distance, WeldedCorners& done);
 
 }  // namespace lrb
