@@ -43,6 +43,8 @@ struct Target {
 TEST_CASE("real models meet the targets for faces, outer faces, volume, embedding and tight wrappers" *
           doctest::test_suite("shared meshes")) {
   const auto folder = shared_meshes();
+  const Mesh large = read_mesh((folder / "nefertiti.obj").string());
+  CHECK((large.vertices.size() == 49971 && large.face_count() == 99938));
   for (const Target& target : {Target{"spot", {4400, 1800, 680}}, Target{"homer", {2700, 1110, 560}},
                                Target{"fandisk", {340, 215, 205}}, Target{"cheburashka", {2760, 1370, 620}},
                                Target{"rocker-arm", {1780, 720, 390}}}) {

@@ -3,6 +3,7 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/answer_content.hpp"
 #include "tests/support/bodies.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include "tests/support/float_modes.hpp"
 #include "tests/support/lrb_files.hpp"
 #include <lrbscope/body.hpp>
@@ -87,6 +88,14 @@ void check_bodies(const Mesh& mesh) {
     return std::tuple(checked.report().lines(mesh), report.lines(mesh), use, cut, crossing, joined.joined,
                       bytes(self_intersections(checked).segments), close_holes(checked).mesh.face_vertices,
                       bytes(convex_hull_mesh(mesh.vertices).vertices), convex_outline(mesh.vertices));
+  });
+  Mesh slit = test::as_soup(mesh);
+  for (std::uint32_t v = 0; v < slit.vertices.size(); ++v)
+    slit.vertices[v] += 1e-9 * Vector3d(v % 3, v % 5, v % 7);
+  check_modes([&] {
+    WeldedCorners done;
+    const auto corners = weld_corners(check(slit), 1e-8, done).mesh().face_vertices;
+    return std::tuple(corners, done.farthest);
   });
   check_modes([&] {
     const test::Folder folder;

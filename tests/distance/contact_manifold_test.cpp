@@ -245,6 +245,12 @@ TEST_CASE("manifold of overlapping corners: the axis of least depth alone, at an
           }
         }
       }
+  // The far side of a ball is no other manifold.
+  const ManifoldResult r =
+      contact_manifolds(box, {}, closed(shapes::icosphere(0)), Pose::translation({-0.3125, -0.75, 0.0625}));
+  REQUIRE(r.manifolds.size() == 1);
+  CHECK((r.manifolds[0].normal - Vector3d(0, -1, 0)).norm() < 1e-12);
+  CHECK(r.manifolds[0].points[0].depth == doctest::Approx(std::sqrt((5 + std::sqrt(5.0)) / 10) - 0.75));
 }
 
 TEST_CASE("manifolds have all pairs and points on both surfaces, for all kinds of bodies and poses") {
@@ -278,6 +284,12 @@ TEST_CASE("manifolds have all pairs and points on both surfaces, for all kinds o
   check(bodies[1], {}, bodies[1], {}, 0, seen);  // identical
   // Three normals, one of them of pairs that do not intersect.
   check(bodies[0], {}, bodies[0], Pose::translation({0.9, 0.8, 0.7}), 0.5, seen);
+  // Gaps of a few roundings have no depth above 0.
+  const LrbRep plate = closed(kPlate), box = closed(kBox);
+  for (int i = 0; i < 60; ++i) {
+    const Pose at{shapes::random_rotation(random), 3 * shapes::random_direction(random)};
+    check(plate, at, box, {at.r, at.apply({0.1, 0.2, shapes::uniform(random, 0, 4e-15)})}, 1e-12, seen);
+  }
   CHECK(seen.manifolds > 300);
   CHECK(seen.deep > 300);
   CHECK(seen.gaps > 100);
