@@ -88,8 +88,21 @@ InputFile::InputFile(const std::string& path) : path_(path), file_(nullptr, &std
   if (!no_size) size_ = size;
 }
 
+std::string_view InputFile::start() {
+  static constexpr std::size_t kEnough = 64;  // bytes: more than any magic
+  if (start_.empty()) {
+    std::string first(kEnough, '\0');
+    first.resize(read(first.data(), kEnough));
+    start_ = std::move(first);
+  }
+  return start_;
+}
+
 std::size_t InputFile::read(char* to, std::size_t most) {
-  const std::size_t got = std::fread(to, 1, most, file_.get());
+  // Bytes that start() has read, then those of the file.
+  const std::size_t before = start_.copy(to, most);
+  start_.erase(0, before);
+  const std::size_t got = before + std::fread(to + before, 1, most - before, file_.get());
   // A short read is the end of the file or an error.
   if (got < most && std::ferror(file_.get()))
     cannot_read(path_, "cannot read the file; check the disk or copy the file again");
@@ -98,6 +111,11 @@ std::size_t InputFile::read(char* to, std::size_t most) {
 
 std::string read_file(const std::string& path, std::uint64_t most) {
   InputFile file(path);
+  return read_file(file, most);
+}
+
+std::string read_file(InputFile& file, std::uint64_t most) {
+  const std::string& path = file.path();
   // Reject large files before reading. Pipes have no size, so the limit is checked again after each chunk.
   if (file.size() > most) too_large(path, most);
   static constexpr std::size_t kChunk = std::size_t{1} << 18;

@@ -318,8 +318,13 @@ LrbRep load_lrb(std::string_view bytes, const std::string& name) {
 
 LrbRep load_lrb(const std::string& path) {
   InputFile file(path);
+  return load_lrb(file);
+}
+
+LrbRep load_lrb(InputFile& file) {
   // A pipe has no size, which lengths in the file are compared with.
-  return file.size() ? load(Reader(file, path), path) : load_lrb(std::string_view(read_file(path)), path);
+  return file.size() ? load(Reader(file, file.path()), file.path())
+                     : load_lrb(std::string_view(read_file(file)), file.path());
 }
 
 }  // namespace lrb

@@ -132,16 +132,19 @@ std::optional<LrbRep> faces_if_unproven(const LrbRep& rep, std::vector<std::stri
 
 }  // namespace
 
-LrbRep proven(LrbRep rep, std::vector<std::string>& notes, std::uint32_t* turned) {
+MadeBody make_body(LrbRep rep, bool turn) {
+  std::vector<std::string> notes;
+  std::uint32_t turned = 0;
   if (std::optional<LrbRep> faces = faces_if_unproven(rep, notes)) rep = std::move(*faces);
-  if (rep.region_count() > 0 || !rep.closed()) return rep;
   // Without regions no proof needs the solid behind each face, but normals and depths of contacts do.
-  CheckedMesh mesh = check(rep.real_mesh());
-  const std::uint32_t count = turn_outward(mesh, notes);
-  if (turned != nullptr) *turned = count;
-  if (count == 0) return rep;
-  return LrbRep::without_regions(LrbRep::without_regions(mesh.mesh(), true, rep.self_intersecting()),
-                                 rep.dropped_fans());
+  if (turn && rep.region_count() == 0 && rep.closed()) {
+    CheckedMesh mesh = check(rep.real_mesh());
+    turned = turn_outward(mesh, notes);
+    if (turned > 0)
+      rep = LrbRep::without_regions(LrbRep::without_regions(mesh.mesh(), true, rep.self_intersecting()),
+                                    rep.dropped_fans());
+  }
+  return {std::move(rep), std::move(notes), 0, turned};
 }
 
 MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn) {
@@ -183,6 +186,24 @@ MadeBody make_body_of_faces(CheckedMesh mesh, bool turn, unsigned threads) {
   constexpr bool kSelfIntersecting = false;  // self-intersection matters only for regions
   return {LrbRep::without_regions(mesh.mesh(), mesh.report().bounds_solid, kSelfIntersecting, threads),
           std::move(notes), 0, turned};
+}
+
+MadeBody make_body(Mesh mesh, const BodyOptions& options) {
+  // Check, then build, with or without regions. Both throw InputError if the mesh cannot be queried at all.
+  CheckedMesh checked = check(std::move(mesh));
+  return options.regions ? make_body(std::move(checked), options.build, options.turn)
+                         : make_body_of_faces(std::move(checked), options.turn, options.build.threads);
+}
+
+MadeBody make_body_of_file(const std::string& path, const BodyOptions& options, std::string_view if_joined) {
+  // Opened once, and told by its content, not by its name.
+  InputFile file(path);
+  if (looks_like_lrb(file.start())) return make_body(load_lrb(file), options.turn);
+  Mesh mesh = read_mesh(read_file(file), path);
+  std::string note = options.join ? join_corners_of_mesh(mesh) : "";
+  MadeBody made = make_body(std::move(mesh), options);
+  if (!note.empty()) made.notes.insert(made.notes.begin(), note.append(if_joined));
+  return made;
 }
 
 namespace {
@@ -274,16 +295,10 @@ void add_notes_on(const LrbRep& rep, std::vector<std::string>& notes) {
 
 }  // namespace
 
-Body Body::made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes) {
-  // Check, then build, with or without regions. Both throw InputError if the mesh cannot be queried at all.
-  CheckedMesh checked = check(std::move(mesh));
-  MadeBody made = options.regions
-                      ? make_body(std::move(checked), options.build, options.turn)
-                      : make_body_of_faces(std::move(checked), options.turn, options.build.threads);
-  notes.insert(notes.end(), made.notes.begin(), made.notes.end());
-  add_notes_on(made.rep, notes);
-  auto rep = std::make_shared<const LrbRep>(std::move(made.rep));
-  return Body(std::make_shared<const Impl>(Impl{std::move(rep), std::move(notes), made.turned}));
+Body Body::made(MadeBody made) {
+  add_notes_on(made.rep, made.notes);
+  return Body(std::make_shared<const Impl>(
+      Impl{std::make_shared<const LrbRep>(std::move(made.rep)), std::move(made.notes), made.turned}));
 }
 
 Expected<Body> Body::from_rows(std::span<const double> coordinates, std::size_t each,
@@ -309,18 +324,13 @@ Expected<Body> Body::from(std::span<const double> coordinates, std::span<const s
 
 Expected<Body> Body::from(Mesh mesh, const BodyOptions& options) try {
   if (mesh.name.empty()) mesh.name = printable_name(options.name);
-  return made(std::move(mesh), options);
+  return made(make_body(std::move(mesh), options));
 } catch (const InputError& e) {
   return Error{e.what()};
 }
 
 Body Body::from(LrbRep rep) {
-  std::vector<std::string> notes;
-  std::uint32_t turned = 0;
-  rep = proven(std::move(rep), notes, &turned);
-  add_notes_on(rep, notes);
-  return Body(std::make_shared<const Impl>(
-      Impl{std::make_shared<const LrbRep>(std::move(rep)), std::move(notes), turned}));
+  return made(make_body(std::move(rep)));
 }
 
 Body Body::from(std::shared_ptr<const LrbRep> rep) {
@@ -332,16 +342,7 @@ Body Body::from(std::shared_ptr<const LrbRep> rep) {
 }
 
 Expected<Body> Body::load(const std::string& path, const BodyOptions& options) try {
-  // By content, not by extension.
-  if (is_lrb_file(path)) {
-    LrbRep rep = load_lrb(path);
-    return options.turn ? from(std::move(rep)) : from(std::make_shared<const LrbRep>(std::move(rep)));
-  }
-  Mesh mesh = read_mesh(path);
-  std::vector<std::string> notes;
-  if (options.join)
-    if (std::string note = join_corners_of_mesh(mesh); !note.empty()) notes.push_back(std::move(note));
-  return made(std::move(mesh), options, std::move(notes));
+  return made(make_body_of_file(path, options));
 } catch (const InputError& e) {
   return Error{e.what()};
 }

@@ -11,14 +11,13 @@
 namespace lrb::bodies {
 namespace {
 
-LoadedBody loaded(MadeBody made) {
-  return {std::move(made.rep), std::move(made.notes), made.build_seconds};
-}
+constexpr const char* kIfJoined = " (--no-join keeps them separate)";
 
-LoadedBody saved_body(const std::string& path) {
-  std::vector<std::string> notes;
-  LrbRep rep = proven(load_lrb(path), notes);
-  return {std::move(rep), std::move(notes), 0};
+/// Returns the options, with the environment's folder for the cache if they name none.
+BuildOptions with_cache(BuildOptions options) {
+  const char* folder = std::getenv(kCacheVariable);
+  if (options.cache.empty() && folder != nullptr) options.cache = folder;
+  return options;
 }
 
 }  // namespace
@@ -36,40 +35,31 @@ LoadedBody body_of_mesh(Mesh mesh, const BuildOptions& options) {
 }
 
 LoadedBody body_of_mesh(CheckedMesh mesh, const BuildOptions& options) {
-  BuildOptions with_cache = options;
-  const char* folder = std::getenv(kCacheVariable);
-  if (options.cache.empty() && folder != nullptr) with_cache.cache = folder;
-  return loaded(make_body(std::move(mesh), with_cache));
+  return make_body(std::move(mesh), with_cache(options));
 }
 
 Mesh read_body(const std::string& path, Corners corners, std::vector<std::string>& notes) {
   Mesh mesh = read_mesh(path);
   if (corners == Corners::apart) return mesh;
   const std::string note = join_corners_of_mesh(mesh);
-  if (!note.empty()) notes.push_back(note + " (--no-join keeps them separate)");
+  if (!note.empty()) notes.push_back(note + kIfJoined);
   return mesh;
 }
 
 LoadedBody load_body(const std::string& path, const BuildOptions& options, Corners corners) {
-  if (is_lrb_file(path)) return saved_body(path);
-  std::vector<std::string> notes;
-  Mesh mesh = read_body(path, corners, notes);
-  LoadedBody body = body_of_mesh(std::move(mesh), options);
-  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
-  return body;
+  return make_body_of_file(path, {.build = with_cache(options), .join = corners == Corners::joined}, kIfJoined);
 }
 
 LoadedBody load_faces(const std::string& path, Corners corners, unsigned threads) {
-  if (is_lrb_file(path)) return saved_body(path);
-  std::vector<std::string> notes;
-  Mesh mesh = read_body(path, corners, notes);
-  LoadedBody body = faces_of_mesh(std::move(mesh), threads);
-  body.notes.insert(body.notes.begin(), notes.begin(), notes.end());
-  return body;
+  BodyOptions options;
+  options.regions = false;
+  options.join = corners == Corners::joined;
+  options.build.threads = threads;
+  return make_body_of_file(path, options, kIfJoined);
 }
 
 LoadedBody faces_of_mesh(Mesh mesh, unsigned threads) {
-  return loaded(make_body_of_faces(check(std::move(mesh)), true, threads));
+  return make_body_of_faces(check(std::move(mesh)), true, threads);
 }
 
 namespace {

@@ -14,12 +14,7 @@
 
 namespace lrb::bodies {
 
-struct LoadedBody {
-  LrbRep rep;
-  std::vector<std::string> notes;  ///< repairs made and features not available; one line each
-  double build_seconds = 0;        ///< 0 if it was not built
-};
-
+using LoadedBody = MadeBody;
 using lrb::is_lrb_file;
 
 /// Environment variable of the folder in which body_of_mesh() and load_body() keep LRB-reps

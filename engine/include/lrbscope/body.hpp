@@ -18,6 +18,8 @@
 
 namespace lrb {
 
+struct MadeBody;
+
 struct BodyOptions {
   BuildOptions build;   ///< threads, quality (`lean`, `patch_interior`, `max_outer_faces`), seed, progress
   bool regions = true;  ///< false: faces only, without wrappers; takes a tenth of the time or less
@@ -99,7 +101,7 @@ class Body {
   static Expected<Body> from_rows(std::span<const double> coordinates, std::size_t each,
                                   std::span<const std::int64_t> corners, std::size_t each_face,
                                   const BodyOptions& options);
-  static Body made(Mesh mesh, const BodyOptions& options, std::vector<std::string> notes = {});
+  static Body made(MadeBody made);
 
   std::shared_ptr<const Impl> impl_;
 };
@@ -136,16 +138,24 @@ MadeBody make_body(CheckedMesh mesh, const BuildOptions& options, bool turn = tr
 /// Proves only what these answers need. Faces keep their numbers. `threads`: see BuildOptions.
 MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true, unsigned threads = 1);
 
+/// Proves the cells of an LRB-rep; if that fails, takes its real faces without regions, and adds a note.
+/// Without regions, reorients inward-oriented components, if `turn`.
+MadeBody make_body(LrbRep rep, bool turn = true);
+
+/// Checks a mesh and calls make_body() or make_body_of_faces(), as `options.regions` says.
+MadeBody make_body(Mesh mesh, const BodyOptions& options);
+
+/// Makes the body of a mesh file or an .lrb file, which is opened once and told by its content. `if_joined` is
+/// appended to the note on merged vertices.
+MadeBody make_body_of_file(const std::string& path, const BodyOptions& options,
+                           std::string_view if_joined = {});
+
 /// Returns a note with the first violation if the proof of an LRB-rep's cells fails (validate_cells()), or an
 /// empty string if they are proven.
 std::string note_unproven(const LrbRep& rep);
 /// Returns a note on polygons that are not what their outlines say, or an empty string if there are none:
 /// LrbRep::folded_faces(), LrbRep::dropped_fans().
 std::string note_polygons(const LrbRep& rep);
-/// Returns the LRB-rep if its cells are proven; otherwise its real faces without regions, and adds that note.
-/// Of an LRB-rep without regions, reorients inward-oriented components, writes their number and adds a note.
-LrbRep proven(LrbRep rep, std::vector<std::string>& notes, std::uint32_t* turned = nullptr);
-
 /// Reorients inward-oriented components and returns their number. Adds a note if there were any.
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes);
 

@@ -34,6 +34,8 @@
 
 namespace lrb {
 
+class InputFile;
+
 /// The plain arrays of an LRB-rep, as filled in by a builder and stored in a file.
 struct LrbData {
   int dim = 3;
@@ -250,6 +252,7 @@ void save_lrb(const LrbRep& rep, const std::string& path);
 ///   body. Only validate() checks that no region is thicker than stored. A wrong thickness leads to an error
 ///   bound that is too small, never to a wrong relation.
 LrbRep load_lrb(const std::string& path);
+LrbRep load_lrb(InputFile& file);
 
 /// Reads an LRB-rep from memory. `name` replaces the path in messages.
 LrbRep load_lrb(std::string_view bytes, const std::string& name);

@@ -68,21 +68,28 @@ class InputFile {
   /// Throws if the file is missing or unreadable, or is not a regular file or pipe (what_is_no_file()).
   explicit InputFile(const std::string& path);
 
+  const std::string& path() const { return path_; }
   /// Returns the number of bytes; nullopt for a pipe.
   std::optional<std::uint64_t> size() const { return size_; }
   /// Reads the next bytes, at most `most`. Returns their number; fewer: the end of the file.
   std::size_t read(char* to, std::size_t most);
+  /// Returns the first bytes, at most 64, which tell the format. The next read() still begins with them. Must be
+  /// called before any read().
+  std::string_view start();
 
  private:
   std::string path_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
   std::optional<std::uint64_t> size_;
+  std::string start_;  ///< bytes of start() that read() has not returned yet
 };
 
 /// Returns the content of a file. Throws InputError as InputFile does, or if there are more than `most`
 /// bytes.
 std::string read_file(const std::string& path,
                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+/// Returns the rest of a file.
+std::string read_file(InputFile& file, std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// Returns the type of a path that cannot be read to its end like a file: "a directory", "a device", "a named
 /// pipe" (might block forever) or "a socket". Returns an empty string for files, for anonymous pipes as
