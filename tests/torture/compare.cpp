@@ -53,6 +53,9 @@ class Comparison {
     check_contacts();
     ask_oracles();
     if (brute_.pairs.empty() && random_() % static_cast<unsigned>(effort_.parity_every) == 0) ask_parity();
+    if (c_.a->region_count() + c_.b->region_count() > 0) check_coarse(c_, brute_, random_, t_, trouble_);
+    if (random_() % effort_.motions_every == 0 && simplex_pairs() <= effort_.motions_most_pairs)
+      check_motion(c_, random_, t_, trouble_);
     return t_;
   }
 
@@ -69,9 +72,7 @@ class Comparison {
   }
 
   void complain(std::uint64_t& counter, const std::string& what, std::uint64_t times = 1) {
-    if (times == 0) return;
-    counter += times;
-    trouble_ += what + (times > 1 ? " (" + std::to_string(times) + " times)" : "") + '\n';
+    torture::complain(counter, trouble_, what, times);
   }
 
   /// A refusal is right only where a world coordinate is not finite.

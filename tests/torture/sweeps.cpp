@@ -1,91 +1,33 @@
 #include <cmath>
-#include <cstdio>
 
 #include "engine/collide/collide_into.hpp"
 #include "engine/motion/contact_search.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/bodies.hpp"
 #include "tests/support/simplex_distance.hpp"
-#include "tests/torture/children.hpp"
 #include "tests/torture/torture.hpp"
 
 namespace lrb::torture {
 namespace {
 
-using shapes::RandomEngine;
-using shapes::uniform;
-
-constexpr std::uint64_t kSweepBatch = 1000;
-constexpr int kSamples = 40, kCloseSamples = 24;
-
-struct SweepTally {
-  std::uint64_t motions = 0, contacts = 0, at_start = 0, never = 0, undecided = 0, grazing = 0, passed = 0,
-                steps = 0, samples = 0;
-  std::uint64_t misses = 0, no_contact = 0, wide = 0, crashes = 0;
-};
-
-}  // namespace
-
-template <>
-inline constexpr auto kColumns<SweepTally> =
-    std::to_array<Column<SweepTally>>({{"motions", &SweepTally::motions},
-                                       {"contact", &SweepTally::contacts},
-                                       {"at start", &SweepTally::at_start},
-                                       {"never", &SweepTally::never},
-                                       {"undecided", &SweepTally::undecided},
-                                       {"grazing", &SweepTally::grazing},
-                                       {"passed", &SweepTally::passed},
-                                       {"steps", &SweepTally::steps},
-                                       {"samples", &SweepTally::samples},
-                                       {"misses", &SweepTally::misses, true},
-                                       {"no contact", &SweepTally::no_contact, true},
-                                       {"wide", &SweepTally::wide, true},
-                                       {"crashes", &SweepTally::crashes, true}});
-
-namespace {
-
-struct SweepBodies {
-  const char* name;
-  LrbRep a, b;
-  double size;  ///< of both
-
-  SweepBodies(const char* name_, const Mesh& mesh_a, const Mesh& mesh_b, bool closed_a = true)
-      : name(name_),
-        a(LrbRep::without_regions(mesh_a, closed_a, false)),
-        b(LrbRep::without_regions(mesh_b, mesh_b.face_count() > 2, false)),
-        size(shapes::box_of(a).diagonal().norm() + shapes::box_of(b).diagonal().norm()) {}
-};
-
-std::vector<SweepBodies> sweep_bodies() {
-  const auto sheet = [](double half) { return test::sheet(1, {-half, -half}, {half, half}); };
-  std::vector<SweepBodies> list;
-  list.emplace_back("bumps", shapes::bumpy_sphere(3, 7, 0.3), shapes::bumpy_sphere(3, 8, 0.3));
-  list.emplace_back("ball in bowl", shapes::bowl(24, 12), shapes::icosphere(3, 0.5));
-  list.emplace_back("tori", shapes::torus(24, 14), shapes::torus(20, 12, 1, 0.25));
-  list.emplace_back("combs", shapes::comb(6), shapes::comb(5));
-  list.emplace_back("boxes", shapes::box(), shapes::quad_box());
-  list.emplace_back("void", shapes::box_with_void(), shapes::icosphere(1, 0.4));
-  list.emplace_back("sheets", sheet(1), sheet(0.7), false);
-  list.emplace_back("ball, sheet", sheet(1), shapes::icosphere(2, 0.3), false);
-  list.emplace_back("grain, ball", shapes::icosphere(3), shapes::scaled(shapes::tetrahedron(), 1e-3));
-  list.emplace_back("gears 2D", shapes::gear(40), shapes::gear(31, 0.9, 0.6));
-  return list;
-}
-
 /// Draws motions of all kinds.
 class Motions {
  public:
-  Motions(const SweepBodies& bodies, RandomEngine& random)
-      : bodies_(bodies), random_(random), dim_(bodies.a.dim()) {}
+  Motions(const cases::Case& c, RandomEngine& random)
+      : c_(c),
+        random_(random),
+        dim_(c.a->dim()),
+        size_(shapes::box_of(*c.a).diagonal().norm() + shapes::box_of(*c.b).diagonal().norm()) {}
+  double size() const { return size_; }
 
   Motion motion_a() {
     if (random_() % 3 != 0) return Motion::still({});
-    const Pose start{shapes::random_rotation(random_, dim_), 0.2 * bodies_.size * direction()};
-    return Motion::turning(start, uniform(random_, 0, 3) * axis(), start.t, 0.3 * bodies_.size * direction());
+    const Pose start{shapes::random_rotation(random_, dim_), 0.2 * size_ * direction()};
+    return Motion::turning(start, uniform(random_, 0, 3) * axis(), start.t, 0.3 * size_ * direction());
   }
 
   Motion motion_b() {
-    const double size = bodies_.size;
+    const double size = size_;
     const Pose start = pose(uniform(random_, 0.3, 1.2) * size);
     switch (random_() % 8) {
       case 0:  // straight through, at any speed
@@ -141,7 +83,7 @@ class Motions {
     if (dim_ == 2) aside = {-way.y(), way.x(), 0};
     aside.normalize();
     const Eigen::Matrix3d r = shapes::random_rotation(random_, dim_);
-    const double size = bodies_.size;
+    const double size = size_;
     double hits = 0, misses = size;
     const auto beside = [&](double x) {
       return Motion::linear({r, x * aside - size * way}, x * aside + size * way);
@@ -151,96 +93,56 @@ class Motions {
     for (int i = 0; i < 40; ++i) {
       const double x = (hits + misses) / 2;
       const Motion m = beside(x);
-      (first_contact(bodies_.a, Motion::still({}), bodies_.b, m, request, context_).outcome ==
-               MotionOutcome::never
+      (first_contact(*c_.a, Motion::still({}), *c_.b, m, request, context_).outcome == MotionOutcome::never
            ? misses
            : hits) = x;
     }
     return beside(misses + (random_() % 2 ? -1 : 1) * std::pow(10, uniform(random_, -17, -1)) * size);
   }
 
-  const SweepBodies& bodies_;
+  const cases::Case& c_;
   RandomEngine& random_;
   FirstContactContext context_;
   int dim_;
-};
-
-class SweepChecker {
- public:
-  SweepChecker(const SweepBodies& bodies, RandomEngine& random) : bodies_(bodies), random_(random) {}
-
-  SweepTally run(std::uint64_t count) {
-    Motions motions(bodies_, random_);
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const Motion a = motions.motion_a();
-      check(a, motions.motion_b());
-    }
-    return t_;
-  }
-
- private:
-  bool meets(const Motion& a, const Motion& b, double t) {
-    ++t_.samples;
-    CollideRequest any;
-    any.mode = Mode::any_pair;
-    NullProbe probe;
-    return !collide(bodies_.a, a.at(t), bodies_.b, b.at(t), any, query_, probe).pairs.empty();
-  }
-
-  /// Asks at times before `end`, most of them close to it.
-  void look_before(const Motion& a, const Motion& b, double end) {
-    bool missed = false;
-    for (int i = 0; i < kSamples; ++i) missed = missed || meets(a, b, end * uniform(random_));
-    for (int i = 0; i < kCloseSamples; ++i)
-      missed = missed || meets(a, b, end * (1 - std::pow(10, uniform(random_, -16, -2))));
-    missed = missed || meets(a, b, std::nextafter(end, 0));
-    if (missed) complain(t_.misses, "a contact before t0");
-  }
-
-  void check(const Motion& a, const Motion& b) {
-    ++t_.motions;
-    const FirstContactResult r = first_contact(bodies_.a, a, bodies_.b, b, request_, context_);
-    t_.steps += r.counters.steps + r.counters.spans;
-    t_.grazing += r.grazing;
-    t_.passed += r.passed;
-    if (r.at_start) {
-      ++t_.at_start;
-      if (!meets(a, b, 0)) complain(t_.no_contact, "none at the start");
-      return;
-    }
-    if (r.outcome == MotionOutcome::never) ++t_.never;
-    if (r.outcome == MotionOutcome::undecided) ++t_.undecided;
-    look_before(a, b, r.t0);
-    if (!r.is_contact()) return;
-    ++t_.contacts;
-    if (!r.passed && !pair_meets(r, a.at(r.t1), b.at(r.t1)))
-      complain(t_.no_contact, "its pair does not meet at t1");
-    if (!r.grazing && r.t1 - r.t0 > request_.tolerance) complain(t_.wide, "the interval is too wide");
-  }
-
-  bool pair_meets(const FirstContactResult& r, const Pose& pose_a, const Pose& pose_b) {
-    ++t_.samples;
-    return test::meet_of(test::simplex_points(bodies_.a, pose_a, r.pair.a),
-                         test::simplex_points(bodies_.b, pose_b, r.pair.b)) != exact::Meet::disjoint;
-  }
-
-  void complain(std::uint64_t& counter, const char* what) {
-    torture::complain(counter, bodies_.name, t_.motions, what);
-  }
-
-  const SweepBodies& bodies_;
-  RandomEngine& random_;
-  const FirstContactRequest request_;
-  FirstContactContext context_;
-  QueryContext query_;
-  SweepTally t_;
+  double size_;  ///< of both bodies
 };
 
 }  // namespace
 
-std::uint64_t torture_sweeps(std::uint64_t count, std::uint64_t seed, unsigned jobs) {
-  const std::vector<SweepBodies> list = sweep_bodies();
-  return print_table(rows_of<SweepTally, SweepChecker>(list, count, seed), kSweepBatch, jobs);
+void check_motion(const cases::Case& c, RandomEngine& random, Tally& t, std::string& trouble) {
+  constexpr int kSamples = 40, kCloseSamples = 24;
+  static FirstContactContext context;
+  static QueryContext query;
+  Motions motions(c, random);
+  if (!(motions.size() > 1e-6 && motions.size() < 1e6)) return;
+  const Motion of_a = motions.motion_a(), of_b = motions.motion_b();
+  ++t.motions;
+  const auto meets = [&](double at) {
+    CollideRequest any;
+    any.mode = Mode::any_pair;
+    NullProbe probe;
+    return !collide(*c.a, of_a.at(at), *c.b, of_b.at(at), any, query, probe).pairs.empty();
+  };
+  const FirstContactRequest request;
+  const FirstContactResult r = first_contact(*c.a, of_a, *c.b, of_b, request, context);
+  t.contacts += r.is_contact();
+  if (r.at_start) {
+    if (!meets(0)) complain(t.no_contact, trouble, "motion: no contact at the start");
+    return;
+  }
+  // At times before t0, most of them close to it.
+  bool missed = false;
+  for (int i = 0; i < kSamples; ++i) missed = missed || meets(r.t0 * uniform(random));
+  for (int i = 0; i < kCloseSamples; ++i)
+    missed = missed || meets(r.t0 * (1 - std::pow(10, uniform(random, -16, -2))));
+  if (missed || meets(std::nextafter(r.t0, 0))) complain(t.misses, trouble, "motion: a contact before t0");
+  if (!r.is_contact()) return;
+  if (!r.passed &&
+      test::meet_of(test::simplex_points(*c.a, of_a.at(r.t1), r.pair.a),
+                    test::simplex_points(*c.b, of_b.at(r.t1), r.pair.b)) == exact::Meet::disjoint)
+    complain(t.no_contact, trouble, "motion: its pair does not meet at t1");
+  if (!r.grazing && r.t1 - r.t0 > request.tolerance)
+    complain(t.wide, trouble, "motion: the interval is too wide");
 }
 
 }  // namespace lrb::torture

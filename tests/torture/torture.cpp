@@ -4,19 +4,17 @@
 // Each batch of poses runs in a process of its own, so that a crash or a hang is counted and the rest goes
 // on. A difference is printed with the command that shows it alone. A million poses near contact:
 //   torture --poses 56000 --jobs 2
-// a million coarse queries near contact:
-//   torture --coarse 1000000 --jobs 2
-// a hundred thousand motions:
-//   torture --sweeps 100000 --jobs 2
 //
 // Columns. contact, inside: poses in which surfaces meet, in which one body contains the other. regions:
 // bodies that the builder made first, which must not change the answer. false-, false+: pairs missed, pairs
 // too many. lists: duplicates, wrong order, touch for cross, or contradictions with first_pair, B against A
 // or contacts. relation: wrong relations or interiors_overlap. undecided: interiors_overlap unknown although
 // the case has an answer. refusals: world coordinates beyond 1.8e308. crashes: crashes, hangs and other
-// refusals. rational, CGAL, parity: pairs and relations given to these oracles. misses: contacts of the exact
-// query before t0; no contact: pairs at t1 that do not meet; wide: intervals wider than requested that are
-// not marked as grazing.
+// refusals. rational, CGAL, parity: pairs and relations given to these oracles. coarse: queries with a
+// tolerance, of bodies with regions; measured: answers whose error bound is compared with distances; bound:
+// exceeded. motions: bodies that move; contacts: with a first contact; misses: contacts of the exact query
+// before t0; no contact: pairs at t1 that do not meet; wide: intervals wider than requested that are not
+// marked as grazing.
 //
 // interiors_overlap is a statement about bodies as rounded to world coordinates: a crossing gives "yes" only
 // where that is proven, and a body that rounding has made flat gives "unknown". A face is the
@@ -25,17 +23,21 @@
 #include "tests/torture/torture.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "tests/support/shared_meshes.hpp"
 #include "tests/torture/cgal_oracle.hpp"
-#include "tests/torture/children.hpp"
 #include "tests/torture/models.hpp"
 
 using namespace lrb;
@@ -44,12 +46,120 @@ using namespace lrb::torture;
 
 namespace {
 
+/// A batch takes seconds: one that takes longer than this hangs.
+constexpr unsigned kBatchSeconds = 600;
+
+struct Batch {
+  std::uint64_t begin = 0, end = 0;
+};
+
+Tally& operator+=(Tally& sum, const Tally& part) {
+  for (const Column& c : kColumns) sum.*c.count += part.*c.count;
+  return sum;
+}
+
+void print_row(const char* name, const Tally& counts, double seconds) {
+  std::printf("%-14s", name);
+  for (const Column& c : kColumns) std::printf(" %10llu", static_cast<unsigned long long>(counts.*c.count));
+  std::printf(" %7.1f\n", seconds);
+  std::fflush(stdout);
+}
+
+/// Adds up work(batch) over [0, count), `jobs` processes at a time. Counts come through a pipe. Those of a
+/// batch whose process dies are a crash.
+Tally sum_in_children(const char* name, std::uint64_t count, std::uint64_t batch_size, unsigned jobs,
+                      const std::function<Tally(Batch)>& work) {
+  static_assert(sizeof(Tally) <= 4096, "must fit into a pipe, which is read when its writer has gone");
+  struct Child {
+    pid_t pid;
+    int result;
+    Batch batch;
+  };
+  std::vector<Child> running;
+  Tally sum;
+  const auto collect = [&] {
+    int status = 0;
+    const pid_t pid = wait(&status);
+    const auto it =
+        std::find_if(running.begin(), running.end(), [&](const Child& c) { return c.pid == pid; });
+    if (it == running.end()) return;
+    Tally part;
+    const bool whole = read(it->result, &part, sizeof part) == static_cast<ssize_t>(sizeof part);
+    close(it->result);
+    if (!whole || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+      const auto [begin, end] = it->batch;
+      std::fprintf(stderr, "%s: the process died (status %d) between cases %llu and %llu\n", name, status,
+                   static_cast<unsigned long long>(begin), static_cast<unsigned long long>(end));
+      part = {};
+      part.poses = end - begin;
+      part.crashes = 1;
+    }
+    sum += part;
+    running.erase(it);
+  };
+  for (std::uint64_t begin = 0; begin < count; begin += batch_size) {
+    const Batch batch{begin, std::min(count, begin + batch_size)};
+    while (running.size() >= jobs) collect();
+    int ends[2];
+    std::fflush(stdout);
+    const bool piped = pipe(ends) == 0;
+    const pid_t child = piped ? fork() : -1;
+    if (child == 0) {
+      close(ends[0]);
+      alarm(kBatchSeconds);
+      const Tally part = work(batch);
+      const bool sent = write(ends[1], &part, sizeof part) == static_cast<ssize_t>(sizeof part);
+      std::fflush(stderr);
+      _exit(sent ? 0 : 1);
+    }
+    if (piped) close(ends[1]);
+    if (child > 0) {
+      running.push_back({child, ends[0], batch});
+    } else {  // no process to be had: unguarded
+      if (piped) close(ends[0]);
+      sum += work(batch);
+    }
+  }
+  while (!running.empty()) collect();
+  return sum;
+}
+
+/// A row: its name, the number of cases, and the work for some of them.
+struct Row {
+  std::string name;
+  std::uint64_t count = 0;
+  std::function<Tally(Batch)> work;
+};
+
+/// Does the work of all rows, with `jobs` children, or without any if that is 0, and prints the table.
+/// Returns the number of differences.
+std::uint64_t print_table(const std::vector<Row>& rows, std::uint64_t batch_size, unsigned jobs) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  std::printf("%-14s", "bodies");
+  for (const Column& c : kColumns) std::printf(" %10s", c.head);
+  std::printf(" %7s\n", "s");
+  Tally total;
+  const Clock::time_point begun = Clock::now();
+  for (const Row& row : rows) {
+    const Clock::time_point start = Clock::now();
+    const Tally sum = jobs == 0 ? row.work({0, row.count})
+                                : sum_in_children(row.name.c_str(), row.count, batch_size, jobs, row.work);
+    print_row(row.name.c_str(), sum, since(start));
+    total += sum;
+  }
+  print_row("total", total, since(begun));
+  std::uint64_t differences = 0;
+  for (const Column& c : kColumns) differences += c.is_difference ? total.*c.count : 0;
+  return differences;
+}
+
 constexpr std::uint64_t kBatch = 1000;
 
 struct Options {
   std::uint64_t poses = 1000;  ///< of each class; of the slow ones a quarter
-  std::uint64_t coarse = 0;    ///< coarse queries instead of poses
-  std::uint64_t sweeps = 0;    ///< motions instead of poses
   std::uint64_t seed = 1;
   std::int64_t only = -1;  ///< this pose alone, in this process
   unsigned jobs = 1;
@@ -120,8 +230,7 @@ int usage(const std::string& complaint) {
       stderr,
       "usage: torture [--poses N] [--jobs N] [--class NAME] [--seed S] [--only POSE]\n"
       "               [--models FOLDER]   N poses of a class (slow ones: N / 4), compared with every oracle\n"
-      "       torture --coarse N [--jobs N] [--seed S]   N coarse queries near contact\n"
-      "       torture --sweeps N [--jobs N] [--seed S]   N first contacts of motions\nclasses:\n");
+      "classes:\n");
   for (const cases::Family& f : cases::all_families()) std::fprintf(stderr, "  %-12s %s\n", f.name, f.what);
   std::fprintf(stderr, "  %-12s %s\n", kModels.name, kModels.what);
   return 2;
@@ -135,10 +244,6 @@ std::uint64_t number(const char* text) {
 bool take(Options& o, const std::string& key, const char* value) {
   if (key == "--poses")
     o.poses = number(value);
-  else if (key == "--coarse")
-    o.coarse = number(value);
-  else if (key == "--sweeps")
-    o.sweeps = number(value);
   else if (key == "--jobs")
     o.jobs = static_cast<unsigned>(std::max<std::uint64_t>(1, number(value)));
   else if (key == "--class")
@@ -156,7 +261,7 @@ bool take(Options& o, const std::string& key, const char* value) {
 
 /// Runs the requested classes and prints a row each. Returns 1 if there was a difference.
 int run_table(const Options& o, const std::vector<Class>& classes) {
-  std::vector<Row<Tally>> rows;
+  std::vector<Row> rows;
   for (const Class& c : classes) {
     if (!o.name.empty() && o.name != c.family.name) continue;
     const auto work = [&c, &o](Batch b) { return batch(c, b, o); };
@@ -180,8 +285,6 @@ int main(int argc, char** argv) {
     if (i + 1 == argc) return usage(key + " needs a value");
     if (!take(o, key, argv[i + 1])) return usage("unknown option " + key);
   }
-  if (o.coarse > 0) return torture_coarse(o.coarse, o.seed, o.jobs) == 0 ? 0 : 1;
-  if (o.sweeps > 0) return torture_sweeps(o.sweeps, o.seed, o.jobs) == 0 ? 0 : 1;
   if (!o.name.empty() && o.name != kModels.name && cases::find_family(o.name) == nullptr)
     return usage("unknown class " + o.name);
   if (o.only >= 0 && o.name.empty()) return usage("--only needs --class");
