@@ -5,6 +5,7 @@
 
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/bodies/resolutions.hpp"
 #include "scenarios/exchange/model.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/record/moments.hpp"
@@ -151,7 +152,7 @@ int export_body(const ExportOptions& given, const Globals& globals) {
   std::optional<Wrapper> wrapper;
   if (o.asks_for("wrapper")) {
     if (o.faces)
-      wrapper = exchange::wrapper_of_faces(body.rep, *o.faces);
+      wrapper = resolutions::wrapper_of_faces(body.rep, *o.faces);
     else if (o.tolerance)
       wrapper = bodies::wrapper_at(body.rep, *o.tolerance, 0);
     else

@@ -2,26 +2,17 @@
 /// Makes one body at several resolutions.
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/wrapper.hpp>
 
 namespace lrb::resolutions {
 
-// Reduces the faces of a surface by edge collapses, cheapest first.
-
-/// Returns the surface with at most targets[i] triangles, for each i (descending), all from one run of
-/// collapses.
-///
-/// By the quadric error metric (Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics",
-/// 1997). Unlike theirs, the surface stays embedded: an edge collapses only if its link allows it, and if the
-/// new triangles, tested exactly, intersect the surface only in shared vertices and edges. The result is
-/// therefore closed, of the same genus, and free of self-intersections if `mesh` is. A surface that cannot be
-/// reduced to a target stays above it: a component keeps four triangles, a handle more.
-///
-/// `mesh` must be 3D and as MeshReport::buildable() requires. Polygons become triangles. Deterministic.
-std::vector<Mesh> decimate(const Mesh& mesh, std::span<const std::uint32_t> targets);
+/// Returns the finest wrapper with at most `most` faces of those that include each region whose lids deviate
+/// by no more than some bound; it is closed and encloses the body. Throws InputError if the outermost one has
+/// more faces.
+Wrapper wrapper_of_faces(const LrbRep& rep, std::uint32_t most);
 
 struct ResolutionOptions {
   std::uint32_t subdivisions = 0;  ///< applied first; each replaces a face by four
@@ -29,11 +20,13 @@ struct ResolutionOptions {
   std::uint32_t min_faces = 500;
 };
 
-/// Returns the numbers of triangles of the resolutions, the finest one first.
+/// Returns the numbers of triangles to aim at, the finest one first: each has half of the one before.
 std::vector<std::uint32_t> resolution_sizes(const Mesh& mesh, const ResolutionOptions& options);
 
-/// Returns the finest one first; each has half of the faces of the previous one. A polygon
-/// mesh is triangulated. Throws InputError for a mesh that no LRB-rep can be built from.
+/// Returns the body at these sizes, the finest one first, in triangles. The coarser ones are wrappers of the
+/// LRB-rep of the finest (wrapper_of_faces()): they enclose it, are closed and do not intersect themselves;
+/// holes may be filled. Ends before a size without a wrapper of at least three quarters of it: voids keep
+/// their faces. Deterministic. Throws InputError for a mesh that no LRB-rep can be built from.
 std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options);
 
 /// Replaces each triangle by four and smooths the surface: Loop's scheme ("Smooth Subdivision Surfaces Based

@@ -287,34 +287,4 @@ Wrapper wrapper_of_layers(const LrbRep& rep, std::uint32_t layers) {
   return wrapper;
 }
 
-Wrapper wrapper_of_faces(const LrbRep& rep, std::uint32_t most) {
-  std::vector<double> deviation(rep.region_count());
-  if (rep.region_count() > 0) {
-    const std::span<const double> needed = rep.levels(0).needed();
-    for (RegionId r = 0; r < rep.region_count(); ++r)
-      deviation[r] = needed.empty() ? rep.layer(r) : needed[r];
-  }
-  std::vector<RegionId> order(rep.region_count());
-  std::iota(order.begin(), order.end(), RegionId{0});
-  std::stable_sort(order.begin(), order.end(), [&](RegionId x, RegionId y) {
-    return deviation[x] != deviation[y] ? deviation[x] > deviation[y] : rep.depth(x) < rep.depth(y);
-  });
-  std::vector<std::uint8_t> on_boundary(rep.face_count());
-  for (const FaceId f : rep.outermost_faces()) on_boundary[f] = 1;
-  std::size_t size = rep.outermost_faces().size(), best = size <= most ? 0 : order.size() + 1;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (const FaceId f : rep.collector(order[i])) {
-      on_boundary[f] ^= 1;
-      size = on_boundary[f] != 0 ? size + 1 : size - 1;
-    }
-    if (size <= most) best = i + 1;
-  }
-  if (best > order.size())
-    throw InputError("--faces " + std::to_string(most) + ": the outermost wrapper has " +
-                     std::to_string(rep.outermost_faces().size()) + " faces");
-  Wrapper wrapper(rep);
-  for (std::size_t i = 0; i < best; ++i) wrapper.refine(order[i]);
-  return wrapper;
-}
-
 }  // namespace lrb::exchange

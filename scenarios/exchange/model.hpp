@@ -118,8 +118,4 @@ Model make_model(const Moment& moment, const Wanted& wanted);
 /// Returns the wrapper of the regions of the builder's first `layers` passes; 0: the body itself.
 Wrapper wrapper_of_layers(const LrbRep& rep, std::uint32_t layers);
 
-/// Returns the finest wrapper with at most `most` faces obtained by refining regions in order of decreasing
-/// deviation of their lids. Throws InputError if the outermost one has more.
-Wrapper wrapper_of_faces(const LrbRep& rep, std::uint32_t most);
-
 }  // namespace lrb::exchange

@@ -9,6 +9,7 @@
 
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/bodies/resolutions.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/exchange/model.hpp"
 #include "scenarios/record/moments.hpp"
@@ -127,7 +128,7 @@ TEST_CASE("wrappers by number of faces: at most the requested number, ever close
   double off_before = 1e300;
   for (const std::uint32_t most : {30U, 60U, 120U, 10'000'000U}) {
     CAPTURE(most);
-    const Wrapper wrapper = wrapper_of_faces(ball(), most);
+    const Wrapper wrapper = resolutions::wrapper_of_faces(ball(), most);
     const std::size_t faces = wrapper.boundary_size();
     CHECK(faces <= most);
     CHECK(faces >= before);
@@ -141,7 +142,7 @@ TEST_CASE("wrappers by number of faces: at most the requested number, ever close
   }
   CHECK(before == ball().real_face_count());
   CHECK(off_before == 0);
-  CHECK_THROWS_AS(wrapper_of_faces(ball(), 3), InputError);
+  CHECK_THROWS_AS(resolutions::wrapper_of_faces(ball(), 3), InputError);
 }
 
 TEST_CASE("wrappers by layer: the body, and layer by layer the outermost one") {

@@ -119,7 +119,8 @@ TEST_CASE("the series: rows and powers from records; records of other bodies are
   CHECK(leaner[0].rep.real_face_count() == 2000);
   CHECK(leaner[0].rep.face_count() < objects[0].rep.face_count());
   CHECK(objects[0].rep.real_face_count() == 2000);
-  CHECK(objects[2].rep.real_face_count() == 500);
+  CHECK(objects[2].rep.real_face_count() <= 500);
+  CHECK(objects[2].rep.real_face_count() > 400);
   CHECK(paper::diagonal(objects[2].rep) == doctest::Approx(paper::diagonal(a)));
   CHECK(resolutions::resolution_sizes(rock, {0, 3, 100}) == std::vector<std::uint32_t>{2000, 1000, 500});
   CHECK(resolutions::resolution_sizes(rock, {1, 9, 3000}) == std::vector<std::uint32_t>{8000, 4000});
