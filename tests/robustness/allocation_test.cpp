@@ -1,5 +1,6 @@
 /// Memory runs out at each allocation in turn: std::bad_alloc comes out, nothing is left behind (ASan's leak
-/// check verifies that), and objects in use keep working.
+/// check verifies that), and objects in use keep working. A workspace asks for no memory once it has answered
+/// such queries before.
 
 #include <algorithm>
 #include <filesystem>
@@ -21,6 +22,7 @@
 #include <lrbscope/mesh_check.hpp>
 #include <lrbscope/trace/recorder.hpp>
 #include <lrbscope/trace/trace_json.hpp>
+#include <lrbscope/workspace.hpp>
 
 namespace lrb::test {
 
@@ -177,6 +179,31 @@ TEST_CASE("a warm coherent query allocates no memory") {
   for (int i = 0; i < 100 && allocations() == before; ++i) step(i);
   CHECK(coherent.statistics().from_cache > lists);
   CHECK(allocations() == before);
+}
+
+TEST_CASE("queries in a workspace allocate no memory after the first ones") {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 4)), b = build_lrb(shapes::torus(40, 20)),
+               flat = build_lrb(shapes::ring_2d(40));
+  shapes::RandomEngine random(1);
+  std::vector<Pose> poses, poses_flat;
+  for (int i = 0; i < 100; ++i) {
+    poses.push_back(shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1.2)));
+    poses_flat.push_back(shapes::random_pose(random, flat, flat, shapes::uniform(random, 0, 1.2)));
+  }
+  poses.push_back(Pose{});
+  for (const Mode mode : {Mode::all_pairs, Mode::first_pair, Mode::any_pair}) {
+    CollideRequest request;
+    request.mode = mode;
+    Workspace workspace, flat_workspace;
+    std::size_t met = 0;
+    for (int round = 0; round < 2; ++round) {
+      const std::uint64_t before = allocations();
+      for (const Pose& pose : poses) met += !collide(a, Pose{}, b, pose, request, workspace)->pairs.empty();
+      for (const Pose& pose : poses_flat) (void)collide(flat, Pose{}, flat, pose, request, flat_workspace);
+      CHECK((round == 0) == (allocations() > before));
+    }
+    CHECK(met >= 80);
+  }
 }
 
 // Not the reading of traces: the destructors of nlohmann-json 3.11 allocate, and end the process if they

@@ -1,4 +1,5 @@
-/// Which regions are bad, and what helps. The commands: tests/commands/regions.txt.
+/// Which regions are bad, and what helps; the faults of a mesh that are marked. The commands:
+/// tests/commands/regions.txt, inspect.txt.
 
 #include <numeric>
 #include <set>
@@ -7,7 +8,10 @@
 
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include <lrbscope/build.hpp>
+#include <lrbscope/mesh_check.hpp>
+#include <lrbscope/render/scene.hpp>
 #include <lrbscope/validate.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -76,6 +80,15 @@ TEST_CASE("only settings with better numbers are advised") {
   CHECK(
       bodies::advice(disc, better)[0] ==
       "--patch 40 has the lowest waste: 2 instead of 3 faces per point, with 1.42 instead of 1.59 faces per real face");
+}
+
+TEST_CASE("faults with the same elements are drawn once") {
+  const Mesh doubled = with_doubled(icosphere(1), {3, 9});  // they also meet
+  CHECK(render::findings::kinds(check_mesh(doubled)) ==
+        std::vector{MeshFault::duplicate_face, MeshFault::non_manifold_edge});
+  const Mesh collapsed = with_face(icosphere(1), {}, {0, 0, 1});
+  CHECK(render::findings::kinds(check_mesh(collapsed)) == std::vector{MeshFault::zero_area_face});
+  CHECK(render::findings::kinds(check_mesh(icosphere(1))).empty());
 }
 
 }  // namespace lrb::test

@@ -6,11 +6,14 @@
 #include "scenarios/bodies/body_figures.hpp"
 #include "scenarios/bodies/generators.hpp"
 #include "scenarios/record/moments.hpp"
+#include "scenarios/record/recorded_run.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include "tests/support/approach.hpp"
+#include "tests/support/folder.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/trace/trace_json.hpp>
 #include <lrbscope/validate.hpp>
 
 using namespace lrb;
@@ -83,4 +86,27 @@ TEST_CASE("the shipped collisions meet their expectations") {
     const record::Recording r = record::record(s, record::kSilent);
     for (const std::string& line : record::mismatches(s, r)) FAIL_CHECK(line);
   }
+}
+
+TEST_CASE("a run whose trace names an invalid vertex is rejected") {
+  spec::Scenario s;
+  s.bodies.resize(2);
+  for (spec::BodySpec& body : s.bodies) body.generator = "ball";
+  s.events = EventLevel::nodes;
+  s.motion.kind = spec::Motion::Kind::poses;
+  s.motion.poses = {Pose::translation({0.1, 0, 5})};
+  record::Recording r = record::record(s, record::kSilent);
+  const test::Folder folder;
+  save_lrb(r.bodies[0].rep, folder / "a.lrb");
+  save_lrb(r.bodies[1].rep, folder / "b.lrb");
+  const auto write = [&] { trace::save_trace(r.trace, folder / "trace.json"); };
+  write();
+  CHECK(record::open_run(folder.path.string()).trace == r.trace);
+  const auto point = std::find_if(r.trace.events.begin(), r.trace.events.end(),
+                                  [](const trace::Event& e) { return e.kind == EventKind::point; });
+  REQUIRE(point != r.trace.events.end());
+  point->a =
+      static_cast<std::uint32_t>(r.bodies[static_cast<std::size_t>(point->side)].rep.vertices().size());
+  write();
+  CHECK_THROWS_AS(record::open_run(folder.path.string()), InputError);
 }
