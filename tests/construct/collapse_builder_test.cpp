@@ -1,14 +1,17 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include <doctest/doctest.h>
 
+#include "engine/construct/complex_builder.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/construct/build_checks.hpp"
-#include "tests/support/figure_eight.hpp"
+#include "tests/support/hard_bodies.hpp"
 #include "tests/support/noisy_quads.hpp"
 #include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
@@ -30,6 +33,19 @@ LrbRep check_built(const Mesh& mesh, std::size_t most = 20, const BuildOptions& 
   CHECK(rep.outermost_faces().size() <= most);
   CHECK(rep.closed());
   return rep;
+}
+
+/// A tube that crosses itself all the way round: an 8, turned about the z axis.
+Mesh figure_eight() {
+  Mesh m = torus(24, 16);
+  const auto angle = [](std::size_t i, std::size_t n) {
+    return 2 * std::numbers::pi * double(i) / double(n);
+  };
+  for (std::size_t i = 0; i < m.vertices.size(); ++i) {
+    const double u = angle(i / 16, 24), v = angle(i % 16, 16), r = 2 + std::sin(v);
+    m.vertices[i] = {r * std::cos(u), r * std::sin(u), 0.6 * std::sin(2 * v)};
+  }
+  return m;
 }
 
 TEST_CASE("bodies of all kinds: valid, embedded according to brute force, few outer faces") {
@@ -253,6 +269,51 @@ TEST_CASE("bodies that cannot be built are rejected with the affected elements, 
   Mesh flat = box();
   flat.vertices[7] = flat.vertices[6];
   CHECK(message(flat).find("no area") != std::string::npos);
+}
+
+TEST_CASE("bodies with huge faces and high-valence vertices are built with all guarantees") {
+  for (const Mesh& mesh : {hard::drum(700), hard::cone(700), hard::bipyramid(700), hard::crown(700),
+                           hard::frustum(700), hard::drum(100), hard::bipyramid(100)}) {
+    CAPTURE(mesh.face_count());
+    const LrbRep rep = build_lrb(mesh);
+    check_valid(rep);
+    check_keeps_mesh(rep, mesh);
+    CHECK(rep.outermost_faces().size() <= 20);
+  }
+}
+
+TEST_CASE("validation finds the faults of a body with high-valence vertices") {
+  LrbData broken = build_lrb(hard::bipyramid(300)).data();
+  CHECK(validate(LrbRep(broken)).valid);
+  broken.vertices[7] *= -1.5;  // through the body, and out between needles on its other side
+  broken.vertices[7].z() = 0.1;
+  const ValidateReport report = validate(LrbRep(broken));
+  CHECK(report.real_pairs_meeting + report.violation_count > 0);
+}
+
+TEST_CASE("a complex by construction: a box in a box, faces in any order") {
+  const Mesh inner = quad_box({1, 1, 1}, {2, 2, 2}), outer = quad_box({0, 0, 0}, {3, 3, 3});
+  construct::ComplexBuilder builder(3, "boxes");
+  for (const auto& v : inner.vertices) builder.add_vertex(v);
+  for (const auto& v : outer.vertices) builder.add_vertex(v);
+  const RegionId gap = builder.add_region(0);
+  for (FaceId f = 0; f < 6; ++f) {
+    VertexId corners[4];
+    for (int i = 0; i < 4; ++i) corners[i] = VertexId(outer.face(f)[i] + 8);
+    builder.add_pseudo_face(corners, gap, kOutside);
+    builder.add_real_face(inner.face(f), kOutside);
+  }
+  for (int f = 1; f < 12; f += 2) builder.set_outer_cell(FaceId(f), gap);
+  const LrbRep rep(builder.finish(true, false));
+  CHECK(rep.name() == "boxes");
+  CHECK(rep.real_face_count() == 6);
+  CHECK(rep.face_count() == 12);
+  for (FaceId f = 0; f < 6; ++f) CHECK(rep.face(f)[0] == inner.face(f)[0]);
+  CHECK(rep.lids(gap).size() == 6);
+  CHECK(rep.floor(gap).size() == 6);
+  const ValidateReport report = validate(rep);
+  CHECK(report.valid);
+  CHECK(report.volume_regions == doctest::Approx(26));
 }
 
 }  // namespace
