@@ -47,9 +47,9 @@ awk -v tolerance="$tolerance" -v compiler="$key" '
   FNR == NR { known[$1 " " $2] = $3; next }
   { key = $1 " " $2
     counted[$2] = $3
-    if (!(key in known)) { printf "%-18s %12d  NO approved count for %s: use --approve\n", $2, $3, $1; bad = 1; next }
+    if (!(key in known)) { printf "%-18s %12.0f  NO approved count for %s: use --approve\n", $2, $3, $1; bad = 1; next }
     change = 100 * ($3 / known[key] - 1)
-    printf("%-18s %12d  %+.2f %%%s\n", $2, $3, change, (change > tolerance ? "  MORE than " tolerance " %" : ""))
+    printf("%-18s %12.0f  %+.2f %%%s\n", $2, $3, change, (change > tolerance ? "  MORE than " tolerance " %" : ""))
     if (change > tolerance) bad = 1 }
   END {
     for (k in known)

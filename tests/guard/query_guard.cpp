@@ -1,6 +1,7 @@
-// A few queries and builds whose instructions guard.sh counts under callgrind, to which this program reports
+// Queries and builds whose instructions guard.sh counts under callgrind, to which this program reports
 // where each begins and ends. Alone it runs them and counts nothing. Prints the compiler first: counts depend
 // on it.
+#include <array>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -9,9 +10,12 @@
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/hard_bodies.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/distance.hpp>
+#include <lrbscope/mesh_check.hpp>
 #include <lrbscope/near_pairs.hpp>
+#include <lrbscope/validate.hpp>
 #include <lrbscope/workspace.hpp>
 
 using namespace lrb;
@@ -119,6 +123,69 @@ void count_build(const char* name, const Build& build) {
   std::printf("%s %zu\n", name, faces);
 }
 
+/// A body of which some work once grew with the square of its size: a large face, a vertex with many faces,
+/// many parts; and the works that are counted, for a query with a pose of a second body.
+struct Hard {
+  Mesh mesh;
+  std::string works = "check build proof query";
+  Pose pose = Pose::rotation({1, 2, 3}, 0.3, {0.3, 0.2, 0.4});  // in contact, a little aslant
+};
+
+/// The query of the bare faces of a body with themselves.
+std::size_t pairs_of(const Mesh& mesh, const Pose& a, const Pose& b) {
+  const LrbRep rep = LrbRep::without_regions(mesh, true, false);
+  return collide(rep, a, rep, b, CollideRequest{}).pairs.size();
+}
+
+std::size_t work(const std::string& kind, const Hard& x) {
+  if (kind == "check") return check_mesh(x.mesh).components;
+  if (kind == "build") return build_lrb(x.mesh).face_count();
+  if (kind == "proof") return validate(build_lrb(x.mesh), {.wrapper_states = 10}).embedding_pairs;
+  return pairs_of(x.mesh, {}, x.pose);
+}
+
+void count_growth() {
+  using namespace hard;
+  const Hard inputs[] = {
+      {drum(1000)},
+      {cog(500), "check query"},
+      {fine_box(1000), "check build query"},
+      {shapes::several({drum(500), shapes::translated(drum(500), {0, 0, 1})}), "check build"},
+      {cone(1000)},
+      {bipyramid(1000)},
+      {crown(1000)},
+      {fan_disk(1000), "check query"},
+      {frustum(1000)},
+      {nested(16), "check build proof query", Pose::translation({1.9, 0, 0})},
+      {pieces(6)},
+      {tiles(16)},
+      {tiles(16), "query", Pose::translation({0, 0, 1})},
+      {drum(1000), "query", Pose::translation({0.5, 0, 0.5})}};
+  for (const std::string kind : {"check", "build", "proof", "query"})
+    count_build((kind + "_hard").c_str(), [&] {
+      std::size_t sum = 0;
+      for (const Hard& x : inputs)
+        if (x.works.find(kind) != std::string::npos) sum += work(kind, x);
+      return sum;
+    });
+  // Under some maps boxes could cull nothing: the query would compare all faces with all.
+  const auto diagonal = [](double x, double y, double z) {
+    return Eigen::Matrix3d(Eigen::Vector3d(x, y, z).asDiagonal());
+  };
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(), shear{{1, 0.5, 0}, {0, 1, 0}, {0, 0, 1}},
+                        turn = deterministic::rotation(Eigen::Vector3d(1, 2, 3).normalized(), 0.3);
+  const std::array<Eigen::Matrix3d, 2> maps[] = {
+      {one, 1.01 * one}, {one, 1.5 * one},          {1e-150 * one, 1e-150 * one}, {one, diagonal(1, 2, 0.5)},
+      {shear, one},      {diagonal(-1, 1, 1), one}, {diagonal(1, 1, 0.001), one}, {one, diagonal(1, 1, 0)}};
+  const Mesh ball = shapes::uv_sphere(44, 45);
+  count_build("query_maps", [&] {
+    std::size_t sum = 0;
+    for (const auto& [a, b] : maps)
+      sum += pairs_of(ball, {a, {0, 0, 0}}, {b * turn, b * Eigen::Vector3d(0.5, 0.4, 0.3)});
+    return sum;
+  });
+}
+
 }  // namespace
 
 int main() {
@@ -133,4 +200,5 @@ int main() {
   const Mesh small = shapes::bumpy_sphere(3, 1);
   count_build("build_tree", [&]() -> std::size_t { return ObbTree(a.simplices(), 1).height(); });
   count_build("build_lrb", [&]() -> std::size_t { return build_lrb(small).face_count(); });
+  count_growth();
 }

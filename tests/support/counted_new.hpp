@@ -2,7 +2,6 @@
 /// Counts what `new` hands out, and makes it fail when a test says so: the executable that has
 /// counted_new.cpp allocates through it.
 
-#include <cstddef>
 #include <cstdint>
 
 namespace lrb::test {
@@ -17,16 +16,5 @@ bool allocation_has_failed();
 
 /// Of this thread, so far.
 std::uint64_t allocations();
-
-/// The most memory of all threads that has been held since it was made, beyond what was held then, to the
-/// byte. One at a time.
-class PeakMemory {
- public:
-  PeakMemory();
-  std::size_t bytes() const;
-
- private:
-  std::size_t before_;
-};
 
 }  // namespace lrb::test
