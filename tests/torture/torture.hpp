@@ -81,10 +81,6 @@ inline void complain(std::uint64_t& counter, std::string& trouble, const std::st
 /// line for each difference.
 Tally check(const cases::Case& c, RandomEngine& random, const Effort& effort, std::string& trouble);
 
-/// Gives a case's bodies regions by build_lrb(), where they have none and the mesh can be built and has at
-/// most `max_simplices` simplices: the answer must not change. How many bodies got some.
-int give_regions(cases::Case& c, cases::RandomEngine& random, std::uint32_t max_simplices);
-
 /// Asks coarse queries of a case with regions, whose relation and pairs are `truth`: of any tolerance, mode
 /// and limit of tests.
 void check_coarse(const cases::Case& c, const BruteForceResult& truth, RandomEngine& random, Tally& t,
