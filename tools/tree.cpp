@@ -122,9 +122,9 @@ std::string worst_text(const std::vector<profile::NodeFigures>& worst, const cap
   constexpr std::size_t kShown = 3;
   std::string out;
   for (std::size_t i = 0; i < std::min(kShown, worst.size()); ++i)
-    out += (i == 0 ? "" : "; ") + std::string("node ") + std::to_string(tree.id_of(worst[i].node)) +
-           ", depth " + std::to_string(worst[i].depth) + ", " +
-           counted(worst[i].triangles, "triangle", "triangles") + ": " + percent(worst[i].epo / epo);
+    out += (i == 0 ? "" : "; ") + std::string("node ") + tree.name_of_node(worst[i].node) + ", depth " +
+           std::to_string(worst[i].depth) + ", " + counted(worst[i].triangles, "triangle", "triangles") +
+           ": " + percent(worst[i].epo / epo);
   return out;
 }
 
@@ -168,7 +168,7 @@ std::string text_of_tree(const Trees& all, const capture::Tree& tree, const prof
   if (f.looseness)
     line("volume / tightest box of its triangles: median " + number(f.looseness->median) +
          ", 90th percentile " + number(f.looseness->p90) + ", largest " + number(f.looseness->largest) +
-         " (node " + std::to_string(tree.id_of(f.looseness->node)) + ")");
+         " (node " + tree.name_of_node(f.looseness->node) + ")");
   line("volumes: " + std::to_string(f.volume_bytes) + " bytes as captured, in doubles" +
        (mesh.triangles.empty()
             ? ""
@@ -179,8 +179,8 @@ std::string text_of_tree(const Trees& all, const capture::Tree& tree, const prof
   if (f.beyond.of > 0)
     line("children beyond their parent's volume (not a fault): " + std::to_string(f.beyond.count) + " of " +
          std::to_string(f.beyond.of) +
-         (f.beyond.node != kNull ? ", the farthest node " + std::to_string(tree.id_of(f.beyond.node)) +
-                                       ", by " + percent(f.beyond.share) + " of the diagonal"
+         (f.beyond.node != kNull ? ", the farthest node " + tree.name_of_node(f.beyond.node) + ", by " +
+                                       percent(f.beyond.share) + " of the diagonal"
                                  : ""));
   if (!f.worst.empty()) line("worst by EPO: " + worst_text(f.worst, tree, f.epo->value));
   return out + faults_text(report.faults, tree, mesh);
@@ -188,14 +188,18 @@ std::string text_of_tree(const Trees& all, const capture::Tree& tree, const prof
 
 // JSON. Nodes have the engine's numbers.
 
+Json node_json(const capture::Tree& tree, std::uint32_t node) {
+  return tree.instances.empty() ? Json(tree.id_of(node)) : Json(tree.name_of_node(node));
+}
+
 Json fault_json(const profile::FoundFault& f, const capture::Tree& tree, const capture::Mesh& mesh) {
   Json j{{"kind", name_of(f.kind)}};
-  if (f.node != kNull) j["node"] = tree.id_of(f.node);
+  if (f.node != kNull) j["node"] = node_json(tree, f.node);
   if (!f.nodes.empty()) {
     const char* key = f.kind == profile::TreeFault::two_parents              ? "parents"
                       : f.kind == profile::TreeFault::triangle_in_two_leaves ? "leaves"
                                                                              : "nodes";
-    for (const std::uint32_t n : f.nodes) j[key].push_back(tree.id_of(n));
+    for (const std::uint32_t n : f.nodes) j[key].push_back(node_json(tree, n));
   }
   if (f.triangle != kNull) j["triangle"] = f.triangle;
   if (f.kind == profile::TreeFault::no_parent) j["nodes_below"] = f.count;
@@ -220,7 +224,7 @@ Json fault_json(const profile::FoundFault& f, const capture::Tree& tree, const c
 Json nodes_json(const std::vector<profile::NodeFigures>& nodes, const capture::Tree& tree) {
   Json out = Json::array();
   for (const profile::NodeFigures& n : nodes)
-    out.push_back({{"node", tree.id_of(n.node)},
+    out.push_back({{"node", node_json(tree, n.node)},
                    {"depth", n.depth},
                    {"triangles", n.triangles},
                    {"area", n.area},
@@ -265,12 +269,12 @@ Json tree_json(const Trees& all, const capture::Tree& tree, const profile::TreeR
     j["volume_over_tightest_box"] = {{"median", f.looseness->median},
                                      {"p90", f.looseness->p90},
                                      {"largest", f.looseness->largest},
-                                     {"node", tree.id_of(f.looseness->node)}};
+                                     {"node", node_json(tree, f.looseness->node)}};
   j["volume_bytes"] = f.volume_bytes;
   j["beyond_parent"] = {{"nodes", f.beyond.count},
                         {"of", f.beyond.of},
                         {"largest_share_of_diagonal", f.beyond.share},
-                        {"node", f.beyond.node == kNull ? Json(nullptr) : Json(tree.id_of(f.beyond.node))}};
+                        {"node", f.beyond.node == kNull ? Json(nullptr) : node_json(tree, f.beyond.node)}};
   j["worst_by_epo"] = nodes_json(f.worst, tree);
   Json by_kind = Json::object(), list = Json::array();
   for (std::size_t kind = 0; kind < profile::kTreeFaults; ++kind)

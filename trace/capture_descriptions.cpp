@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include <Eigen/Core>
 
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
@@ -10,7 +13,7 @@ namespace lrb::capture {
 namespace {
 
 /// Bits of the word of options of a TREE.
-constexpr std::uint32_t kHasIds = 1, kFloatVolumes = 2, kSplits = 4;
+constexpr std::uint32_t kHasIds = 1, kFloatVolumes = 2, kSplits = 4, kInstances = 8;
 
 /// Returns the number of doubles per volume; 0 for an unknown kind.
 std::uint64_t numbers_of(std::uint32_t kind, std::uint64_t directions) {
@@ -29,26 +32,53 @@ std::uint64_t numbers_of(std::uint32_t kind, std::uint64_t directions) {
   return 0;
 }
 
+bool is_box(VolumeKind kind) {
+  return kind == VolumeKind::aabb || kind == VolumeKind::obb;
+}
+
+/// Appends a moved volume: an AABB or OBB as an OBB, a sphere or RSS as an RSS.
+void append_moved(std::span<const double> n, VolumeKind kind, const Pose& map, std::vector<double>& out) {
+  const auto vector = [&](std::size_t i) { return Eigen::Vector3d(n[i], n[i + 1], n[i + 2]); };
+  const auto append = [&](const Eigen::Vector3d& x) { out.insert(out.end(), x.data(), x.data() + 3); };
+  const Eigen::Vector3d half =
+      kind == VolumeKind::aabb ? Eigen::Vector3d((vector(3) - vector(0)) / 2) : vector(0);
+  append(map.apply(kind == VolumeKind::aabb ? vector(0) + half : half));
+  for (int k = 0; k < 3 && kind == VolumeKind::aabb; ++k) append(half[k] * map.r.col(k));
+  for (std::size_t i = 3; i + 2 < n.size() && kind != VolumeKind::aabb; i += 3) append(map.r * vector(i));
+  if (is_box(kind)) return;
+  if (kind == VolumeKind::sphere) out.insert(out.end(), 6, 0);
+  out.push_back(n.back() * map.r.col(0).norm());
+}
+
 }  // namespace
+
+std::string Tree::name_of_node(std::uint32_t node) const {
+  const auto i = std::ranges::upper_bound(instances, node, {}, &Instance::first_node) - instances.begin();
+  return text(id_of(node)) + (i == 0 ? "" : " of instance " + text(i - 1));
+}
+std::string Tree::name_of_triangle(std::uint32_t t) const {
+  const auto i = std::ranges::upper_bound(instances, t, {}, &Instance::first_triangle) - instances.begin();
+  return i == 0 ? text(t) : text(t - instances[i - 1].first_triangle) + " of instance " + text(i - 1);
+}
 
 std::size_t Tree::numbers() const {
   return numbers_of(static_cast<std::uint32_t>(volume), directions.size());
 }
 
 void Descriptions::define(std::unordered_map<std::uint32_t, std::uint32_t>& ids, std::uint32_t id,
-                          const char* what) {
-  if (id == 0 || !ids.emplace(id, static_cast<std::uint32_t>(ids.size())).second)
+                          std::size_t index, const char* what) {
+  if (id == 0 || !ids.emplace(id, static_cast<std::uint32_t>(index)).second)
     fail(std::string("expected a new id of a ") + what + " above 0, found " + text(id) +
          "; the file is damaged, or two programs wrote to it");
 }
 
 void Descriptions::read_name() {
-  define(names_, u32(), "name");
+  define(names_, u32(), out_.names.size(), "name");
   out_.names.push_back(printable_name(characters(left())));
 }
 
 void Descriptions::read_mesh() {
-  define(meshes_, u32(), "mesh");
+  define(meshes_, u32(), out_.meshes.size(), "mesh");
   const std::uint32_t vertices = u32(), triangles = u32(), length = u32();
   Mesh mesh;
   mesh.name = printable_name(characters(length));
@@ -73,17 +103,17 @@ void Descriptions::read_mesh() {
 
 void Descriptions::read_tree() {
   Tree tree;
-  define(trees_, tree.id = u32(), "tree");
+  define(trees_, tree.id = u32(), out_.trees.size(), "tree");
   const std::uint32_t mesh = u32(), replaces = u32(), nodes = u32(), kind = u32(), directions = u32();
-  const std::uint32_t options = u32();
-  u32();  // reserved
-  tree.mesh = index_of(meshes_, mesh, "mesh");
+  const std::uint32_t options = u32(), name_length = u32();
+  const bool of_instances = (options & kInstances) != 0;  // then `mesh` is their number
+  if (!of_instances) tree.mesh = index_of(meshes_, mesh, "mesh");
   if (replaces != 0) {
     tree.replaces = index_of(trees_, replaces, "tree");
     if (replaces == tree.id) fail("tree " + text(tree.id) + " replaces itself; name the tree before it");
   }
   require(nodes != 0 && nodes != kNull, "expected at least one node; also describe the root");
-  require((options & ~(kHasIds | kFloatVolumes | kSplits)) == 0,
+  require((options & ~(kHasIds | kFloatVolumes | kSplits | kInstances)) == 0,
           "unknown options of a tree; use a newer lrbscope");
   require(kind != static_cast<std::uint32_t>(VolumeKind::kdop) || directions <= left() / 24,
           "more directions than its content has room for; the file is damaged");
@@ -98,7 +128,8 @@ void Descriptions::read_tree() {
       "expected AABBs, OBBs or k-DOPs of a tree with spatial splits, found spheres or RSS; leave LRBCAP_SPLITS out");
   if ((options & kHasIds) != 0) tree.ids = numbers<std::uint32_t>(nodes);
   read_ranges(nodes, nodes, "child", tree.first_child, tree.child);
-  read_ranges(nodes, kNull, "triangle", tree.first_triangle, tree.triangle);
+  read_ranges(nodes, of_instances ? mesh : kNull, of_instances ? "instance" : "triangle", tree.first_triangle,
+              tree.triangle);
   if ((options & kFloatVolumes) != 0) {
     const std::vector<float> floats = numbers<float>(nodes * per_node);
     tree.volumes.assign(floats.begin(), floats.end());
@@ -118,6 +149,7 @@ void Descriptions::read_tree() {
     }
   }
   index_nodes(tree);
+  if (of_instances) join_instances(tree, mesh, name_length);
   out_.trees.push_back(std::move(tree));
 }
 
@@ -137,8 +169,10 @@ void Descriptions::read_ranges(std::uint32_t n, std::uint32_t end, const char* w
   if (wrong == indices.end()) return;
   const auto position = static_cast<std::uint32_t>(wrong - indices.begin());
   const auto node = std::upper_bound(offsets.begin(), offsets.end(), position) - offsets.begin() - 1;
-  fail("node " + text(static_cast<std::uint64_t>(node)) + ": expected a " + what + " below " + text(end) +
-       ", found " + text(*wrong) + "; children are indices of nodes, not ids");
+  const bool of_nodes = std::string_view(what) == "child";
+  fail("node " + text(static_cast<std::uint64_t>(node)) + ": expected " + (of_nodes ? "a " : "an ") + what +
+       " below " + text(end) + ", found " + text(*wrong) + "; " +
+       (of_nodes ? "children are indices of nodes, not ids" : "instances are numbered from 0"));
 }
 
 void Descriptions::index_nodes(const Tree& tree) {
@@ -149,6 +183,92 @@ void Descriptions::index_nodes(const Tree& tree) {
     if (table[i].first == table[i - 1].first)
       fail("nodes " + text(table[i - 1].second) + " and " + text(table[i].second) + " have the same id, " +
            text(table[i].first) + "; give each node an id of its own");
+}
+
+void Descriptions::join_instances(Tree& tree, std::uint32_t count, std::uint32_t name_length) {
+  constexpr std::uint64_t kMax =
+      8'000'000;  // more than can be checked: a small file must not fill the memory
+  const std::vector<std::uint32_t> bodies = numbers<std::uint32_t>(count);
+  const std::vector<double> poses = numbers<double>(std::uint64_t{12} * count);
+  Mesh mesh;
+  mesh.name = printable_name(characters(name_length));
+  // Step 1: where the nodes and triangles of each body begin.
+  bool same_kind = tree.volume != VolumeKind::kdop;
+  std::uint32_t nodes = static_cast<std::uint32_t>(tree.size()), triangles = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t index = index_of(trees_, bodies[i], "tree");
+    if (index == out_.trees.size() || !out_.trees[index].instances.empty())
+      fail("instance " + text(i) + ": expected the tree of a mesh, found tree " + text(bodies[i]) +
+           " of instances; join the two upper levels");
+    const Tree& body = out_.trees[index];
+    const Mesh& its = out_.meshes[body.mesh];
+    joined_ +=
+        body.size() + body.child.size() + body.triangle.size() + its.triangles.size() + its.vertices.size();
+    require(
+        joined_ <= kMax,
+        "more than 8 million nodes, vertices and triangles of all instances; record fewer bodies or frames");
+    same_kind = same_kind && body.volume != VolumeKind::kdop && is_box(body.volume) == is_box(tree.volume);
+    tree.splits = tree.splits || body.splits;
+    tree.instances.push_back({index, nodes, triangles});
+    nodes += static_cast<std::uint32_t>(body.size()),
+        triangles += static_cast<std::uint32_t>(its.triangles.size());
+  }
+  require(
+      same_kind,
+      "expected AABBs and OBBs, or spheres and RSS, in the tree of instances and those of its bodies; describe "
+      "others by their boxes");
+  // Step 2: the tree's own nodes, whose leaves get the roots of the bodies as children.
+  Tree out = tree;
+  out.volume = is_box(tree.volume) ? VolumeKind::obb : VolumeKind::rss;
+  out.child.clear(), out.triangle.clear(), out.volumes.clear();
+  out.first_child = out.first_triangle = {0};
+  const auto end_node = [&](const Tree& of, std::uint32_t n, const Pose& map) {
+    append_moved(of.volume_of(n), of.volume, map, out.volumes);
+    out.first_child.push_back(static_cast<std::uint32_t>(out.child.size()));
+    out.first_triangle.push_back(static_cast<std::uint32_t>(out.triangle.size()));
+  };
+  for (std::uint32_t n = 0; n < tree.size(); ++n) {
+    for (const std::uint32_t child : tree.children(n)) out.child.push_back(child);
+    for (const std::uint32_t i : tree.triangles(n)) out.child.push_back(tree.instances[i].first_node);
+    if (tree.ids.empty()) out.ids.push_back(n);
+    end_node(tree, n, {});
+  }
+  // Step 3: the nodes, vertices and triangles of each body, moved.
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Instance& at = tree.instances[i];
+    const Tree& body = out_.trees[at.tree];
+    const Mesh& its = out_.meshes[body.mesh];
+    const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> pose(&poses[12 * std::size_t{i}]);
+    const Pose map{pose.leftCols<3>(), pose.col(3)};
+    // The axes must stay orthogonal, and equally long unless the volumes are along them.
+    const Eigen::Matrix3d products = map.r.transpose() * map.r;
+    const Eigen::Vector3d lengths = products.diagonal();
+    const double skew = (products - Eigen::Matrix3d(lengths.asDiagonal())).cwiseAbs().maxCoeff(),
+                 scales = body.volume == VolumeKind::aabb ? 0 : lengths.maxCoeff() - lengths.minCoeff();
+    bool valid =
+        pose.allFinite() && lengths.minCoeff() > 0 && std::max(skew, scales) <= kRigid * lengths.minCoeff();
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Eigen::Vector3d& x : its.vertices) {
+      mesh.vertices.emplace_back(map.apply(x));
+      valid = valid && mesh.vertices.back().allFinite();
+    }
+    if (!valid)
+      fail(
+          "instance " + text(i) +
+          ": expected a rotation, a translation and a scale, for AABBs one along each of their axes, without shear; "
+          "poses are 12 doubles, 3x4 row by row");
+    for (const auto& [a, b, c] : its.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+    for (std::uint32_t n = 0; n < body.size(); ++n) {
+      for (const std::uint32_t child : body.children(n)) out.child.push_back(at.first_node + child);
+      for (const std::uint32_t t : body.triangles(n))  // one that does not exist stays so
+        out.triangle.push_back(t < its.triangles.size() ? at.first_triangle + t : kNull.kValue);
+      out.ids.push_back(body.id_of(n));
+      end_node(body, n, map);
+    }
+  }
+  out.mesh = static_cast<std::uint32_t>(out_.meshes.size());
+  out_.meshes.push_back(std::move(mesh));
+  tree = std::move(out);
 }
 
 std::uint32_t Descriptions::index_of(const std::unordered_map<std::uint32_t, std::uint32_t>& ids,

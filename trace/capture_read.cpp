@@ -22,8 +22,6 @@
 namespace lrb::capture {
 namespace {
 
-constexpr double kRigid = 1e-6;  ///< of a rotation's determinant and of the products of its columns
-
 /// Bits of the first byte of an event, above its kind.
 constexpr std::uint8_t kMet = 4, kCounted = 8, kHasAxis = 16, kKnownBits = 31;
 constexpr std::size_t kLeastEvent = 3;  ///< bytes of an event in the file
@@ -55,7 +53,9 @@ struct Growing {
   struct Stored {
     std::uint32_t thread = 0;
     std::vector<Event> events;
-    bool rooted = false;  ///< its first test of nodes was checked
+    bool rooted = false;                                   ///< its first test of nodes was checked
+    std::array<std::uint32_t, 2> instances{kNull, kNull};  ///< that it entered; kNull: the tree itself
+    std::uint64_t entered = 0;                             ///< how often
   };
   Query query;
   std::uint64_t begin_ticks = 0, took_ticks = 0;
@@ -119,7 +119,7 @@ class Reader : public Descriptions {
         {"VALU", &Reader::read_value},  {"RATE", &Reader::read_rate}};
     for (const auto& [kind, read] : kKinds) {
       if (kind_ != kind) continue;
-      const std::uint32_t known = kind_ == "QRYB" ? 2 : 1;  // 2: of a probe
+      const std::uint32_t known = kind_ == "QRYB" || kind_ == "TREE" ? 2 : 1;  // of a probe, of instances
       if (version_ == 0 || version_ > known)
         fail("expected version " + text(known) + ", found " + text(version_) + "; use a newer lrbscope");
       (this->*read)();
@@ -170,7 +170,7 @@ class Reader : public Descriptions {
       read_probe(query, shape);
     query.thread = thread;
     growing.begin_ticks = ticks_;
-    growing.parts.push_back({thread, {}, false});
+    growing.parts.emplace_back().thread = thread;
     last_begun_ = std::max(last_begun_, query_);
     if (!queries_.try_emplace(query_, std::move(growing)).second)
       fail("begins a second time; the file is damaged, or two programs wrote to it");
@@ -265,9 +265,11 @@ class Reader : public Descriptions {
     query.events_seen = u64();
     u64();  // reserved
     ended_ = query_;
-    if (is_wanted() && query.events_seen < growing.parts[0].events.size())
-      fail("expected at least the " + text(growing.parts[0].events.size()) + " events stored, found " +
-           text(query.events_seen) + "; the file is damaged");
+    const std::uint64_t entered = growing.parts[0].entered, stored = growing.parts[0].events.size() + entered;
+    if (is_wanted() && query.events_seen < stored)
+      fail("expected at least the " + text(stored) + " events stored, found " + text(query.events_seen) +
+           "; the file is damaged");
+    if (is_wanted()) query.events_seen -= entered;
   }
 
   bool is_wanted() const { return query_ >= first_ && query_ <= last_; }
@@ -281,9 +283,11 @@ class Reader : public Descriptions {
       now = growing.part_now.emplace(thread, 0).first;
     else if (first == 0 && !own) {  // a thread may join a query again
       now = growing.part_now.insert_or_assign(thread, growing.parts.size()).first;
-      growing.parts.push_back({thread, {}, false});
+      growing.parts.emplace_back().thread = thread;
     }
-    const std::uint64_t stored = now == growing.part_now.end() ? 0 : growing.parts[now->second].events.size();
+    std::uint64_t stored = 0;
+    if (now != growing.part_now.end())
+      stored = growing.parts[now->second].events.size() + growing.parts[now->second].entered;
     if (stored != first)
       fail("expected event " + text(stored) + " of thread " + text(thread) + " next, found event " +
            text(first) + "; the file is damaged");
@@ -324,7 +328,8 @@ class Reader : public Descriptions {
       if ((head & kHasAxis) != 0) e.axis = number<std::uint8_t>();
       e.a = a[kind] += difference();
       e.b = b[kind] += difference();
-      convert(growing.query, e);
+      if (enters(growing.query, part, e)) continue;
+      convert(growing.query, part, e);
       if (e.kind == EventKind::nodes && !part.rooted) check_start(growing, part, e);
       part.events.push_back(e);
     }
@@ -344,8 +349,28 @@ class Reader : public Descriptions {
     return (z >> 1) ^ (0u - (z & 1));
   }
 
+  const std::vector<Instance>& instances_of(std::uint32_t tree) const {
+    static const std::vector<Instance> kNone;
+    return tree == kNull ? kNone : out_.trees[tree].instances;
+  }
+
+  /// Returns true for an event that enters instances: a test of none.
+  bool enters(const Query& query, Growing::Stored& part, const Event& e) {
+    const std::uint32_t numbers[] = {e.a, e.b};
+    const bool has_instances = !instances_of(query.trees[0]).empty() || !instances_of(query.trees[1]).empty();
+    if (e.kind != EventKind::nodes || e.tests != 0 || e.met != 0 || !has_instances) return false;
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
+      if (const std::size_t count = instances_of(query.trees[side]).size();
+          numbers[side] != kNull && numbers[side] >= count)
+        fail(std::string("expected an instance of ") + "AB"[side] + " below " + text(count) +
+             ", or LRBCAP_TOP, found " + text(numbers[side]) + "; see LRBCAP_ENTER in docs/capture.md");
+    part.instances = {e.a, e.b};
+    ++part.entered;
+    return true;
+  }
+
   /// Checks an event, and replaces the engine's ids by our numbers.
-  void convert(const Query& query, Event& e) {
+  void convert(const Query& query, const Growing::Stored& part, Event& e) {
     if (e.tests == 0 || e.met > e.tests)
       fail("expected at least one test and no more overlaps than tests, found " + text(e.met) + " of " +
            text(e.tests) + "; see LRBCAP_NODES in docs/capture.md");
@@ -363,20 +388,30 @@ class Reader : public Descriptions {
         fail("expected node and triangle 0 of the " + std::string(name_of(query.probe.shape)) +
              " (B), found " + text(e.b) + "; name it 0");
       if (tree == kNull) continue;
-      if (e.kind == EventKind::nodes)
-        convert_node(tree, "AB"[side], *numbers[side]);
-      else
-        check_triangle(tree, "AB"[side], *numbers[side]);
+      const std::vector<Instance>& all = out_.trees[tree].instances;
+      const bool is_inside = part.instances[side] != kNull;
+      const Instance at = is_inside ? all[part.instances[side]] : Instance{tree, 0, 0};
+      if (e.kind == EventKind::nodes) {
+        convert_node(at.tree, "AB"[side], *numbers[side]);
+        *numbers[side] += at.first_node;
+      } else {
+        if (!is_inside && !all.empty())
+          fail(std::string("expected LRBCAP_ENTER before a test of triangles of ") + "AB"[side] +
+               ", a tree of instances, found none; see docs/capture.md");
+        check_triangle(at.tree, "AB"[side], *numbers[side]);
+        *numbers[side] += at.first_triangle;
+      }
     }
   }
   void convert_node(std::uint32_t tree, char side, std::uint32_t& id) const {
     const auto& table = node_of_[tree];
-    const std::size_t size = out_.trees[tree].size();
+    const Tree& its = out_.trees[tree];
+    const std::size_t size = its.instances.empty() ? its.size() : its.instances.front().first_node;
     if (table.empty() && id < size) return;
     const auto found = std::lower_bound(table.begin(), table.end(), std::pair(id, std::uint32_t{0}));
     if (found == table.end() || found->first != id)
-      fail("expected a node of tree " + text(out_.trees[tree].id) + " (" + side + "), which has " +
-           text(size) + " nodes, found id " + text(id) + "; use the ids of the tree's description");
+      fail("expected a node of tree " + text(its.id) + " (" + side + "), which has " + text(size) +
+           " nodes, found id " + text(id) + "; use the ids of the tree's description");
     id = found->second;
   }
   void check_triangle(std::uint32_t tree, char side, std::uint32_t triangle) const {
@@ -401,7 +436,7 @@ class Reader : public Descriptions {
       const auto children = out_.trees[tree].children(0);
       if (std::find(children.begin(), children.end(), nodes[side]) == children.end())
         fail("expected the roots or their children in the first test of nodes, found node " +
-             text(out_.trees[tree].id_of(nodes[side])) + " of " + "AB"[side] +
+             out_.trees[tree].name_of_node(nodes[side]) + " of " + "AB"[side] +
              "; check the order of A and B, the tree, and that node 0 of its description is the root");
     }
   }

@@ -42,16 +42,17 @@ FIELDS = {
     "RATE": "every:u8",
     "NAME": "number:u4 name:text",
     "MESH": "number:u4 n_vertices:u4 n_faces:u4 n_name:u4 name:text:n_name vertices:f8:n_vertices,3 faces:u4:n_faces,3",
-    "TREE": "number:u4 mesh:u4 replaces:u4 nodes:u4 volume:u4 n_directions:u4 options:u4 zero:u4 ids:u4:nodes*(options&1) "
+    "TREE": "number:u4 mesh:u4 replaces:u4 nodes:u4 volume:u4 n_directions:u4 options:u4 n_name:u4 ids:u4:nodes*(options&1) "
     "first_child:u4:nodes+1 child:u4:first_child[-1] first_prim:u4:nodes+1 prim:u4:first_prim[-1] "
-    f"volumes:f8:nodes*(~options>>1&1),{_SIZE} float_volumes:f4:nodes*(options>>1&1),{_SIZE} directions:f8:n_directions,3",
+    f"volumes:f8:nodes*(~options>>1&1),{_SIZE} float_volumes:f4:nodes*(options>>1&1),{_SIZE} directions:f8:n_directions,3 "
+    "bodies:u4:mesh*(options>>3&1) poses:f8:mesh*(options>>3&1),3,4 name:text:n_name",
     "QRYB": "zero:u8 query:u4 kind:u4 tree_a:u4 tree_b:u4 zero:u8 thread:u4 probe:u4 pose_a:f8:3,4 pose_b:f8:3,4",
     "EVTS": "query:u4 thread:u4 before:u8 n_events:u4 part:u4 events:event:n_events",
     "VALU": "query:u8 lower:f8 upper:f8",
     "QRYE": "ticks:u8 query:u4 verdict:u4 pairs:u8 n_events:u8 zero:u8",
 }
 """dict: for each chunk the fields: name, type, and the shape by the fields before; without one: a number, or the rest as text.
-In QRYB, probe is 1 for a ray, 2 for a point and 3 for a box, whose 8, 3 or 6 numbers are then in pose_b, followed by zeros."""
+In TREE of instances, mesh is their number. In EVTS, an event of kind 0 without tests enters instances. In QRYB, probe is 1 for a ray, 2 for a point and 3 for a box, whose 8, 3 or 6 numbers are then in pose_b, followed by zeros."""
 
 
 def _layout(letters: str) -> list[list[str]]:
@@ -91,7 +92,8 @@ def chunk(letters: str, /, **given: Any) -> Chunk:
     """Return a chunk of these fields. Others are 0, empty, the identity or, if called n_X, the length of X."""
     given = {name: value.encode() if isinstance(value, str) else value for name, value in given.items()}
     if letters == "TREE":
-        given.setdefault("options", ("ids" in given) + 2 * ("float_volumes" in given))
+        given.setdefault("options", ("ids" in given) + 2 * ("float_volumes" in given) + 8 * ("bodies" in given))
+        given.setdefault("mesh", len(given.get("bodies", ())))
         given.setdefault("nodes", len(given.get("first_child", (0,))) - 1)
     content, known = b"", []
     for name, type_, shape in _layout(letters):
@@ -181,7 +183,8 @@ def write(path: _Path, chunks: Iterable[Chunk]) -> None:
     with open(path, "wb") as file:
         file.write(_MAGIC)
         for letters, ticks, content in chunks:
-            version = 2 if letters == "QRYB" and any(content[36:40]) else 1  # of a probe
+            # Of a probe, of instances.
+            version = 1 + (letters == "QRYB" and any(content[36:40]) or letters == "TREE" and content[24] >> 3 & 1)
             file.write(struct.pack("<4sIQQ", letters.encode("latin-1"), version, len(content), ticks) + content)
 
 

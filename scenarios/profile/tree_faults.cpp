@@ -285,10 +285,10 @@ std::uint64_t TreeFaults::total() const {
 }
 
 std::string text_of(const FoundFault& fault, const capture::Tree& tree, const capture::Mesh& mesh) {
-  const auto id = [&](std::uint32_t n) { return std::to_string(tree.id_of(n)); };
+  const auto id = [&](std::uint32_t n) { return tree.name_of_node(n); };
   const std::string node = fault.node == kNull ? "" : "node " + id(fault.node);
   const std::string leaf = fault.node == kNull ? "" : "leaf " + id(fault.node);
-  const std::string triangle = "triangle " + std::to_string(fault.triangle);
+  const std::string triangle = "triangle " + tree.name_of_triangle(fault.triangle);
   const auto list = [&](const char* between, const char* last) {
     std::string out;
     for (std::size_t i = 0; i < fault.nodes.size(); ++i)

@@ -18,6 +18,7 @@ std::string recorded(std::uint32_t volume, const std::uint32_t* ids) {
     tree.float_volumes = floats;
     tree.direction = directions;
     const std::uint32_t a = LRBCAP_TREE(&tree), name = LRBCAP_NAME("n");
+    const std::uint32_t row = volume == LRBCAP_AABB ? capture::a_row(a) : 0;
     const auto id = [&](std::uint32_t node) { return ids == nullptr ? node : ids[node]; };
     for (const std::uint32_t b : {a, 0u}) {
       LRBCAP_RAY(LRBCAP_ANY, a, nullptr, numbers);
@@ -27,6 +28,13 @@ std::string recorded(std::uint32_t volume, const std::uint32_t* ids) {
       LRBCAP_NODES(id(1), id(2), 4, 2, 7);
       LRBCAP_PRIM(1, 0, 0);
       LRBCAP_COUNT(name, 70000);
+      LRBCAP_END(LRBCAP_INTERSECTING, 1);
+      if (row == 0) continue;
+      LRBCAP_BEGIN(LRBCAP_ANY, row, nullptr, row, nullptr);
+      LRBCAP_ENTER(2, LRBCAP_TOP);
+      LRBCAP_NODE(0, 0, 1, LRBCAP_NO_AXIS);
+      LRBCAP_ENTER(3, 0);
+      LRBCAP_PRIM(3, 1, 1);
       LRBCAP_END(LRBCAP_INTERSECTING, 1);
     }
   });

@@ -36,10 +36,11 @@ def test_what_a_program_recorded(recorded):
     tree = fields["TREE"]
     assert (tree.mesh, tree.nodes, tree.child.tolist(), tree.prim.tolist()) == (1, 3, [1, 2], [1, 0])
     assert tree.volumes[2].tolist() == [0, 0.25, 0, 1, 1, 1] and tree.float_volumes.shape == (0, 6)
-    one, two = capture.queries(chunks)
+    one, two, three = capture.queries(chunks)
     assert (one.query, one.kind, one.tree_a, one.tree_b, one.verdict, one.pairs, one.n_events) == (1, 1, 1, 2, 1, 1, 4)
     assert one.pose_a[:, 3].tolist() == [4, 5, 6] and np.array_equal(one.pose_b, np.eye(3, 4)) and one.ticks > 0
     assert one.events.tolist() == [(0, 0, 0, 1, 255, 1), (0, 2, 0, 0, 255, 1), (0, 1, 0, 1, 255, 1), (1, 1, 0, 1, 255, 1)]
+    assert (three.probe, three.lower, three.pose_b.ravel()[5]) == (1, 0.5, 1)
     assert two.events[["a", "b", "met"]].tolist() == [(4000000000, 300, 0), (1, 0, 1)] and two.verdict == 0
 
 
@@ -96,3 +97,53 @@ def test_answers_are_checked(tmp_path):
     assert [q["exact_pairs"] for q in queries] == [1, 1, 1, 0, 0, 0] and queries[3]["remark"].endswith("intersecting; nothing is hit")
     with pytest.raises(ValueError, match="nothing.lrbcap: no such file"):
         capture.check(tmp_path / "nothing.lrbcap", program=PROGRAM)
+
+
+@pytest.mark.skipif(not os.path.exists(PROGRAM), reason="the program was not built")
+def test_two_levels(tmp_path):
+    """A row of three squares that share a tree, the last one turned: a ray, the row with another one, and planted faults."""
+    top = 2**32 - 1
+    square = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], "faces": [[0, 1, 2], [3, 1, 2]]}
+    nodes = {"first_child": [0, 2, 2, 2], "child": [1, 2], "volume": 1}
+    places = [np.eye(3, 4), np.eye(3, 4), np.array([[0, -1, 0, 5], [1, 0, 0, 0], [0, 0, 1, 0]])]
+    places[1][0, 3] = 2
+    row = {"first_prim": [0, 0, 2, 3], "prim": [0, 1, 2], "bodies": [1, 1, 1], "poses": places}
+    boxes = [[0, 0, 0, 5, 1, 0], [0, 0, 0, 3, 1, 0], [4, 0, 0, 5, 1, 0]]
+    standing = np.array([[1, 0, 0, 0.25], [0, 0, -1, 0.5], [0, 1, 0, -0.5]])
+    parts = [(i, t, x, x + 0.5) for i, pair in enumerate(([0, 0.5], [2, 2.5], [4.5, 4])) for t, x in enumerate(pair)]  # on y = 0.5, z = 0
+
+    def recorded(forgets=(), flat_box=(0, 0, 0, 1, 1, 0), body=1):
+        made = [*capture.begin("two levels"), capture.chunk("MESH", number=1, **square)]
+        leaves = {"first_prim": [0, 0, 1, 2], "prim": [0, 1], "volumes": [[0, 0, 0, 1, 1, 0], [0, 0, 0, 1, 1, 0], flat_box]}
+        made.append(capture.chunk("TREE", number=1, mesh=1, **nodes, **leaves))
+        made.append(capture.chunk("TREE", number=2, name="row", volumes=boxes, **nodes, **{**row, "bodies": [1, 1, body]}))
+        hit = [(0, n, 0, m, 255, 1) for n, m in ((0, 1), (1, 0), (2, 1))] + [(0, 2, top, 0, 255, 0)]
+        hit += [e for e in [(0, 0, 0, 1, 255, 1), (0, 1, 0, 1, 255, 1), (1, 0, 0, 0, 255, 1), (0, 2, 0, 1, 255, 1), (1, 1, 0, 1, 255, 1)] if e not in forgets]
+        meets = [(0, 0, 0, 1, 255, 1)]
+        for i, f, low, high in parts:
+            for j, g, least, most in parts:
+                met = low <= most + 0.25 and least + 0.25 <= high
+                meets += [(0, i, j, 0, 255, 0), (0, 0, 0, 1, 255, 1), (0, 1 + f, 1 + g, 1, 255, 1), (1, f, g, met, 255, 1)]
+        pairs = sum(met for kind, *_, met, _, _ in meets if kind == 1)
+        for n, (events, begin, count) in enumerate(
+            ((hit, {"probe": 1, "pose_b": [4.3, 0.9, 3, 0, 0, -1, 0, np.inf]}, 1), (meets, {"tree_b": 2, "pose_b": standing}, pairs)), 1
+        ):
+            made.append(capture.chunk("QRYB", query=n, kind=1, tree_a=2, thread=1, **begin))
+            made.append(capture.chunk("EVTS", query=n, thread=1, events=events))
+            made.append(capture.chunk("QRYE", query=n, verdict=1, pairs=count, n_events=len(events)))
+        capture.write(tmp_path / "made.lrbcap", made)
+        return capture.check(tmp_path / "made.lrbcap", program=PROGRAM)
+
+    def said(command):
+        return subprocess.run([PROGRAM, command, tmp_path / "made.lrbcap"], capture_output=True, text=True).stdout
+
+    *queries, sums = recorded()
+    assert [q["verdict"] for q in queries] == ["right", "right"] and [q["exact_pairs"] for q in queries][0] == 1
+    assert queries[1]["exact_pairs"] == queries[1]["right"] > 3 and "tree_faults" not in sums
+    assert [q["prices"]["unattributed"] for q in queries] == [0, 0]
+    recorded(forgets=[(0, 2, 0, 1, 255, 1), (1, 1, 0, 1, 255, 1)])
+    assert "missed 1 of instance 2: node 0 of instance 2, which contains it, and the probe overlap, but" in said("check")
+    recorded(flat_box=(0, 0, 0, 0.5, 1, 0))
+    assert "triangle 1 of instance 1, corner" in said("tree") and "lies outside node 2 of instance 1 (depth 3) by 0.5" in said("tree")
+    with pytest.raises(ValueError, match="instance 2: expected the tree of a mesh, found tree 2 of instances"):
+        recorded(body=2)

@@ -31,6 +31,7 @@ int main(int argc, char **argv) {
   shape.volumes = box;
   tree = LRBCAP_TREE(&shape);
   name = LRBCAP_NAME("counter");
+  shape.mesh = LRBCAP_INSTANCES("row", &shape, 0, &tree, NULL);
   for (int q = 0; q < 4000; ++q) {
     const uint32_t query = LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree, NULL, tree, NULL);
     LRBCAP_JOIN(query);
@@ -39,6 +40,7 @@ int main(int argc, char **argv) {
     LRBCAP_NODES(0, 0, 4, 2, LRBCAP_NO_AXIS);
     LRBCAP_PRIM(0, 0, 1);
     LRBCAP_COUNT(name, q);
+    LRBCAP_ENTER(LRBCAP_TOP, 0);
     LRBCAP_VALUE(0, 0.5 * q);
     LRBCAP_END(LRBCAP_INTERSECTING, 1);
     LRBCAP_RAY(LRBCAP_DISTANCE, tree, NULL, xyz); LRBCAP_POINT(LRBCAP_ANY, tree, NULL, xyz); LRBCAP_BOX(LRBCAP_ANY, tree, NULL, box);

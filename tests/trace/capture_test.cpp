@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <random>
@@ -348,7 +349,7 @@ TEST_CASE("descriptions of meshes and trees are checked") {
   contains(refusal(with(good, "TREE", 8, 1u)), {"tree 1 replaces itself"});
   contains(refusal(with(good, "TREE", 12, 0u)), {"at least one node"});
   contains(refusal(with(good, "TREE", 16, 6u)), {"bounding volume of kind 1", "found kind 6"});
-  contains(refusal(with(good, "TREE", 24, 8u)), {"unknown options"});
+  contains(refusal(with(good, "TREE", 24, 16u)), {"unknown options"});
   contains(refusal(with(good, "TREE", 24, 7u, 1)), {"AABBs, OBBs or k-DOPs of a tree with spatial splits"});
   contains(refusal(with(good, "TREE", 32, 1u)), {"offsets of child indices: expected 0 first, found 1"});
   contains(refusal(with(good, "TREE", 36, 3u)), {"offsets of child indices", "found 2 after 3 (node 1)"});
@@ -445,6 +446,76 @@ TEST_CASE("rays, points and boxes are read with their frames, and refused if the
   Bytes cut = good;
   cut.resize(find_chunk(good, "QRYB") + 60);
   CHECK(read(cut).queries.empty());
+}
+
+TEST_CASE("a tree of instances is one with the moved trees and meshes of its bodies") {
+  using Report = std::function<void()>;
+  const auto in_query = [](const Report& events, bool enters = true) {
+    return record([&] {
+      const std::uint32_t body = a_tree(), row = a_row(body);
+      LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, row, nullptr, body, kPose);
+      LRBCAP_NODE(0, 0, 1, LRBCAP_NO_AXIS);
+      if (enters) LRBCAP_ENTER(3, LRBCAP_TOP);
+      events();
+      LRBCAP_END(LRBCAP_SEPARATE, 0);
+    });
+  };
+  const Bytes good = in_query([] {
+    LRBCAP_NODE(2, 1, 1, LRBCAP_NO_AXIS);
+    LRBCAP_PRIM(3, 1, 1);
+    LRBCAP_ENTER(LRBCAP_TOP, LRBCAP_TOP);
+    LRBCAP_NODE(1, 0, 0, LRBCAP_NO_AXIS);
+  });
+  const Capture c = read(good);
+  REQUIRE(c.trees.size() == 2);
+  const Tree& row = c.trees[1];
+  CHECK(row.size() == 3 + 4 * 3);
+  CHECK(row.volume == VolumeKind::obb);
+  REQUIRE(row.children(2).size() == 2);
+  CHECK(row.children(2)[1] == 12);
+  CHECK(row.children(12)[1] == 14);
+  CHECK(row.triangles(14)[1] == 15);
+  CHECK(row.name_of_node(2) == "2");
+  CHECK(row.name_of_node(14) == "2 of instance 3");
+  CHECK(row.name_of_triangle(15) == "3 of instance 3");
+  // The box of node 1, moved: centre and half axes.
+  CHECK(std::vector(row.volume_of(13).begin(), row.volume_of(13).end()) ==
+        std::vector<double>{7, 1, 0.5, 0, 1, 0, -1, 0, 0, 0, 0, 0.5});
+  const Mesh& mesh = c.meshes.at(row.mesh);
+  CHECK(mesh.name == "row");
+  CHECK(mesh.vertices.at(13) == Eigen::Vector3d(8, 2, 0));
+  CHECK(mesh.triangles.at(15) == std::array<std::uint32_t, 3>{12, 15, 14});
+  const Query& q = c.queries.at(0);
+  CHECK(q.complete());
+  CHECK(q.events == std::vector<Event>{{0, 0, EventKind::nodes, 1, 1, 255},
+                                       {14, 1, EventKind::nodes, 1, 1, 255},
+                                       {15, 1, EventKind::triangles, 1, 1, 255},
+                                       {1, 0, EventKind::nodes, 0, 1, 255}});
+
+  contains(refusal(in_query([] { LRBCAP_ENTER(4, LRBCAP_TOP); })),
+           {"event 3: expected an instance of A below 4, or LRBCAP_TOP, found 4"});
+  contains(refusal(in_query([] { LRBCAP_ENTER(0, 0); })),
+           {"an instance of B below 0, or LRBCAP_TOP, found 0"});
+  contains(refusal(in_query([] { LRBCAP_NODE(3, 0, 1, 255); })),
+           {"tree 1 (A), which has 3 nodes, found id 3"});
+  contains(refusal(in_query([] { LRBCAP_NODE(3, 0, 1, 255); }, false)),
+           {"tree 2 (A), which has 3 nodes, found id 3"});
+  contains(refusal(in_query([] { LRBCAP_PRIM(0, 0, 1); }, false)),
+           {"event 2: expected LRBCAP_ENTER before a test of triangles of A, a tree of instances"});
+  contains(refusal(in_query([] { LRBCAP_PRIM(4, 0, 1); })), {"expected a triangle of A below 4, found 4"});
+  // TREE: as above, then 4 numbers of trees and 4 poses.
+  contains(refusal(with(good, "TREE", 72, 9u, 1)),
+           {"node 1: expected an instance below 4, found 9", "from 0"});
+  contains(refusal(with(good, "TREE", 232, 9u, 1)), {"refers to tree 9, which was not described"});
+  contains(refusal(with(good, "TREE", 232, 2u, 1)),
+           {"instance 0: expected the tree of a mesh, found tree 2"});
+  contains(refusal(with(good, "TREE", 248 + 8, 0.5, 1)),
+           {"instance 0: expected a rotation, a translation and a scale"});
+  contains(refusal(with(good, "TREE", 248 + 24, HUGE_VAL, 1)), {"instance 0: expected a rotation"});
+  contains(refusal(record([] { a_row(a_row(a_tree())); })),
+           {"instance 0: expected the tree of a mesh, found tree 2"});
+  contains(refusal(record([] { a_row(a_tree_with_ids()); })),
+           {"AABBs and OBBs, or spheres and RSS, in the tree of instances"});
 }
 
 TEST_CASE("poses must be rigid, row by row") {

@@ -75,4 +75,18 @@ inline std::uint32_t a_tree() {
   return LRBCAP_TREE(&tree);
 }
 
+/// Four instances of a body of the mesh above, two in each leaf, along x. The last one is turned and twice as
+/// large.
+inline std::uint32_t a_row(std::uint32_t body, std::uint32_t volume = LRBCAP_AABB) {
+  static constexpr double kBoxesOfRow[] = {0, 0, 0, 8, 2, 2, 0, 0, 0, 3, 1, 1, 4, 0, 0, 8, 2, 2};
+  static constexpr double kPoses[] = {1, 0, 0, 0, 0, 1,  0, 0, 0, 0, 1, 0, 1, 0, 0, 2,
+                                      0, 1, 0, 0, 0, 0,  1, 0, 1, 0, 0, 4, 0, 1, 0, 0,
+                                      0, 0, 1, 0, 0, -2, 0, 8, 2, 0, 0, 0, 0, 0, 2, 0};
+  const std::uint32_t bodies[] = {body, body, body, body};
+  lrbcap_tree tree = shape_of_tree(0);
+  tree.volume = volume;
+  tree.volumes = kBoxesOfRow;
+  return LRBCAP_INSTANCES("row", &tree, 4, bodies, kPoses);
+}
+
 }  // namespace lrb::capture

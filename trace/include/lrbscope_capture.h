@@ -8,7 +8,7 @@
  *
  *   LRBCAP_OPEN("my engine 1.2", NULL);
  *   uint32_t mesh = LRBCAP_MESH("cow", n_vertices, xyz, n_triangles, corners);
- *   uint32_t tree = LRBCAP_TREE(&description);                        an lrbcap_tree
+ *   uint32_t tree = LRBCAP_TREE(&description);                        an lrbcap_tree; of several: LRBCAP_INSTANCES
  *   LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, tree_a, pose_a, tree_b, pose_b);   12 doubles each: 3x4, row by row
  *     LRBCAP_NODE(i, j, met, axis);                                   two bounding volumes were tested
  *     LRBCAP_PRIM(f, g, met);                                         two triangles were tested
@@ -151,6 +151,11 @@ LRBCAP_INLINE uint32_t lrbcap_none(size_t size) {
                             LRBCAP_CAST(uint32_t, n_triangles), corners))
 #define LRBCAP_TREE(tree) LRBCAP_RESULT(lrbcap_add_tree(tree))
 #define LRBCAP_NAME(name) LRBCAP_RESULT(lrbcap_name(name))
+/* Describe a tree of instances: `tree` without a mesh, whose leaves have instances in place of triangles. Of each of
+ * the n instances: the tree of its body, and a pose, 12 doubles, from the frame of the body to that of `tree`, which
+ * may have a scale. Returns the number of a tree. */
+#define LRBCAP_INSTANCES(name, tree, n, bodies, poses) \
+  LRBCAP_RESULT(lrbcap_instances(name, tree, LRBCAP_CAST(uint32_t, n), bodies, poses))
 
 /* Begin and end a query. Tree 0: a single triangle or shape. Pose NULL: the identity. BEGIN returns the
  * number of the query for LRBCAP_JOIN, or 0 if it is not recorded. pairs: how many the engine found. */
@@ -176,6 +181,10 @@ LRBCAP_INLINE uint32_t lrbcap_none(size_t size) {
 #define LRBCAP_NODE(a, b, met, axis) LRBCAP_EVENT(LRBCAP_KIND_NODES, a, b, 1, (met) ? 1 : 0, axis)
 #define LRBCAP_NODES(a, b, tests, met, axis) LRBCAP_EVENT(LRBCAP_KIND_NODES, a, b, tests, met, axis)
 #define LRBCAP_PRIM(a, b, met) LRBCAP_EVENT(LRBCAP_KIND_PRIMS, a, b, 1, (met) ? 1 : 0, LRBCAP_NO_AXIS)
+/* From here on, tests name the nodes and triangles of instance a of A and of instance b of B, from 0; LRBCAP_TOP: the
+ * nodes of the tree of instances, as when a query begins, and for a side without instances. */
+#define LRBCAP_TOP 0xFFFFFFFFu
+#define LRBCAP_ENTER(a, b) LRBCAP_EVENT(LRBCAP_KIND_NODES, a, b, 0, 0, LRBCAP_NO_AXIS)
 /* A counter of the engine, and the beginning of a phase. name: result of LRBCAP_NAME. */
 #define LRBCAP_COUNT(name, value) LRBCAP_EVENT(LRBCAP_KIND_COUNT, name, value, 1, 0, LRBCAP_NO_AXIS)
 #define LRBCAP_PHASE(name) LRBCAP_EVENT(LRBCAP_KIND_PHASE, name, 0, 1, 0, LRBCAP_NO_AXIS)
@@ -194,6 +203,8 @@ void lrbcap_every(uint64_t n);
 uint32_t lrbcap_mesh(const char* name, uint32_t n_vertices, const double* xyz, uint32_t n_triangles,
                      const uint32_t* corners);
 uint32_t lrbcap_add_tree(const lrbcap_tree* tree);
+uint32_t lrbcap_instances(const char* name, const lrbcap_tree* tree, uint32_t n, const uint32_t* bodies,
+                          const double* poses);
 uint32_t lrbcap_name(const char* name);
 uint32_t lrbcap_begin(uint32_t kind, uint32_t tree_a, const double* pose_a, uint32_t tree_b,
                       const double* pose_b);
@@ -400,10 +411,11 @@ static unsigned char* lrbcap_u64(unsigned char* p, uint64_t x) {
   return lrbcap_put(p, &x, 8);
 }
 
-/* A chunk begins with four letters, its version, the size of its content, and the ticks now. */
+/* A chunk begins with four letters, its version (a fifth character if it is not 1), the size of its content,
+ * and the ticks now. */
 static unsigned char* lrbcap_chunk(unsigned char* p, const char* letters, uint64_t size, uint64_t ticks) {
   p = lrbcap_put(p, letters, 4);
-  p = lrbcap_u32(p, 1);
+  p = lrbcap_u32(p, letters[4] ? LRBCAP_CAST(uint64_t, letters[4]) : 1u);
   p = lrbcap_u64(p, size);
   return lrbcap_u64(p, ticks);
 }
@@ -583,27 +595,34 @@ uint32_t lrbcap_mesh(const char* name, uint32_t n_vertices, const double* xyz, u
 }
 
 uint32_t lrbcap_add_tree(const lrbcap_tree* tree) {
+  return lrbcap_instances(NULL, tree, 0, NULL, NULL);
+}
+
+uint32_t lrbcap_instances(const char* name, const lrbcap_tree* tree, uint32_t n_instances, const uint32_t* bodies,
+                          const double* poses) {
   static const uint32_t numbers_of[] = {0, 6, 4, 12, 10};
   const uint64_t n = tree->nodes;
   const uint32_t volume = tree->volume & ~LRBCAP_CAST(uint32_t, LRBCAP_SPLITS);
   const int floats = !tree->volumes;
   uint64_t numbers;
   uint32_t head[8] = {0, 0, 0, 0, 0, 0, 0, 0};
-  const void* parts[8];
-  uint64_t sizes[8];
+  const void* parts[11];
+  uint64_t sizes[11];
   if (lrbcap_writes() == LRBCAP_WRITES_NOTHING) return 0;
+  if (!name && n_instances) name = "";
   if (n == 0 || volume == 0 || volume > LRBCAP_KDOP || (floats && !tree->float_volumes)) {
     lrbcap_warn("a tree without nodes, or without volumes of a known kind, is not recorded", "LRBCAP_TREE");
     return 0;
   }
   numbers = volume == LRBCAP_KDOP ? LRBCAP_CAST(uint64_t, tree->directions) * 2 : numbers_of[volume];
   head[0] = LRBCAP_CAST(uint32_t, lrbcap_add(&lrbcap_g.trees, 1)) + 1;
-  head[1] = tree->mesh;
+  head[1] = name ? n_instances : tree->mesh;
   head[2] = tree->replaces;
   head[3] = tree->nodes;
   head[4] = volume;
   head[5] = tree->directions;
-  head[6] = (tree->ids ? 1u : 0u) | (floats ? 2u : 0u) | (tree->volume != volume ? 4u : 0u);
+  head[6] = (tree->ids ? 1u : 0u) | (floats ? 2u : 0u) | (tree->volume != volume ? 4u : 0u) | (name ? 8u : 0u);
+  head[7] = name ? LRBCAP_CAST(uint32_t, strlen(name)) : 0;
   parts[0] = head, sizes[0] = sizeof head;
   parts[1] = tree->ids, sizes[1] = tree->ids ? n * 4 : 0;
   parts[2] = tree->first_child, sizes[2] = (n + 1) * 4;
@@ -615,7 +634,10 @@ uint32_t lrbcap_add_tree(const lrbcap_tree* tree) {
   else
     parts[6] = tree->volumes, sizes[6] = n * numbers * 8;
   parts[7] = tree->direction, sizes[7] = volume == LRBCAP_KDOP ? numbers * 12 : 0;
-  return lrbcap_gather("TREE", parts, sizes, 8) ? head[0] : 0;
+  parts[8] = bodies, sizes[8] = LRBCAP_CAST(uint64_t, n_instances) * 4;
+  parts[9] = poses, sizes[9] = LRBCAP_CAST(uint64_t, n_instances) * 96;
+  parts[10] = name, sizes[10] = head[7];
+  return lrbcap_gather(name ? "TREE\2" : "TREE", parts, sizes, 11) ? head[0] : 0;
 }
 
 uint32_t lrbcap_name(const char* name) {
@@ -750,8 +772,7 @@ uint32_t lrbcap_begin(uint32_t kind, uint32_t tree_a, const double* pose_a, uint
   }
   s = lrbcap_enter(query);
   if (!s) return 0;
-  p = lrbcap_chunk(bytes, "QRYB", 232, lrbcap_ticks());
-  if (shape) bytes[4] = 2; /* the version of the chunk */
+  p = lrbcap_chunk(bytes, shape ? "QRYB\2" : "QRYB", 232, lrbcap_ticks());
   p = lrbcap_u64(p, 0);
   p = lrbcap_u32(p, query);
   p = lrbcap_u32(p, kind & 255);

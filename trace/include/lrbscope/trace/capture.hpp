@@ -44,9 +44,19 @@ enum class VolumeKind : std::uint32_t {
   kdop = 5,    ///< 2k: for each direction the least and the greatest product with it
 };
 
+/// A body in a tree of instances: its nodes and triangles have consecutive numbers from these on.
+struct Instance {
+  std::uint32_t tree = 0;  ///< of the body: an index in Capture::trees
+  std::uint32_t first_node = 0, first_triangle = 0;
+};
+
 /// A tree of bounding volumes as the engine reported it. Nodes are numbered from 0, the root, in the order of
 /// the description; events are converted to these numbers. Indices of children are in range, but nothing else
 /// is guaranteed: a node may have two parents or none, and a leaf may contain triangles that do not exist.
+///
+/// A tree of instances contains the trees of its bodies: their roots are children of its leaves, and their
+/// volumes are moved, so that boxes become OBBs and spheres may become RSS. Its mesh contains the moved
+/// meshes.
 struct Tree {
   std::uint32_t id = 0;            ///< the engine's number of the tree
   std::uint32_t mesh = 0;          ///< index in Capture::meshes
@@ -59,6 +69,7 @@ struct Tree {
   std::vector<double> volumes;                          ///< numbers() for each node, finite
   std::vector<Eigen::Vector3d> directions;              ///< of a k-DOP
   std::vector<std::uint32_t> ids;  ///< the engine's own number of each node; empty: equal to ours
+  std::vector<Instance> instances;
 
   std::size_t size() const { return first_child.size() - 1; }
   std::span<const std::uint32_t> children(std::uint32_t node) const {
@@ -75,6 +86,9 @@ struct Tree {
   }
   /// Returns the number by which the engine knows the node.
   std::uint32_t id_of(std::uint32_t node) const { return ids.empty() ? node : ids[node]; }
+  /// Returns the engine's name of a node or of a triangle: "5", or "5 of instance 2".
+  std::string name_of_node(std::uint32_t node) const;
+  std::string name_of_triangle(std::uint32_t t) const;
 };
 
 // The kind of a query, and the engine's own answer, as in traces.
