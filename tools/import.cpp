@@ -38,6 +38,7 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
   spec::Scenario scenario = profile::captured_scenario(c, pair, bodies, o.file);
   apply(o.picture, scenario.frames);
   scenario.keeps_trace = o.trace;
+  if (o.trace) scenario.event_cap = 5'000'000;  // a trace of about a gigabyte
   scenario.gzip = true;  // an engine's events are many; viewers read compressed traces as well
   profile::CapturedRunSettings settings = profile::captured_settings(scenario, c, pair, o.file);
   settings.check = !o.no_check;

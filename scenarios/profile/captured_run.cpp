@@ -326,7 +326,8 @@ record::Recording captured_run(const capture::Capture& capture, const TreePair& 
     if (settings.check && !of_shapes) {
       out.results.push_back(record::exact_answer(
           {out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]}, {}, report, answer.pairs));
-      fill_box(query, capture.meshes[capture.trees[pair.trees[0]].mesh], out.results.back().pairs);
+      fill_box(query, out.bodies[0].rep, capture.meshes[capture.trees[pair.trees[0]].mesh],
+               out.results.back().pairs);
       if (report->query == trace::EngineQuery::distance && !is_first_hit(query))
         recorder.add(trace::measured(
             distance(out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]), {}));
@@ -334,7 +335,8 @@ record::Recording captured_run(const capture::Capture& capture, const TreePair& 
     std::optional<std::string>& distance = out.distances.emplace_back();
     if (settings.check && query.value) {
       const QueryWalk walk(all, query, all.trees_of(query).value());
-      distance = checker.check(query, &walk).distance;
+      distance =
+          checker.check(query, &walk, i < out.results.size() ? &out.results[i].pairs : nullptr).distance;
       if (!distance->empty() && out.notes.size() < 10)
         out.notes.push_back("query " + std::to_string(query.number) + ": " + *distance);
     }
@@ -415,7 +417,7 @@ spec::Scenario captured_scenario(const capture::Capture& c, const TreePair& pair
               "; time steps have these numbers.";
   if (const std::string more = captured_words(c, pair); !more.empty()) s.purpose += " " + more;
   s.bodies = {{}, {}};
-  s.event_cap = 5'000'000;  // a trace of about a gigabyte
+  s.event_cap = 20'000'000;  // in a gigabyte of memory
   s.events = EventLevel::nodes;
   s.frames = captured_frames();
   Fnv64 hash;

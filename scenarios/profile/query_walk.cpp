@@ -164,21 +164,36 @@ double reach_of(const capture::Mesh& mesh) {
   return out;
 }
 
-void fill_box(const capture::Query& query, const capture::Mesh& mesh, std::vector<SimplexPair>& pairs) {
+void fill_box(const capture::Query& query, const LrbRep& body, const capture::Mesh& mesh,
+              std::vector<SimplexPair>& pairs) {
   if (query.probe.shape != capture::ProbeShape::box) return;
   for (SimplexPair& pair : pairs) pair.b = SimplexId(0);
   const Eigen::Map<const Eigen::Vector3d> least(query.probe.numbers.data()),
       greatest(query.probe.numbers.data() + 3);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    // The corners of a triangle that does not meet the surface are all inside or all outside: the one
-    // farthest from the surface decides.
-    double margin = 0;
-    for (const Eigen::Vector3d& corner : corners_of(mesh, t)) {
-      const Eigen::Vector3d x = query.poses[0].apply(corner);
-      const double inside = std::min((x - least).minCoeff(), (greatest - x).minCoeff());
-      if (std::abs(inside) > std::abs(margin)) margin = inside;
+  const ObbTree& tree = body.tree();
+  for (std::vector<std::uint32_t> open(1, 0); !open.empty();) {
+    const TreeNode& node = tree.nodes()[open.back()];
+    open.pop_back();
+    // The ball around all triangles beneath; rounding errors must not lose any.
+    constexpr double kSlack = 1.001, kRounding = 1e-12;
+    const Eigen::Vector3d centre =
+        query.poses[0].apply(tree.unit() * Eigen::Map<const Eigen::Vector3d>(node.origin));
+    const double outside = (least - centre).cwiseMax(centre - greatest).cwiseMax(0).norm();
+    if (outside > kSlack * tree.unit() * node.radius + kRounding * (centre.norm() + query.poses[0].t.norm()))
+      continue;
+    for (std::uint32_t k = 0; k < node.count && !node.is_leaf; ++k) open.push_back(node.first + k);
+    for (std::uint32_t k = 0; k < node.count && node.is_leaf; ++k) {
+      // The corners of a triangle that does not meet the surface are all inside or all outside: the one
+      // farthest from the surface decides.
+      const SimplexId t = tree.blocks()[node.first].simplex[k];
+      double margin = 0;
+      for (const Eigen::Vector3d& corner : corners_of(mesh, t)) {
+        const Eigen::Vector3d x = query.poses[0].apply(corner);
+        const double inside = std::min((x - least).minCoeff(), (greatest - x).minCoeff());
+        if (std::abs(inside) > std::abs(margin)) margin = inside;
+      }
+      if (margin > 0) pairs.push_back({t, SimplexId(0)});
     }
-    if (margin > 0) pairs.push_back({SimplexId(t), SimplexId(0)});
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
@@ -194,11 +209,16 @@ std::array<double, 2> hit_of(const capture::Query& query, const capture::Mesh& m
     const double at = x.dot(along) / along.squaredNorm();
     least = std::min(least, at - error), greatest = std::max(greatest, at + error);
   }
-  const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).stableNormalized();
-  const double slope = normal.dot(along);
+  const Eigen::Vector3d u = corners[1] - corners[0], v = corners[2] - corners[0], product = u.cross(v);
+  const Eigen::Vector3d normal = product.stableNormalized();
+  const double longest = std::max({u.norm(), v.norm(), (u - v).norm()}), slope = normal.dot(along);
+  // Corners that are wrong by `error` turn the normal: u and v are wrong by twice as much, and normalising
+  // doubles the relative error of their product. The plane at the hit, at most `longest` from a corner, moves
+  // with it.
+  const double turn = error > 0 ? 8 * error * longest / product.stableNorm() : 0;
   least = std::max(least, query.probe.numbers[6] * ray_unit(query));
-  if (slope == 0) return {least, greatest};  // in one plane
-  const double at = normal.dot(corners[0]) / slope, by = error / std::abs(slope);
+  if (!(std::abs(slope) > turn)) return {least, greatest};  // possibly in one plane
+  const double at = normal.dot(corners[0]) / slope, by = (error + turn * longest) / (std::abs(slope) - turn);
   return {std::max(least, at - by), std::min(greatest, at + by)};
 }
 

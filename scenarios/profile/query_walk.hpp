@@ -148,8 +148,9 @@ void set_segment(capture::Tree& tree, double begin, double end);
 ProbeBody probe_body(const capture::Query& query, const capture::Tree& tree, double reach);
 double reach_of(const capture::Mesh& mesh);
 /// Makes the pairs of a query's box, which are those of its surface, pairs of the solid with the triangle 0.
-/// Does nothing for other queries. `mesh`: of A.
-void fill_box(const capture::Query& query, const capture::Mesh& mesh, std::vector<SimplexPair>& pairs);
+/// Does nothing for other queries. `body`, `mesh`: of A.
+void fill_box(const capture::Query& query, const LrbRep& body, const capture::Mesh& mesh,
+              std::vector<SimplexPair>& pairs);
 /// Returns bounds of the length along a query's ray at which it meets a triangle of the mesh of A that it
 /// hits, if coordinates may be wrong by `error`.
 std::array<double, 2> hit_of(const capture::Query& query, const capture::Mesh& mesh, std::uint32_t triangle,

@@ -84,7 +84,8 @@ void worsen(Judgement& outcome, Judgement by) {
 Precision precision_of(const capture::Capture& capture) {
   for (const capture::Tree& tree : capture.trees)
     for (const double x : tree.volumes)
-      if (static_cast<double>(static_cast<float>(x)) != x) return Precision::float64;
+      if (tree.instances.empty() && static_cast<double>(static_cast<float>(x)) != x)
+        return Precision::float64;
   return capture.trees.empty() ? Precision::float64 : Precision::float32;
 }
 
@@ -206,7 +207,8 @@ Checker::Posed Checker::posed_bodies(const Query& query, const QueryWalk& walk) 
   return posed;
 }
 
-QueryVerdict Checker::check(const Query& query, const QueryWalk* walk) {
+QueryVerdict Checker::check(const Query& query, const QueryWalk* walk,
+                            const std::vector<SimplexPair>* known) {
   QueryVerdict out;
   out.number = query.number;
   out.kind = query.kind;
@@ -220,7 +222,10 @@ QueryVerdict Checker::check(const Query& query, const QueryWalk* walk) {
   }
   records_triangles_ = records_triangles_ || tests_triangles(query);  // of a query beside the capture
   const Posed posed = posed_bodies(query, *walk);
-  out.exact = exact_pairs(posed);
+  if (known == nullptr)
+    out.exact = exact_pairs(posed);
+  else
+    for (const SimplexPair& pair : *known) out.exact.push_back({pair.a, pair.b});
   out.exact_pairs = out.exact.size();
   if (query.kind == QueryKind::all_pairs || query.kind == QueryKind::any || posed.is_self() ||
       is_first_hit(query))
@@ -240,7 +245,7 @@ std::vector<TrianglePair> Checker::exact_pairs(const Posed& posed) {
   const Expected<CollideResult&> found = collide(*posed.bodies[0], posed.poses[0], *posed.bodies[1],
                                                  posed.poses[1], CollideRequest{}, workspace_);
   std::vector<SimplexPair>& pairs = found.value().pairs;
-  fill_box(posed.query, *posed.meshes[0], pairs);
+  fill_box(posed.query, *posed.bodies[0], *posed.meshes[0], pairs);
   for (const SimplexPair& pair : pairs) {
     const TrianglePair triangles{pair.a, pair.b};
     if (posed.is_self() && (triangles.a >= triangles.b || share_a_vertex(*posed.meshes[0], triangles)))
@@ -464,13 +469,13 @@ std::string sentence(const WrongPair& wrong, const capture::Tree& a, const captu
   constexpr int kDigits = 3;
   const auto number = [](double x) { return io::number_text(x, kDigits); };
   const bool of_probe = b.id == 0;  // a ray, point or box
-  std::string out = (wrong.missed ? "missed " : "false ") + std::to_string(wrong.triangles.a) +
-                    (of_probe ? "" : "," + std::to_string(wrong.triangles.b)) + ": ";
+  const std::string names[] = {a.name_of_triangle(wrong.triangles.a), b.name_of_triangle(wrong.triangles.b)};
+  std::string out =
+      (wrong.missed ? "missed " : "false ") + names[0] + (of_probe ? "" : "," + names[1]) + ": ";
   const auto nodes = [&] {
-    const std::string node = std::to_string(a.id_of(wrong.nodes[0]));
+    const std::string node = a.name_of_node(wrong.nodes[0]);
     return of_probe ? "node " + node + ", which contains it, and the probe "
-                    : "nodes " + node + " and " + std::to_string(b.id_of(wrong.nodes[1])) +
-                          ", which contain them, ";
+                    : "nodes " + node + " and " + b.name_of_node(wrong.nodes[1]) + ", which contain them, ";
   };
   switch (wrong.culprit) {
     case Culprit::none:
@@ -484,9 +489,7 @@ std::string sentence(const WrongPair& wrong, const capture::Tree& a, const captu
       if (wrong.axis != capture::kNoAxis) out += " along axis " + std::to_string(wrong.axis);
       for (std::size_t side = 0; side < 2; ++side)
         if (wrong.outside[side] > wrong.bound)
-          out += std::string("; triangle ") +
-                 std::to_string(side == 0 ? wrong.triangles.a : wrong.triangles.b) +
-                 " sticks out of its node by " + number(wrong.outside[side]);
+          out += "; triangle " + names[side] + " sticks out of its node by " + number(wrong.outside[side]);
       break;
     case Culprit::child_volumes:
       out += "the children of " + nodes() + "were found disjoint";

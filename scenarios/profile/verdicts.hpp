@@ -131,8 +131,10 @@ class Checker {
   Checker(CapturedBodies& bodies, Precision precision);
 
   /// Checks a query. `walk`: of the same query; nullptr for one with a side without a tree, which is not
-  /// checked. Throws InputError as collide() does.
-  QueryVerdict check(const capture::Query& query, const QueryWalk* walk);
+  /// checked. `known`: the intersecting pairs, if they were computed before. Throws InputError as collide()
+  /// does.
+  QueryVerdict check(const capture::Query& query, const QueryWalk* walk,
+                     const std::vector<SimplexPair>* known = nullptr);
 
   /// Returns true for each error whose reversal makes the reported pairs of a query the exact ones, up to 1 %
   /// of them. All false if the query reports no pairs.

