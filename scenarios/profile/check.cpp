@@ -126,60 +126,34 @@ report::Table wrong_table(std::span<const Check> checks) {
   return t;
 }
 
-/// The prices of a bar, from the bottom: blue: needed work, orange and red: waste.
-constexpr std::size_t kBarParts = 7;
-constexpr std::pair<const char*, const char*> kBars[kBarParts] = {
-    {"needed", "#0072b2"}, {"proof", "#56b4e9"},     {"test", "#b2182b"},        {"volumes", "#d55e00"},
-    {"order", "#f0a830"},  {"not split", "#e08020"}, {"unattributed", "#8c8c8c"}};
-
-report::Chart bars(const std::string& title, const std::string& x) {
-  report::Chart out{title, {x}, {"visits"}};
-  for (const auto& [name, colour] : kBars) out.series.push_back({name, {}, {}, {report::Line::bars, colour}});
-  return out;
-}
-
-void add_bar(report::Chart& chart, double x, const std::array<std::uint64_t, kBarParts>& parts) {
-  for (std::size_t i = 0; i < kBarParts; ++i) {
-    chart.series[i].x.push_back(x);
-    chart.series[i].y.push_back(static_cast<double>(parts[i]));
-  }
-}
-
-/// Removes series that are 0 throughout.
-report::Chart without_empty(report::Chart chart) {
-  std::erase_if(chart.series, [](const report::Series& s) {
-    return std::all_of(s.y.begin(), s.y.end(), [](double y) { return y == 0; });
-  });
-  return chart;
-}
-
 report::Chart chart_by_query(const Check& c) {
+  // The prices of a bar, from the bottom: blue: needed work, orange and red: waste.
+  struct Part {
+    const char *name, *colour;
+    std::uint64_t Prices::*visits;
+  };
+  static constexpr Part kParts[] = {{"needed", "#0072b2", &Prices::needed},
+                                    {"proof", "#56b4e9", &Prices::proof},
+                                    {"test", "#b2182b", &Prices::test},
+                                    {"volumes", "#d55e00", &Prices::volumes},
+                                    {"order", "#f0a830", &Prices::order},
+                                    {"not split", "#e08020", &Prices::unsplit},
+                                    {"unattributed", "#8c8c8c", &Prices::unattributed}};
   constexpr std::size_t kMaxBars = 400;
-  report::Chart out = bars("Prices by query, " + c.engine, "query");
+  report::Chart out{"Prices by query, " + c.engine, {"query"}, {"visits"}};
   // Longer captures show every n-th query.
   const std::size_t every = 1 + c.queries.size() / kMaxBars;
-  for (std::size_t i = 0; i < c.queries.size(); i += every) {
-    const Prices& p = c.queries[i].prices;
-    add_bar(out, c.queries[i].verdict.number,
-            {p.needed, p.proof, p.test, p.volumes, p.order, p.unsplit, p.unattributed});
-  }
   if (every > 1) out.note = "One of " + std::to_string(every) + " queries.";
-  return without_empty(out);
-}
-
-report::Chart chart_by_depth(const Check& c) {
-  report::Chart out = bars("Prices by depth of the descent, " + c.engine, "pairs of nodes above");
-  out.series = {out.series[0], out.series[1], out.series[3]};
-  out.series[2].label = "wasted: test, volumes or order";
-  for (std::size_t d = 0; d < c.by_depth.size(); ++d) {
-    const DepthPrices& p = c.by_depth[d];
-    const std::uint64_t parts[] = {p.needed, p.proof, p.wasted};
-    for (std::size_t i = 0; i < 3; ++i) {
-      out.series[i].x.push_back(static_cast<double>(d));
-      out.series[i].y.push_back(static_cast<double>(parts[i]));
+  for (const auto& [name, colour, visits] : kParts) {
+    report::Series series{name, {}, {}, {report::Line::bars, colour}};
+    for (std::size_t i = 0; i < c.queries.size(); i += every) {
+      series.x.push_back(c.queries[i].verdict.number);
+      series.y.push_back(static_cast<double>(c.queries[i].prices.*visits));
     }
+    if (std::ranges::any_of(series.y, [](double y) { return y != 0; }))
+      out.series.push_back(std::move(series));
   }
-  return without_empty(out);
+  return out;
 }
 
 }  // namespace
@@ -338,11 +312,13 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
   out.pose_error = pose_errors.sentence();
   visited.erase(CapturedBodies::kProbe);
   out.tree_faults = sentence_of_faults(visited, bodies);
-  out.by_depth = book.by_depth();
   out.owners = book.worst_owners(kOwners);
+  for (OwnerWaste& o : out.owners) o.visits *= capture.every, o.queries *= capture.every;
+  for (WasteMap& map : out.waste)
+    for (double& visits : map.waste) visits *= static_cast<double>(capture.every);
   for (const OwnerWaste& o : out.owners)
-    out.owner_names.push_back({std::to_string(bodies.tree(o.trees[0]).id_of(o.nodes[0])),
-                               std::to_string(bodies.tree(o.trees[1]).id_of(o.nodes[1]))});
+    out.owner_names.push_back(
+        {bodies.tree(o.trees[0]).name_of_node(o.nodes[0]), bodies.tree(o.trees[1]).name_of_node(o.nodes[1])});
   return out;
 }
 
@@ -424,7 +400,7 @@ std::vector<std::string> add_checks(report::Document& page, std::span<const Chec
     } catch (const EnvironmentError& e) {
       notes.push_back(std::string("the waste was not drawn: ") + e.what());
     }
-  for (const Check& c : checks) page.chart(chart_by_query(c)).chart(chart_by_depth(c));
+  for (const Check& c : checks) page.chart(chart_by_query(c));
   page.table(price_table(checks));
   page.table(verdict_table(checks));
   if (const report::Table t = owner_table(checks); !t.rows.empty()) page.table(t);

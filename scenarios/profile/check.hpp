@@ -56,8 +56,8 @@ struct Check {
   std::string engine;
   Precision precision = Precision::float64;
   std::vector<CheckedQuery> queries;
-  std::map<capture::QueryKind, CheckSums> kinds;  ///< of a sample, scaled to all queries
-  std::vector<DepthPrices> by_depth;
+  // Of a sample, these sums are scaled to all queries.
+  std::map<capture::QueryKind, CheckSums> kinds;
   std::vector<OwnerWaste> owners;                       ///< the ten worst
   std::vector<std::array<std::string, 2>> owner_names;  ///< (|owners|) nodes by the engine's numbers
   std::vector<WasteMap> waste;                          ///< of the two trees with most waste

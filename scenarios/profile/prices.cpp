@@ -329,7 +329,6 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
       needed[i] = 1;
   // Parents come first, so that their owners are known.
   std::vector<std::uint32_t> owner(events.size(), kNone);  // the pair of proof at or above a visit
-  std::vector<std::uint32_t> depth(events.size(), 0);
   std::vector<char> attached(events.size(), 0), wasted(events.size(), 0);
   // With a distance: at this visit, or above it, the volumes are no closer. Without: they are disjoint, and
   // the engine went on beneath. Unused if one pair is enough: then all waste is of order.
@@ -348,13 +347,10 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     attached[i] = up == kNone ? walk.is_start(i) : attached[up];
     if (!attached[i]) continue;
     ++known;
-    depth[i] = up == kNone ? 0 : depth[up] + 1;
-    if (depth[i] >= by_depth_.size()) by_depth_.resize(depth[i] + 1);
     const std::uint32_t first = walk.first_visit(i);
     const bool repeated = first != i;
     if (needed[i] && !repeated) {
       ++out.needed;
-      ++by_depth_[depth[i]].needed;
       continue;
     }
     const bool below_needed = up == kNone || needed[up];
@@ -369,7 +365,6 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
           ended_above || !((e.met == 0 && !walk.wide()) || overlap(of_a, e.a, poses[0], of_b, e.b, poses[1]));
     if (below_needed && !repeated && !one_is_enough) {
       ++out.proof;
-      ++by_depth_[depth[i]].proof;
       continue;
     }
     wasted[i] = 1;
@@ -378,7 +373,6 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     const bool by_order = distance && (repeated || ended);
     const bool by_test = !distance && !repeated && ended;
     ++(by_order ? out.order : by_test ? out.test : out.unsplit);
-    ++by_depth_[depth[i]].wasted;
     const std::uint32_t nodes[] = {e.a, e.b};
     for (std::size_t side = 0; side < 2; ++side) {
       std::vector<double>& waste = waste_of_nodes_[walk.trees()[side]];

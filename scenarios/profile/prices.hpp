@@ -110,12 +110,6 @@ inline constexpr std::pair<const char*, std::uint64_t Prices::*> kPriceCounts[] 
     {"triangles_by_order", &Prices::triangles_by_order},
 };
 
-/// The visits of one depth of the descent; 0: the roots.
-struct DepthPrices {
-  std::uint64_t needed = 0, proof = 0, wasted = 0;
-  friend bool operator==(const DepthPrices&, const DepthPrices&) = default;
-};
-
 /// The waste beneath a pair of nodes that is a proof.
 struct OwnerWaste {
   std::array<std::uint32_t, 2> trees{};  ///< indices in Capture::trees
@@ -136,7 +130,6 @@ class PriceBook {
   Prices add(const capture::Query& query, const QueryWalk* walk, std::span<const TrianglePair> exact,
              bool split);
 
-  const std::vector<DepthPrices>& by_depth() const { return by_depth_; }
   /// Returns the pairs with most waste, the worst first.
   std::vector<OwnerWaste> worst_owners(std::size_t most) const;
   /// Returns the waste by triangle of a tree's mesh. Half of each wasted visit goes to either node, and is
@@ -153,7 +146,6 @@ class PriceBook {
 
   CapturedBodies& bodies_;
   Workspace workspace_;
-  std::vector<DepthPrices> by_depth_;
   std::map<std::array<std::uint32_t, 4>, OwnerWaste> owners_;    ///< by trees and nodes
   std::map<std::uint32_t, std::vector<double>> waste_of_nodes_;  ///< by tree
 };

@@ -77,18 +77,15 @@ void add_charts(report::Document& doc, const TreeFigures& f) {
 
 /// Returns a link of a table's row to a node of the view.
 std::string target_of(const capture::Tree& tree, std::uint32_t node) {
-  return node == kNull ? std::string() : "node " + std::to_string(tree.id_of(node));
+  return node == kNull ? std::string() : "node " + tree.name_of_node(node);
 }
 
 report::Table node_table(const std::string& title, const std::vector<NodeFigures>& nodes,
                          const capture::Tree& tree, const TreeFigures& f) {
-  const bool waste = std::any_of(nodes.begin(), nodes.end(), [](const auto& n) { return n.waste > 0; });
   report::Table t{title, {"node", "depth", "triangles below", "area / root's", "EPO", "share of EPO"}};
-  if (waste) t.columns.push_back("wasted visits");
   for (const NodeFigures& n : nodes) {
-    t.rows.push_back({std::to_string(tree.id_of(n.node)), std::to_string(n.depth), group_digits(n.triangles),
+    t.rows.push_back({tree.name_of_node(n.node), std::to_string(n.depth), group_digits(n.triangles),
                       short_number(n.area), short_number(n.epo), share_of_epo(f, n.epo)});
-    if (waste) t.rows.back().push_back(short_number(n.waste));
     t.targets.push_back(target_of(tree, n.node));
   }
   return t;
@@ -129,18 +126,18 @@ std::string view_json(const capture::Tree& tree, const capture::Mesh& mesh, cons
                                                                        kMaxNodes, index.from_root.size())));
   Numbers place(tree.size(), kNull);
   for (std::uint32_t i = 0; i < nodes.size(); ++i) place[nodes[i]] = i;
-  for (const auto* list : {&figures.worst, &figures.most_waste})
-    for (const NodeFigures& n : *list)
-      if (place[n.node] == kNull) {
-        place[n.node] = static_cast<std::uint32_t>(nodes.size());
-        nodes.push_back(n.node);
-      }
+  for (const NodeFigures& n : figures.worst)
+    if (place[n.node] == kNull) {
+      place[n.node] = static_cast<std::uint32_t>(nodes.size());
+      nodes.push_back(n.node);
+    }
   Numbers parents, depths, first, last;
   std::vector<float> boxes, areas, epos;
   const double root_area = figures.area[index.from_root.front()];
   nlohmann::json ids = nlohmann::json::array();
   for (const std::uint32_t n : nodes) {
-    ids.push_back(tree.id_of(n));
+    ids.push_back(tree.instances.empty() ? nlohmann::json(tree.id_of(n))
+                                         : nlohmann::json(tree.name_of_node(n)));
     parents.push_back(index.parent[n] == kNull ? kNull : place[index.parent[n]]);
     depths.push_back(index.depth[n]);
     first.push_back(subtrees.first_triangle[n]);
@@ -241,7 +238,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
     const double epo = figures.epo ? figures.epo->by_node[n] : 0;
     const double value = largest > 0 ? std::sqrt(epo / largest) : 0;
     const render::Rgba colour = render::palette::heat(value);
-    const std::string name = std::to_string(tree.id_of(n));
+    const std::string name = tree.name_of_node(n);
     boxes += "<rect" + attribute("data-node", name) + attribute("x", number(x)) + attribute("y", number(y)) +
              attribute("width", number(width - rule)) + attribute("height", number(kRow - rule)) +
              paint("fill", colour) + "><title>node " + name + ", depth " + std::to_string(index.depth[n]) +
@@ -299,7 +296,6 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
         "surface, times the node's cost: 1.2 for an inner node, the number of triangles for a leaf.";
     doc.table(table);
   }
-  if (!f.most_waste.empty()) doc.table(node_table("Worst nodes by waste", f.most_waste, tree, f));
   add_charts(doc, f);
   doc.write(folder);
 }

@@ -186,14 +186,14 @@ std::optional<LoosenessFigures> looseness_of(const Volumes& volumes, const captu
   return LoosenessFigures{at(kMedian), at(kP90), all.back().first, all.back().second};
 }
 
-/// Returns the ten nodes with the largest positive values, the largest first.
-std::vector<NodeFigures> worst_by(const std::vector<NodeFigures>& nodes, double NodeFigures::*value) {
+/// Returns the ten nodes with the largest positive EPO, the largest first.
+std::vector<NodeFigures> worst_of(const std::vector<NodeFigures>& nodes) {
   std::vector<NodeFigures> out;
   std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(out),
-               [&](const NodeFigures& n) { return n.*value > 0; });
+               [](const NodeFigures& n) { return n.epo > 0; });
   const auto end = out.begin() + static_cast<std::ptrdiff_t>(std::min(kWorst, out.size()));
-  std::partial_sort(out.begin(), end, out.end(), [&](const NodeFigures& x, const NodeFigures& y) {
-    return x.*value != y.*value ? x.*value > y.*value : x.node < y.node;
+  std::partial_sort(out.begin(), end, out.end(), [](const NodeFigures& x, const NodeFigures& y) {
+    return x.epo != y.epo ? x.epo > y.epo : x.node < y.node;
   });
   out.erase(end, out.end());
   return out;
@@ -312,7 +312,6 @@ TreeReport report_tree(const capture::Tree& tree, const capture::Mesh& mesh, con
     NodeFigures node{n, index.depth[n], index.triangles_below[n]};
     if (root_area > 0) node.area = measures.area[n] / root_area;
     if (f.epo) node.epo = f.epo->by_node[n];
-    if (n < options.waste.size()) node.waste = options.waste[n];
     nodes.push_back(node);
     f.depth = std::max(f.depth, node.depth);
     if (node.depth >= f.by_depth.size()) f.by_depth.resize(node.depth + std::size_t{1});
@@ -333,8 +332,7 @@ TreeReport report_tree(const capture::Tree& tree, const capture::Mesh& mesh, con
   }
   if (f.leaves > 0) f.mean_depth = leaf_depths / f.leaves;
   if (root_area > 0) f.sah_inner = inner, f.sah_leaves = leaves;
-  f.worst = worst_by(nodes, &NodeFigures::epo);
-  f.most_waste = worst_by(nodes, &NodeFigures::waste);
+  f.worst = worst_of(nodes);
   f.siblings = siblings_of(volumes, index, measures.volume);
   f.looseness = looseness_of(volumes, mesh, index, measures.volume);
   f.area = measures.area;

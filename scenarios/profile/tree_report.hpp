@@ -99,7 +99,6 @@ struct NodeFigures {
   std::uint32_t node = 0, depth = 0, triangles = 0;  ///< triangles below
   double area = 0;                                   ///< relative to the root's
   double epo = 0;
-  double waste = 0;
 };
 
 struct TreeFigures {
@@ -115,11 +114,10 @@ struct TreeFigures {
   SiblingFigures siblings;
   std::optional<LoosenessFigures> looseness;
   BeyondParent beyond;
-  std::uint64_t volume_bytes = 0;       ///< of the volumes' numbers as doubles
-  std::vector<DepthFigures> by_depth;   ///< the root's first
-  std::vector<NodeFigures> worst;       ///< by EPO, ten at most
-  std::vector<NodeFigures> most_waste;  ///< by waste, ten at most; empty if none was given
-  std::vector<double> area;             ///< by node
+  std::uint64_t volume_bytes = 0;      ///< of the volumes' numbers as doubles
+  std::vector<DepthFigures> by_depth;  ///< the root's first
+  std::vector<NodeFigures> worst;      ///< by EPO, ten at most
+  std::vector<double> area;            ///< by node
 
   /// Returns the cost by the surface area heuristic.
   std::optional<double> sah() const;
@@ -133,8 +131,7 @@ struct TreeReport {
 struct TreeOptions {
   bool exact = false;  ///< EPO by clipping if possible
   std::uint64_t samples = 20'000, seed = 1;
-  double tolerance = 1e-7;             ///< of corners outside volumes, relative to the mesh's diagonal
-  std::span<const double> waste = {};  ///< by node: visits that led to nothing; empty: not known
+  double tolerance = 1e-7;  ///< of corners outside volumes, relative to the mesh's diagonal
 };
 
 /// Measures a tree. Throws InputError for one without nodes, and as Volumes.

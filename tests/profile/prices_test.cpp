@@ -144,10 +144,6 @@ TEST_CASE("The prices of random descents are those of their definition, and of a
     with_order += p.order > 0;
     with_volumes += p.volumes > 0;
     // The parts add up.
-    DepthPrices depths;
-    for (const DepthPrices& d : priced.book.by_depth())
-      depths.needed += d.needed, depths.proof += d.proof, depths.wasted += d.wasted;
-    CHECK(depths == DepthPrices{needed, proof, p.wasted()});
     std::uint64_t owned = 0;
     for (const OwnerWaste& o : priced.book.worst_owners(1000)) owned += o.visits;
     CHECK(owned == p.wasted());
