@@ -1,11 +1,7 @@
-// fcl A.obj B.obj POSES [ROUNDS [distance]]: FCL's collision, or distance, of two trees of OBBRSS, whose
-// queries lrbscope_capture.h records if LRBCAP_OUT names a file. FCL itself is not changed: subclasses of its
-// traversals report the tests. POSES: a line of 12 numbers for each pose of B (3x4, row by row). Prints for
-// each pose how many pairs of triangles intersect, or the distance, and on stderr the time of a query, the
-// least of ROUNDS.
-#include <algorithm>
-#include <chrono>
-#include <cstdlib>
+// fcl A.obj B.obj POSES [distance]: FCL's collision, or distance, of two trees of OBBRSS, recorded by
+// lrbscope_capture.h. FCL itself is not changed: subclasses of its traversals report the tests. Prints for
+// each pose how many pairs of triangles intersect, or the distance.
+#include <iomanip>
 #include <utility>
 
 #include <fcl/config.h>
@@ -53,28 +49,30 @@ struct DistanceTraversal final : fcl::detail::MeshDistanceTraversalNodeOBBRSSd {
   }
 };
 
+bool distance = false;  ///< else collision
+
 struct Body {
   Triangles mesh;
   Model model;
   std::uint32_t tree = 0;  ///< its number in the capture
+  explicit Body(const char* path);
 };
 
 /// Reads a body, and reports its mesh and tree with the volumes that FCL tests: OBB, or RSS for distances.
-void load(Body& body, const std::string& path, bool distance) {
-  body.mesh = read_obj(path);
-  const auto& [xyz, corners] = body.mesh;
+Body::Body(const char* path) : mesh(read_obj(path)) {
+  const auto& [xyz, corners] = mesh;
   std::vector<fcl::Vector3d> vertices;
   std::vector<fcl::Triangle> triangles;
   for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) vertices.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
     triangles.emplace_back(corners[i], corners[i + 1], corners[i + 2]);
-  body.model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
-  body.model.addSubModel(vertices, triangles);
-  body.model.endModel();
-  std::vector<Node> nodes(static_cast<std::size_t>(body.model.getNumBVs()));
+  model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
+  model.addSubModel(vertices, triangles);
+  model.endModel();
+  std::vector<Node> nodes(static_cast<std::size_t>(model.getNumBVs()));
   std::vector<double> volumes;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto& node = body.model.getBV(static_cast<int>(i));
+    const auto& node = model.getBV(static_cast<int>(i));
     if (node.isLeaf())
       nodes[i].triangles = {static_cast<std::uint32_t>(node.primitiveId())};
     else
@@ -88,7 +86,7 @@ void load(Body& body, const std::string& path, bool distance) {
         volumes.push_back(distance ? rss.axis(k, axis) * rss.l[axis] : box.axis(k, axis) * box.extent[axis]);
     if (distance) volumes.push_back(rss.r);
   }
-  body.tree = describe(body.mesh, path, distance ? LRBCAP_RSS : LRBCAP_OBB, nodes, volumes);
+  tree = describe(mesh, path, distance ? LRBCAP_RSS : LRBCAP_OBB, nodes, volumes);
 }
 
 fcl::Transform3d transform(const Pose& pose) {
@@ -97,60 +95,42 @@ fcl::Transform3d transform(const Pose& pose) {
   return out;
 }
 
-/// Returns the distance, with B at a pose.
-double query_distance(const Body& a, const Body& b, const Pose& pose) {
-  fcl::DistanceResultd result;
-  DistanceTraversal traversal;
-  fcl::detail::initialize(traversal, std::as_const(a.model), fcl::Transform3d::Identity(),
-                          std::as_const(b.model), transform(pose), fcl::DistanceRequestd(), result);
-  LRBCAP_BEGIN(LRBCAP_DISTANCE, a.tree, nullptr, b.tree, pose.data());
-  LRBCAP_NODE(0, 0, 1, LRBCAP_NO_AXIS);  // FCL begins below the roots
-  fcl::detail::distance(&traversal);
-  LRBCAP_END(result.min_distance <= 0 ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, 0);
-  return result.min_distance;
-}
-
-/// Returns the number of pairs that intersect, with B at a pose.
-std::size_t query(const Body& a, const Body& b, const Pose& pose) {
-  const fcl::CollisionRequestd request(a.mesh.corners.size() * b.mesh.corners.size(), false);
-  fcl::CollisionResultd result;
-  Traversal traversal;
+/// Queries the bodies, with B at a pose.
+template <class Traversed, class Request, class Result>
+void traverse(Traversed traversal, const Body& a, const Body& b, const Pose& pose, const Request& request,
+              Result& result) {
   fcl::detail::initialize(traversal, std::as_const(a.model), fcl::Transform3d::Identity(),
                           std::as_const(b.model), transform(pose), request, result);
-  LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, a.tree, nullptr, b.tree, pose.data());
-  fcl::detail::collide(&traversal);
-  LRBCAP_END(result.numContacts() ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, result.numContacts());
-  return result.numContacts();
+  LRBCAP_BEGIN(distance ? LRBCAP_DISTANCE : LRBCAP_ALL_PAIRS, a.tree, nullptr, b.tree, pose.data());
+  if constexpr (std::is_same_v<Traversed, Traversal>) {
+    fcl::detail::collide(&traversal);
+  } else {
+    LRBCAP_NODE(0, 0, 1, LRBCAP_NO_AXIS);  // FCL begins below the roots
+    fcl::detail::distance(&traversal);
+  }
+}
+
+/// Returns the number of pairs that intersect, or the distance.
+std::string query(const Body& a, const Body& b, const Pose& pose) {
+  std::ostringstream out;
+  if (distance) {
+    fcl::DistanceResultd result;
+    traverse(DistanceTraversal(), a, b, pose, fcl::DistanceRequestd(), result);
+    LRBCAP_END(result.min_distance <= 0 ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, 0);
+    out << std::setprecision(15) << result.min_distance;
+  } else {
+    fcl::CollisionResultd result;
+    traverse(Traversal(), a, b, pose,
+             fcl::CollisionRequestd(a.mesh.corners.size() * b.mesh.corners.size(), false), result);
+    LRBCAP_END(result.numContacts() ? LRBCAP_INTERSECTING : LRBCAP_SEPARATE, result.numContacts());
+    out << result.numContacts() << " pairs";
+  }
+  return out.str();
 }
 
 }  // namespace
 
-int main(int argc, char** argv) try {
-  const bool distance = argc == 6 && std::string(argv[5]) == "distance";
-  if (argc < 4 || argc > 6 || (argc == 6 && !distance))
-    throw std::runtime_error("usage: fcl A.obj B.obj POSES [ROUNDS [distance]]");
-  const int rounds = argc > 4 ? std::atoi(argv[4]) : 1;
-  LRBCAP_OPEN("FCL " FCL_VERSION ", BVHModel<OBBRSS>", nullptr);
-  Body a, b;
-  load(a, argv[1], distance);
-  load(b, argv[2], distance);
-  const std::vector<Pose> poses = read_poses(argv[3]);
-  std::cout.precision(15);
-  std::vector<double> least(poses.size(), 1e30);
-  for (int round = 0; round < rounds; ++round)
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const auto begin = std::chrono::steady_clock::now();
-      const double answer =
-          distance ? query_distance(a, b, poses[i]) : static_cast<double>(query(a, b, poses[i]));
-      const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
-      least[i] = std::min(least[i], took.count());
-      if (round == 0) std::cout << answer << (distance ? "\n" : " pairs\n");
-    }
-  double sum = 0;
-  for (const double us : least) sum += us;
-  std::cerr << sum / static_cast<double>(poses.size()) << " us per query\n";
-  LRBCAP_CLOSE();
-} catch (const std::exception& error) {
-  std::cerr << error.what() << "\n";
-  return 1;
+int main(int argc, char** argv) {
+  distance = argc == 5 && std::string(argv[4]) == "distance";
+  return run<Body>("FCL " FCL_VERSION ", BVHModel<OBBRSS>", argc - distance, argv, query);
 }

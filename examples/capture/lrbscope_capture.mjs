@@ -14,6 +14,7 @@
 
 export const ALL_PAIRS = 1, ANY = 2, DISTANCE = 3, FIRST_CONTACT = 4, SELF = 5, SHAPE = 6;
 export const SEPARATE = 0, INTERSECTING = 1, UNREPORTED = 2;
+export const RAY = 1, POINT = 2, BOX = 3;
 
 const AABB = 1, IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
 const utf8 = (text) => new TextEncoder().encode(text), f64 = (numbers) => Float64Array.from(numbers);
@@ -60,14 +61,16 @@ export class Capture {
     return this.tree(name, positions(bvh.geometry), corners(bvh.geometry), nodes);
   }
 
-  // Record a query, its tests and its answer. Poses: 3x4 numbers, row by row; null: the identity. Tree 0: any shape.
-  begin(kind, treeA, poseA, treeB, poseB) {
-    const head = u32([0, 0, ++this.#queries, kind, treeA, treeB, 0, 0, 1, 0]);
-    this.#chunk("QRYB", head, f64(poseA ?? IDENTITY), f64(poseB ?? IDENTITY));
+  // Record a query, its tests and its answer. Poses: 3x4 numbers, row by row; null: the identity. Tree 0: any shape,
+  // or a probe, which is a RAY, POINT or BOX with the numbers of LRBCAP_RAY, _POINT or _BOX in place of its pose.
+  begin(kind, treeA, poseA, treeB, poseB, probe = 0) {
+    const head = u32([0, 0, ++this.#queries, kind, treeA, treeB, 0, 0, 1, probe]);
+    this.#chunk("QRYB", head, f64(poseA ?? IDENTITY), f64(upTo(12).map((i) => (poseB ?? IDENTITY)[i] ?? 0)));
     this.#query = { begin: ticks(), bytes: [], events: 0, last: [[0, 0], [0, 0]] };
   }
   node(a, b, met) { this.#event(0, a, b, met); }
   prim(a, b, met) { this.#event(1, a, b, met); }
+  value(lower, upper) { this.#chunk("VALU", u64([this.#queries]), f64([lower, upper])); } // of a distance
   end(verdict, pairs) {
     const { begin, bytes, events } = this.#query, took = ticks() - begin;
     this.#query = null;
@@ -91,7 +94,8 @@ export class Capture {
   }
 
   #chunk(letters, ...content) {
-    this.#parts.push(utf8(letters), u32([1]), u64([sizeOf(content), ticks()]), ...content);
+    const version = letters === "QRYB" && content[0][9] ? 2 : 1; // of a probe
+    this.#parts.push(utf8(letters), u32([version]), u64([sizeOf(content), ticks()]), ...content);
   }
   #event(kind, a, b, met) {
     const q = this.#query, last = q.last[kind];

@@ -33,7 +33,7 @@ for engine in "$@"; do
 done
 # FCL's distances: 0 for crossing bodies, else as lrbscope's. No visit is left without a price.
 if [ $# -gt 1 ]; then
-  LRBCAP_OUT=distance.lrbcap "$2" "$gear" "$block" poses 1 distance >distances 2>/dev/null || fail "distance: exit code $?"
+  LRBCAP_OUT=distance.lrbcap "$2" "$gear" "$block" poses distance >distances 2>/dev/null || fail "distance: exit code $?"
   ours=$(tail -1 poses >apart && "$program" distance "$gear" "$block" --poses apart | sed 's/.*"upper":\([0-9.e+-]*\).*/\1/')
   awk -v ours="$ours" 'NR < 3 && $1 > 0 || NR == 3 && ($1 - ours > 1e-9 || ours - $1 > 1e-9) { exit 1 }' distances ||
     fail "distances: expected 0, 0, $ours: $(cat distances)"

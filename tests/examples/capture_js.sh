@@ -30,6 +30,10 @@ capture.begin(k.SHAPE, a, null, 0, null);
 capture.node(4000000000, 300, false);
 capture.node(1, 0, true);
 capture.end(k.SEPARATE, 0);
+capture.begin(k.DISTANCE, a, [0, -1, 0, 4, 1, 0, 0, 5, 0, 0, 1, 6], 0, [4, 5, 6, 0, 0, 1, 0, Infinity], k.RAY);
+capture.node(0, 0, true);
+capture.value(0.5, 0.75);
+capture.end(k.INTERSECTING, 0);
 fs.writeFileSync("js.lrbcap", capture.close());
 
 // Without times: those of chunks, the wall clock, and how long queries took.
