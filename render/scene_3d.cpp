@@ -154,6 +154,7 @@ class Scene3dBuilder {
       t.edge_style = c_.body.wrapper != nullptr && !c_.on_boundary(f) ? pale_edges_ : real_edges_;
       any_in_contact |= c_.in_contact(f);
       add_face(f, t);
+      add_degenerate(f, t.colour);
     }
     borders_.clear();
     if (any_in_contact) c_.add_key(Mark::solid, style_.contact, c_.body.contact_name);
@@ -286,6 +287,18 @@ class Scene3dBuilder {
     std::vector<Vector3d> shape;
     for (const VertexId v : rep_.face(f)) shape.push_back(rep_.vertices()[v]);
     c_.out.list.add_polygon(c_.corners(f, moved), like, borders, shape);
+  }
+
+  /// Draws a triangle whose corners are in one line, as a ray is, or in one point.
+  void add_degenerate(FaceId f, Rgba colour) {
+    std::vector<Vector3d> x;
+    for (const VertexId v : rep_.face(f)) x.push_back(rep_.vertices()[v]);
+    if (x.size() != 3 || !(x[1] - x[0]).cross(x[2] - x[0]).isZero(0)) return;
+    x = c_.corners(f);
+    if (x[0] == x[1] && x[1] == x[2])
+      c_.out.list.points.push_back({.x = x[0], .colour = colour, .radius = 4 * c_.options.scale});
+    else
+      c_.out.list.lines.push_back({.points = x, .colour = colour, .width = 2 * c_.options.scale});
   }
 
   // ---- borders
