@@ -59,7 +59,6 @@ hide -DLRB_CHART_JS= -ULRB_CHART_JS libjs-chart.js program -DLRB_BUILD_PROGRAM=O
 hide -DLRB_THREE_JS= -ULRB_THREE_JS libjs-three program -DLRB_BUILD_PROGRAM=ON -DLRB_BUILD_PROGRAM=OFF
 package doctest doctest-dev tests -DLRB_BUILD_TESTS=ON -DLRB_BUILD_TESTS=OFF
 package valijson libvalijson-dev tests -DLRB_BUILD_TESTS=ON -DLRB_BUILD_TESTS=OFF
-package SQLite3 libsqlite3-dev tests -DLRB_BUILD_TESTS=ON -DLRB_BUILD_TESTS=OFF
 package pybind11 pybind11-dev "Python module" "" ""
 
 # The engine alone does not need other parts.
