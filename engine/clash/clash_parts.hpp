@@ -64,8 +64,9 @@ class SurfaceDistance {
 
   /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius around it
   /// is proven to contain no point of the surface. It is less than the distance by kClearanceMargin and
-  /// rounding, independently of the triangulation of the surface.
-  double at(const Vector3d& x) const;
+  /// rounding, independently of the triangulation of the surface. May return early, with any clearance of at
+  /// most `enough`, if the point has no more.
+  double at(const Vector3d& x, double enough = -1) const;
 
  private:
   double bound(std::uint32_t triangle, const Vector3d& x) const;
@@ -131,9 +132,9 @@ class OverlapProof {
     Common near;  ///< of a nearby translation
   };
   void push(const Vector3d& centre, double half, const Common& near);
-  bool evaluate(const Vector3d& x, const Vector3d& v, const Common& near, Common& out);
+  bool evaluate(const Vector3d& x, const Vector3d& v, const Common& near, const Common& least, Common& out);
   bool is_in(Side side, const Vector3d& x, double radius, const Vector3d& known, double known_radius);
-  std::vector<Common> seeds(const Cube& cube) const;
+  void add_seeds(const Cube& cube, std::vector<Common>& out) const;
   bool find_room(const Cube& cube, double needed, const Common& seed, Common& best);
   bool prove(const Cube& cube, Common& best);
   void climb(double needed, bool thorough, Common& best);

@@ -82,16 +82,20 @@ bool OverlapProof::is_in(Side side, const Vector3d& x, double radius, const Vect
   return (x - known).norm() < std::max(radius, known_radius) - kRoomMargin || is_inside_(side, x);
 }
 
-/// Evaluates x for the translation v. Returns false unless x is in A and x - v in B. near: a nearby common
-/// point.
-bool OverlapProof::evaluate(const Vector3d& x, const Vector3d& v, const Common& near, Common& out) {
+/// Evaluates x for the translation v. Returns false unless x is in A and x - v in B, with more clearance than
+/// `least`. near: a nearby common point.
+bool OverlapProof::evaluate(const Vector3d& x, const Vector3d& v, const Common& near, const Common& least,
+                            Common& out) {
   ++points_;
   out.x = x;
   out.shift = v;
   // B is translated by v: it contains x if the original B contains x - v.
   out.of_b = x - v;
-  out.clear_a = a_.at(out.x);
-  out.clear_b = b_.at(out.of_b);
+  // A clearance changes by at most the way of the point, up to rounding: less than 64 kRoomMargin in all.
+  const double enough = least.room() * (1 + kClearlyMore) - 64 * kRoomMargin;
+  out.clear_a = a_.at(out.x, enough - least.clear_b - (out.of_b - least.of_b).norm());
+  out.clear_b = b_.at(out.of_b, enough - out.clear_a);
+  if (!has_more(out, least)) return false;
   // Inside with certainty: by the balls of the nearby point, or by exact location.
   return is_in(Side::a, out.x, out.clear_a, near.x, near.clear_a) &&
          is_in(Side::b, out.of_b, out.clear_b, near.of_b, near.clear_b);
@@ -107,9 +111,7 @@ void OverlapProof::climb(double needed, bool thorough, Common& best) {
     for (int k = 0; k < 3; ++k)
       for (const double sign : {1.0, -1.0}) {
         Common next;
-        if (!evaluate(best.x + sign * step * Vector3d::Unit(k), best.shift, best, next) ||
-            !has_more(next, best))
-          continue;
+        if (!evaluate(best.x + sign * step * Vector3d::Unit(k), best.shift, best, best, next)) continue;
         // Take the first gain on an axis.
         best = next;
         break;
@@ -117,9 +119,9 @@ void OverlapProof::climb(double needed, bool thorough, Common& best) {
   }
 }
 
-/// Returns starting points of the search for a cube: its parent's, those of the nearest proven cubes, and for
-/// a small cube also samples of all known and of the initial points.
-std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
+/// Adds starting points of the search for a cube: those of the nearest proven cubes, and for a small cube
+/// also samples of all known and of the initial points.
+void OverlapProof::add_seeds(const Cube& cube, std::vector<Common>& out) const {
   // The kSeeds nearest translations, by insertion into a short sorted array.
   std::array<std::pair<double, const Common*>, kSeeds> nearest;
   nearest.fill({kUnitReach * kUnitReach, nullptr});
@@ -130,7 +132,6 @@ std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
     for (; at > 0 && far < nearest[at - 1].first; --at) nearest[at] = nearest[at - 1];
     nearest[at] = {far, &known};
   }
-  std::vector<Common> out{cube.near};
   for (const auto& [far, known] : nearest)
     if (known != nullptr) out.push_back(*known);
   // The remaining gap is small: search more before dividing, from samples of all known points.
@@ -139,7 +140,6 @@ std::vector<OverlapProof::Common> OverlapProof::seeds(const Cube& cube) const {
       out.push_back(found_[i * found_.size() / kOtherSeeds]);
       out.push_back(found_[i * first_ / kOtherSeeds]);
     }
-  return out;
 }
 
 /// Searches from a seed for a point with the clearance needed.
@@ -150,8 +150,8 @@ bool OverlapProof::find_room(const Cube& cube, double needed, const Common& seed
   // From the seed's translation to the cube's, the point moves by half, stays with A, or follows B.
   for (const double share : {0.5, 0.0, 1.0}) {
     Common at;
-    if (!evaluate(seed.x + share * moved, cube.centre, seed, at)) continue;
-    if (!found || has_more(at, start)) start = at;
+    if (!evaluate(seed.x + share * moved, cube.centre, seed, start, at)) continue;
+    start = at;
     found = true;
     // Good enough to climb from.
     if (start.room() > needed * kNearlyEnough) break;
@@ -168,14 +168,16 @@ bool OverlapProof::find_room(const Cube& cube, double needed, const Common& seed
 bool OverlapProof::prove(const Cube& cube, Common& best) {
   // Half of the cube's diagonal: the balls then overlap for every translation in the cube.
   const double needed = cube.half * kDiagonal + kRoomMargin;
-  for (const Common& seed : seeds(cube)) {
-    if (find_room(cube, needed, seed, best)) {
+  std::vector<Common> seeds{cube.near};  // the others only if this one does not suffice
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (find_room(cube, needed, seeds[i], best)) {
       // Proven cubes are seeds for their neighbours.
       found_.push_back(best);
       return true;
     }
     // A large cube with a fair point: its parts need only half the clearance, so divide.
     if (best.room() > needed * kNearlyEnough && !is_small(cube)) return false;
+    if (i == 0) add_seeds(cube, seeds);
   }
   return false;
 }

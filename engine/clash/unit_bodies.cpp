@@ -53,7 +53,7 @@ double SurfaceDistance::bound(std::uint32_t triangle, const Vector3d& x) const {
   return slab > kClearanceMargin ? slab - kClearanceMargin : 0;
 }
 
-double SurfaceDistance::at(const Vector3d& x) const {
+double SurfaceDistance::at(const Vector3d& x, double enough) const {
   double least = kInfinity;
   struct Waiting {
     std::uint32_t node;
@@ -67,7 +67,7 @@ double SurfaceDistance::at(const Vector3d& x) const {
     return std::sqrt(nodes[i].box.squaredExteriorDistance(x)) * kBoxRounding;
   };
   // The nearer child is on top, so that `least` decreases early.
-  while (size > 0) {
+  while (size > 0 && least > enough) {
     const Waiting top = stack[--size];
     // The box is not nearer than the best triangle.
     if (top.distance >= least) continue;
