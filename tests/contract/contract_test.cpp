@@ -393,20 +393,47 @@ TEST_CASE_TEMPLATE("a batch gives each query its own answer or reason, in order,
   CHECK(visited<Q>(work, {one.a, one.b, {}, {}}, {}, 7, [](std::size_t, auto&) { return true; }) == 0);
 }
 
-TEST_CASE("memory of a batch that is used again keeps nothing of the answers before") {
-  std::vector<Pose> poses(12, Pose::translation({0.5, 0.25, 0}));
-  const LrbRep& box = bodies()[2];
-  Batch work(2);
-  CollideAnswers answers;
-  for (const double y : {kInfinite, 0.25, kInfinite, 0.5}) {
-    poses[5].t.y() = y;
-    work.collide(box, {}, box, poses, {}, answers);
-    REQUIRE(answers.size() == poses.size());
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      REQUIRE(answers[i].has_value() == std::isfinite(poses[i].t.y()));
-      if (answers[i]) CHECK((content(*answers[i]) == content(collide(box, {}, box, poses[i]))));
+TEST_CASE("a batch that asks only whether bodies meet along motions keeps nothing of the answers before") {
+  RandomEngine random(11);
+  const CollideRequest any{.mode = Mode::any_pair};
+  Mesh tiny = shapes::box();
+  for (Vector3d& v : tiny.vertices) v *= 0.01;
+  const LrbRep small = build_lrb(tiny);
+  Batch work[2] = {Batch(1), Batch(3)};
+  CollideAnswers answers[2];
+  std::size_t meet = 0, inside = 0, proven = 0;
+  for (int i = 0; i < 60; ++i) {
+    Case c = any_case(random);
+    if (i % 6 == 0) c = {&bodies()[0], &small, {}, {}};  // inside, and out of it
+    const Vector3d way = shapes::uniform(random, 0, 0.5) * shapes::box_of(*c.a).diagonal().norm() *
+                         c.pose_a.r.col(i % 2),
+                   axis = c.a->dim() == 2 ? Vector3d::UnitZ() : shapes::random_direction(random);
+    const double angle = shapes::uniform(random, 0, 2);
+    std::vector<Pose> poses;
+    for (int k = 0; k < 150; ++k)
+      poses.push_back({Pose::rotation(axis, k * angle / 149).r * c.pose_b.r, c.pose_b.t + k / 149.0 * way});
+    if (i % 5 == 0) poses[40 + i].t.x() = kNaN;
+    const CollideRequest request = i % 4 == 0 ? CollideRequest{} : any;
+    for (const int w : {0, 1}) work[w].collide(*c.a, c.pose_a, *c.b, poses, request, answers[w]);
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      CAPTURE(i);
+      CAPTURE(k);
+      for (const auto& of : answers) REQUIRE(of[k].has_value() == std::isfinite(poses[k].t.x()));
+      if (!answers[0][k]) continue;
+      const CollideResult& found = *answers[0][k];
+      CollideResult expected = collide(*c.a, c.pose_a, *c.b, poses[k], request);
+      meet += !found.pairs.empty();
+      inside += found.relation == Relation::b_inside_a;
+      if (found.counters.node_pairs == 0) {
+        ++proven;
+        clear(expected.counters);
+        for (std::vector<RegionId>& opened : expected.opened) opened.clear();
+      }
+      CHECK((content(found) == content(expected)));
+      CHECK((content(*answers[1][k]) == content(found)));
     }
   }
+  CHECK(std::min({meet / 10, inside, proven / 10}) > 100);
 }
 
 TEST_CASE("an answer stays in its workspace until the next query of the same kind, and may be moved out") {
