@@ -13,6 +13,7 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/parallel.hpp>
 #include <lrbscope/validate.hpp>
 #include <lrbscope/wrapper.hpp>
 
@@ -73,18 +74,22 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   j["peak_bytes"] = peak_bytes();
   j["notes"] = notes;  // repairs made to the mesh, and weaknesses of the result
   ValidateReport report;
-  if (o.no_validate) {
-    j["valid"] = nullptr;
-  } else {
-    ValidateOptions validating;
-    validating.threads = o.build.threads;
-    report = validate(rep, validating);
+  const ValidateOptions validating{.threads = o.build.threads};
+  Workers workers(o.build.threads);
+  workers.both(
+      [&] {
+        if (!o.no_validate) report = validate(rep, validating);
+      },
+      [&] {
+        if (!o.out.empty()) rep.levels(o.build.threads);
+      });
+  j["valid"] = nullptr;
+  if (!o.no_validate) {
     j["valid"] = report.valid;
     j["real_pairs_meeting"] = report.real_pairs_meeting;
     j["violations"] = report.violations;
   }
   if (!o.out.empty()) {
-    rep.levels(o.build.threads);
     save_lrb(rep, o.out);
     j["file"] = o.out;
     note(globals, {"wrote " + o.out});

@@ -83,7 +83,7 @@ class Validator {
     if (levels.needed().empty()) return;
     // Computed again. The stored tolerance may be larger than the thickness (it covers all hidden regions),
     // but never smaller.
-    const std::vector<double> thickness = region_thickness(rep_);
+    const std::vector<double> thickness = region_thickness(rep_, workers_.count());
     for (RegionId r = 0; r < rep_.region_count(); ++r)
       if (levels.needed()[r] < thickness[r])
         violation("region " + std::to_string(r) + " has a stored thickness below its proven thickness");
