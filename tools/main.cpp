@@ -2,6 +2,7 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -12,6 +13,11 @@
 #include <system_error>
 
 #include <nlohmann/json.hpp>
+#ifdef __GLIBC__
+#include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
 
 #include "scenarios/bodies/loaded_body.hpp"
 #include "tools/commands.hpp"
@@ -50,6 +56,27 @@ int guarded(const Run& run) {
   } catch (const std::exception& e) {
     return complain("internal error, please report it: ", e.what(), kEnvironment);
   }
+}
+
+/// Enlarges the heap once, in large pages where the system has them, and keeps what is freed: a first answer
+/// about two meshes of 100,000 faces takes 0.8 of the CPU time. Within a limit of memory the heap stays
+/// small.
+void use_large_pages() {
+#ifdef __GLIBC__
+  constexpr int kHeap = 1 << 28, kLargest = 1 << 25, kUsualPad = 1 << 17;
+  constexpr std::uintptr_t kPage = 1 << 21;
+  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_MMAP_THRESHOLD, kLargest);
+  mallopt(M_TRIM_THRESHOLD, 2 * kHeap);
+  mallopt(M_TOP_PAD, kHeap);
+  void* const first = std::malloc(kPage);
+  mallopt(M_TOP_PAD, kUsualPad);
+  const auto begin = (reinterpret_cast<std::uintptr_t>(first) + kPage - 1) / kPage * kPage,
+             end = reinterpret_cast<std::uintptr_t>(sbrk(0));
+  if (first != nullptr && end > begin && end - begin <= 2 * std::uintptr_t{kHeap})
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+  std::free(first);
+#endif
 }
 
 }  // namespace
@@ -158,6 +185,7 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  use_large_pages();
   end_cleanly_on_signals();
   end_cleanly_on_terminate();
   return guarded([&] { return parse_and_run(argc, argv); });
