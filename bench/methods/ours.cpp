@@ -87,24 +87,36 @@ class Ours : public OurMethod {
   Workspace workspace_;
 };
 
-double diagonal_of(const LrbRep& rep) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& v : rep.vertices()) box.extend(v);
-  return box.diagonal().norm();
+/// Returns the poses of a motion that ends at B's: at each B comes nearer to A by 0.1 % of A's size, and
+/// turns by 0.001 radians. Reads no vertices, which would displace the trees from the caches.
+template <class Posed>
+std::vector<Pose> motion_to(const Posed& a, const Posed& b, int count) {
+  constexpr double kStep = 1e-3;
+  const auto centre = [](const Posed& x) {
+    const TreeNode& root = x.body.rep.tree().nodes()[0];
+    return x.pose.apply(x.body.rep.tree().unit() *
+                        Eigen::Vector3d(root.origin[0], root.origin[1], root.origin[2]));
+  };
+  const Eigen::Vector3d at = centre(b),
+                        way = kStep * a.body.rep.tree().unit() * (at - centre(a)).stableNormalized();
+  std::vector<Pose> poses;
+  for (int i = count; i-- > 0;) {
+    const Eigen::Matrix3d turn = Pose::rotation(Eigen::Vector3d::UnitZ(), i * kStep).r;
+    poses.push_back({turn * b.pose.r, at + turn * (b.pose.t - at) + i * way});
+  }
+  poses.back() = b.pose;  // not rounded
+  return poses;
 }
 
-/// Runs the coherent query, which caches results between steps: the pose is the last of a few small steps.
-/// Only that one is timed.
+/// Runs the coherent query, which caches results between steps. Only the last one is timed.
 class OursCoherent : public OurMethod {
  public:
   std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
 
   Answer ask(const Posed& a, const Posed& b, Mode mode) override {
     CoherentQuery coherent(a.body.rep, b.body.rep, request_for(mode));
-    constexpr int kSteps = 8;
-    constexpr double kStep = 1e-3;  // as a share of A's diagonal
-    const Eigen::Vector3d step = kStep * diagonal_of(a.body.rep) * Eigen::Vector3d(1, 2, 2) / 3;
-    for (int i = kSteps; i > 0; --i) coherent.collide(a.pose, {b.pose.r, b.pose.t + i * step});
+    const std::vector<Pose> poses = motion_to(a, b, 9);
+    for (const Pose& pose : std::span(poses).first(8)) coherent.collide(a.pose, pose);
     const Stopwatch watch;
     const CollideResult& result = coherent.collide(a.pose, b.pose);
     const double microseconds = watch.microseconds();
@@ -113,6 +125,29 @@ class OursCoherent : public OurMethod {
     return answer;
   }
 };
+
+/// Queries whether the bodies meet at each pose of a motion. The time is that of one of them.
+class OursMotion : public OurMethod {
+ public:
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<OurBody>(rep); }
+
+  Answer ask(const Posed& a, const Posed& b, Mode) override {
+    const std::vector<Pose> poses = motion_to(a, b, 64);
+    const Stopwatch watch;
+    batch_.collide(a.body.rep, a.pose, b.body.rep, poses, request_for(Mode::any_pair), answers_);
+    return answer_from(*answers_.back(), watch.microseconds() / 64);
+  }
+
+ private:
+  Batch batch_{1};
+  CollideAnswers answers_;
+};
+
+double diagonal_of(const LrbRep& rep) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& v : rep.vertices()) box.extend(v);
+  return box.diagonal().norm();
+}
 
 /// Stopping criterion of a coarse query.
 enum class Content : std::uint8_t { one_pair, tolerance, tests };
@@ -206,13 +241,24 @@ std::vector<MethodEntry> ours_methods() {
       entry_of<OursCoherent>(
           {.name = "ours-coherent",
            .title = "lrbscope, coherent",
-           .remark = "As ours, at the last of nine poses that are 0.1 % of A's diagonal apart; the others "
+           .remark = "As ours, at the last of nine poses that are 0.1 % of A's size apart; the others "
                      "are not timed.",
            .says = Says::relation,
            .traits = {Trait::takes_2d, Trait::moves_exactly, Trait::own_rep, Trait::knows_poses_in_advance},
            .style = kVariant,
            .role = Role::ours_other,
            .rank = 13}),
+      entry_of<OursMotion>(
+          {.name = "ours-motion",
+           .title = "lrbscope, a pose of a motion",
+           .remark = "Whether they intersect at each of 64 poses 0.1 % of A's size and 0.001 radians apart; "
+                     "the time of one pose.",
+           .pairs = false,
+           .says = Says::relation,
+           .traits = {Trait::takes_2d, Trait::moves_exactly, Trait::own_rep, Trait::knows_poses_in_advance},
+           .style = kVariant,
+           .role = Role::ours_other,
+           .rank = 17}),
       entry_of<OursCoarse, Content::one_pair>(
           {.name = "ours-one-pair",
            .title = "lrbscope, one pair",
