@@ -44,11 +44,6 @@ class MapFigure {
         style_(style),
         figure_(figure),
         all_(static_cast<double>(map_.size[0]) * map_.size[1]) {
-    // Order of painting: tested pairs upon the cells of their leaves, contacts upon all.
-    std::stable_sort(map_.cells.begin(), map_.cells.end(), [](const MapCell& x, const MapCell& y) {
-      return (x.is_upon() ? x.argument : Argument::child_boxes) <
-             (y.is_upon() ? y.argument : Argument::child_boxes);
-    });
     arrange();
   }
 
@@ -68,7 +63,9 @@ class MapFigure {
                 (side == 0 ? "A" : "B") + ", in the order of its tree");
     for (std::size_t i = 0; i < squares_.size(); ++i) {
       const auto& [place, part] = squares_[i];
-      canvas.picture(pixels(part, place.sizes().x(), dpi / render::kPointsPerInch), place);
+      const double per_point = dpi / render::kPointsPerInch;
+      const int size = static_cast<int>(std::lround(place.sizes().x() * per_point));
+      canvas.picture(frames::pixels_of(map_, style_, part, size, 0.25 * per_point), place);
       canvas.stroke(render::corners(place), true, {style_.ink, figure_.line_width, 0});
       if (i > 0) paint_frame(canvas, i);
     }
@@ -139,44 +136,6 @@ class MapFigure {
     return best;
   }
 
-  /// Large cells are pale and small ones saturated, by the logarithm of their pairs, so that both are
-  /// visible.
-  render::Rgba colour(Argument argument, double pairs) const {
-    const frames::ArgumentLook& look = frames::look_of(argument);
-    return style_.pale(style_.of(look.colour),
-                       look.pale * std::sqrt(std::log(pairs + 1) / std::log(all_ + 1)));
-  }
-
-  render::Image pixels(const AlignedBox2d& part, double side, double per_point) const {
-    constexpr int kOutlined = 10;      // pixels
-    constexpr double kOutline = 0.25;  // share of ink
-    const int size = static_cast<int>(std::lround(side * per_point)),
-              point = std::max(1, static_cast<int>(std::lround(0.25 * per_point)));
-    render::Image out(size, size, style_.paper);
-    for (const MapCell& cell : map_.cells) {
-      std::array<int, 2> low{}, high{};
-      for (std::size_t i = 0; i < 2; ++i) {
-        const auto axis = static_cast<Eigen::Index>(1 - i);  // A's simplices are rows
-        // Neighbours round their common border alike, so that no gap is between them.
-        const auto pixel = [&](std::uint32_t at) {
-          const double x = (static_cast<double>(at) / map_.size[i] - part.min()[axis]) / part.sizes()[axis];
-          return static_cast<int>(std::lround(std::clamp(x, -1.0, 2.0) * size));
-        };
-        low[i] = pixel(cell.low[i]), high[i] = pixel(cell.high[i]);
-        const int least = cell.is_upon() ? (cell.argument < Argument::contact ? 1 : 2) * point : 0;
-        if (const int more = least - (high[i] - low[i]); more > 0)
-          low[i] -= more / 2, high[i] = low[i] + least;
-      }
-      const bool outlined = std::min(high[0] - low[0], high[1] - low[1]) >= kOutlined;
-      const render::Rgba inside = colour(cell.argument, static_cast<double>(cell.pairs())),
-                         rim = outlined ? render::mix(inside, style_.ink, kOutline) : inside;
-      for (int y = std::max(0, low[0]); y < std::min(high[0], size); ++y)
-        for (int x = std::max(0, low[1]); x < std::min(high[1], size); ++x)
-          out.at(x, y) = y == low[0] || x == low[1] || y == high[0] - 1 || x == high[1] - 1 ? rim : inside;
-    }
-    return out;
-  }
-
   /// Marks in a square the part that the next one, to the right of it or below, enlarges.
   void paint_frame(render::Canvas& canvas, std::size_t i) const {
     const auto& [place, part] = squares_[i - 1];
@@ -212,7 +171,7 @@ class MapFigure {
       for (int k = 0; k < steps; ++k)
         canvas.fill({render::corners({Vector2d(swatch * k / steps, y - half),
                                       Vector2d(swatch * (k + 1) / steps, y + half)})},
-                    colour(argument, std::pow(all_, 1 - (k + 0.5) / steps)));
+                    frames::colour_of(map_, style_, argument, std::pow(all_, 1 - (k + 0.5) / steps)));
       row(frames::argument_name(argument, recorded_, step_), static_cast<double>(map_.pairs[i]), false);
     }
     canvas.stroke({{0, y - 0.5 * line()}, {figure_.width, y - 0.5 * line()}}, false,

@@ -60,6 +60,41 @@ MapAxis::MapAxis(const trace::TreeShape& tree) : low(tree.size()), high(tree.siz
   }
 }
 
+render::Rgba colour_of(const ProofMap& map, const render::Style& style, Argument argument, double pairs) {
+  const ArgumentLook& look = look_of(argument);
+  const double all = static_cast<double>(map.size[0]) * map.size[1];
+  return style.pale(style.of(look.colour), look.pale * std::sqrt(std::log(pairs + 1) / std::log(all + 1)));
+}
+
+render::Image pixels_of(const ProofMap& map, const render::Style& style, const Eigen::AlignedBox2d& part,
+                        int size, double point) {
+  constexpr int kOutlined = 10;      // pixels
+  constexpr double kOutline = 0.25;  // share of ink
+  const int dot = std::max(1, static_cast<int>(std::lround(point)));
+  render::Image out(size, size, style.paper);
+  for (const MapCell& cell : map.cells) {
+    std::array<int, 2> low{}, high{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto axis = static_cast<Eigen::Index>(1 - i);  // A's simplices are rows
+      // Neighbours round their common border alike, so that no gap is between them.
+      const auto pixel = [&](std::uint32_t at) {
+        const double x = (static_cast<double>(at) / map.size[i] - part.min()[axis]) / part.sizes()[axis];
+        return static_cast<int>(std::lround(std::clamp(x, -1.0, 2.0) * size));
+      };
+      low[i] = pixel(cell.low[i]), high[i] = pixel(cell.high[i]);
+      const int least = cell.is_upon() ? (cell.argument < Argument::contact ? 1 : 2) * dot : 0;
+      if (const int more = least - (high[i] - low[i]); more > 0) low[i] -= more / 2, high[i] = low[i] + least;
+    }
+    const bool outlined = std::min(high[0] - low[0], high[1] - low[1]) >= kOutlined;
+    const render::Rgba inside = colour_of(map, style, cell.argument, static_cast<double>(cell.pairs())),
+                       rim = outlined ? render::mix(inside, style.ink, kOutline) : inside;
+    for (int y = std::max(0, low[0]); y < std::min(high[0], size); ++y)
+      for (int x = std::max(0, low[1]); x < std::min(high[1], size); ++x)
+        out.at(x, y) = y == low[0] || x == low[1] || y == high[0] - 1 || x == high[1] - 1 ? rim : inside;
+  }
+  return out;
+}
+
 trace::TreeShape walked_shape(const RecordedRun& recorded, std::size_t side, std::uint32_t walked) {
   return recorded.trace->header.engine.empty()
              ? trace::TreeShape(trace::walked_tree(*recorded.reps[side], walked))
@@ -82,7 +117,7 @@ class MapMaker {
   MapMaker(const RecordedRun& p, std::size_t step, EventId begin, EventId end)
       : p_(p), events_(p.trace->events), step_(p.trace->steps[step]) {
     const auto walk = events_[begin].phase_begin();
-    walked_ = {walk.walked_a, walk.walked_b};
+    walked_ = map_.walked = {walk.walked_a, walk.walked_b};
     for (std::size_t i = 0; i < 2; ++i) {
       tree_[i] = walked_shape(p, i, walked_[i]);
       axis_.emplace_back(tree_[i]);
@@ -96,8 +131,10 @@ class MapMaker {
         tests_[key_of(axis_[0].leaf[e.a], axis_[1].leaf[e.b])][key_of(e.a, e.b)] = i;
     }
     visits_.contains(0) ? divide(0, 0) : add(0, 0, begin, Argument::open);
-    std::stable_sort(map_.cells.begin(), map_.cells.end(),
-                     [](const MapCell& x, const MapCell& y) { return x.event < y.event; });
+    std::stable_sort(map_.cells.begin(), map_.cells.end(), [](const MapCell& x, const MapCell& y) {
+      return (x.is_upon() ? x.argument : Argument::child_boxes) <
+             (y.is_upon() ? y.argument : Argument::child_boxes);
+    });
   }
 
   std::optional<ProofMap> take() {

@@ -10,7 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "scenarios/frames/frames.hpp"
+#include <lrbscope/render/image.hpp>
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/work.hpp>
 
@@ -62,8 +65,9 @@ struct MapAxis {
 };
 
 struct ProofMap {
-  std::array<std::uint32_t, 2> size{};  ///< simplices of A and of B
-  std::vector<MapCell> cells;           ///< by event; apart from those upon others they tile the square
+  std::array<std::uint32_t, 2> size{};    ///< simplices of A and of B
+  std::array<std::uint32_t, 2> walked{};  ///< as in trace::payload::PhaseBegin
+  std::vector<MapCell> cells;             ///< as painted, contacts last; those upon no others tile the square
   std::array<std::uint64_t, kArguments> pairs{};  ///< by argument
   std::uint64_t visits = 0;                       ///< pairs of nodes that contribute
 };
@@ -71,6 +75,14 @@ struct ProofMap {
 /// Returns the map of the last traversal of a step. nullopt: the run has none with pairs of nodes, or an
 /// engine's tree has a simplex in several leaves, so that its pairs have no place of their own.
 std::optional<ProofMap> proof_map(const RecordedRun& recorded, std::size_t step);
+
+/// Returns the colour of a cell: large ones are pale and small ones saturated, by the logarithm of their
+/// pairs, so that both are visible.
+render::Rgba colour_of(const ProofMap& map, const render::Style& style, Argument argument, double pairs);
+/// Returns a part of the unit square (x across, y down) in `size` x `size` pixels. `point`: least side of a
+/// pair that was tested, pixels; of an intersecting one twice as much.
+render::Image pixels_of(const ProofMap& map, const render::Style& style, const Eigen::AlignedBox2d& part,
+                        int size, double point);
 
 /// Returns the tree that a traversal descends; `walked`: as in trace::payload::PhaseBegin.
 trace::TreeShape walked_shape(const RecordedRun& recorded, std::size_t side, std::uint32_t walked);

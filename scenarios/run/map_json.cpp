@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -8,6 +10,51 @@
 #include "scenarios/run/scene_json.hpp"
 
 namespace lrb::run {
+namespace {
+
+/// The cells of all steps: a, b are the simplices of a pair that was tested, else nodes.
+class Cells {
+ public:
+  void add(const frames::RecordedRun& p, std::size_t step) {
+    constexpr std::size_t kMax = 2'000'000;  // some 20 bytes each on the page
+    const std::optional<frames::ProofMap> map = frames::proof_map(p, step);
+    const bool fits = map && event_.size() + map->cells.size() <= kMax;
+    std::vector<std::array<std::uint32_t, 4>> sorted;  // event, argument, a, b
+    std::map<std::array<std::uint32_t, 2>, trace::EventId> visit;
+    for (const frames::MapCell& cell : fits ? map->cells : std::vector<frames::MapCell>{}) {
+      const auto argument = static_cast<std::uint32_t>(cell.argument);
+      if (!cell.is_upon()) {
+        visit[cell.node] = cell.event;
+        sorted.push_back({cell.event, argument, cell.node[0], cell.node[1]});
+        continue;
+      }
+      // Until it is tested, a pair that planes do not separate waits.
+      const trace::Event& test = p.trace->events[cell.event];
+      if (cell.argument != frames::Argument::planes && p.trace->header.engine.empty())
+        sorted.push_back({visit.at(cell.node), frames::kArguments, test.a, test.b});
+      sorted.push_back({cell.event, argument, test.a, test.b});
+    }
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const auto& x, const auto& y) { return x.front() < y.front(); });
+    for (const auto& [event, argument, a, b] : sorted) {
+      event_.push_back(event), argument_.push_back(argument);
+      a_.push_back(a), b_.push_back(b);
+    }
+    first_.push_back(static_cast<std::uint32_t>(event_.size()));
+    for (std::size_t i = 0; i < 2; ++i) walked_.push_back(fits ? map->walked[i] : 0);
+  }
+
+  nlohmann::json json() const {
+    using report::packed;
+    return {{"first", packed(first_)}, {"event", packed(event_)}, {"argument", packed(argument_)},
+            {"a", packed(a_)},         {"b", packed(b_)},         {"walked", packed(walked_)}};
+  }
+
+ private:
+  std::vector<std::uint32_t> first_{0}, event_, argument_, a_, b_, walked_;
+};
+
+}  // namespace
 
 nlohmann::json map_json(const frames::RecordedRun& p) {
   using nlohmann::json;
@@ -21,38 +68,26 @@ nlohmann::json map_json(const frames::RecordedRun& p) {
   for (const trace::Event& e : p.trace->events)
     if (e.kind == EventKind::begin && walks_trees(e.phase()))
       walked.insert({{0, e.phase_begin().walked_a}, {1, e.phase_begin().walked_b}});
-  json trees = json::array(), open = json::array(), arguments = json::array();
+  json trees = json::array(), arguments = json::array();
   for (const auto& [side, number] : walked) {
-    const trace::TreeShape tree = frames::walked_shape(p, side, number);
-    const frames::MapAxis axis(tree);
+    const frames::MapAxis axis(frames::walked_shape(p, side, number));
     if (axis.repeats) return nullptr;
-    std::vector<std::uint32_t> parent(tree.size(), kNull);
-    for (const std::uint32_t n : tree.from_root())
-      for (const std::uint32_t child : tree.children(n)) parent[child] = n;
     trees.push_back({{"side", side},
                      {"walked", number},
-                     {"parent", report::packed(parent)},
                      {"low", report::packed(axis.low)},
                      {"high", report::packed(axis.high)},
                      {"leaf", report::packed(axis.leaf)},
                      {"rank", report::packed(axis.rank)}});
   }
-  // Events do not tell which pairs waited when a query ended early.
-  const bool complete =
-      ours && header.request.mode == Mode::all_pairs && !header.request.is_coarse() && !p.trace->truncated();
-  for (std::size_t step = 0; step < p.trace->steps.size() && !complete; ++step)
-    if (const std::optional<frames::ProofMap> map = frames::proof_map(p, step))
-      for (const frames::MapCell& cell : map->cells)
-        if (cell.argument == frames::Argument::open)
-          open.push_back(std::to_string(cell.event) + " " + std::to_string(cell.node[0]) + " " +
-                         std::to_string(cell.node[1]));
+  Cells cells;
+  for (std::size_t step = 0; step < p.trace->steps.size(); ++step) cells.add(p, step);
   for (std::size_t i = 0; i < frames::kArguments; ++i) {
     const frames::ArgumentLook& look = frames::look_of(static_cast<frames::Argument>(i));
     const std::string name =
         frames::argument_name(static_cast<frames::Argument>(i), p, p.trace->steps.back());
     arguments.push_back({{"name", name}, {"colour", render::css(look.colour)}, {"pale", look.pale}});
   }
-  return {{"trees", std::move(trees)}, {"open", std::move(open)}, {"arguments", std::move(arguments)}};
+  return {{"trees", std::move(trees)}, {"cells", cells.json()}, {"arguments", std::move(arguments)}};
 }
 
 }  // namespace lrb::run

@@ -237,7 +237,7 @@
       selection.goTo(event);
       await frame();
       map.draw();
-      return map.cells.pairs - map.painted.sums.subarray(0, 9).reduce((n, x) => n + x, 0);
+      return map.cells.pairs - map.counted.sums.subarray(0, 9).reduce((n, x) => n + x, 0);
     };
     tabs.show("Proof map");
     equal(await undecided(first), run.scene.bodies.reduce((n, b) => n * b.realFaces, 1), "at first the map is one undecided square");
@@ -245,11 +245,11 @@
     check(halfway > 0 && halfway < map.cells.pairs / 2, "it fills", halfway);
     equal(await undecided(last), 0, "in the end each pair is decided");
     const inStep = indices().filter((i) => events.kind[i] === events.CONTACT && events.step(i) === step).length;
-    equal(map.painted.sums[7], inStep, "it has the contacts of the step");
+    equal(map.counted.sums[7], inStep, "it has the contacts of the step");
     map.point([0.5, 0.5]);
     check(map.text(map.pointed).startsWith("Event "), "and says what decided a place", map.text(map.pointed));
     map.go([0.5, 0.5]);
-    equal(selection.event, map.pointed.event, "a click goes there");
+    equal(events.id(selection.event), map.cells.event[map.pointed], "a click goes there");
   }
 
   /** A row of a table of each kind selects what it is about, and is marked. */
