@@ -10,6 +10,7 @@
 #include "render/gl.hpp"
 #include "render/pictures/marks.hpp"
 #include "scenarios/frames/framing.hpp"
+#include "scenarios/frames/proof_map.hpp"
 #include "scenarios/golden/approve.hpp"
 #include "scenarios/io/files.hpp"
 #include "scenarios/record/moments.hpp"
@@ -155,30 +156,33 @@ namespace {
 constexpr const char* kKinds[] = {"expected", "actual", "difference"};
 constexpr const char* kTitle = "Golden images and traces";
 constexpr const char* kDivergence = "divergence";
-constexpr render::Rgba kDiffers{200, 0, 160, 255};  // the colour of a frame around what differs
 
 report::PngBytes png_of(const render::Image& image) {
   return image.empty() ? report::PngBytes() : render::encode_png(image);
 }
 
-/// Returns a small picture with a frame around the pixels that differ strongly.
+/// Returns the part that differs strongly of both pictures, small and side by side.
 render::Image thumbnail(const render::Image& expected, const render::Image& actual) {
-  constexpr int kThumbnail = 240, kMargin = 6;  // pixels
-  render::Image marked = actual;
-  if (expected.width() == actual.width() && expected.height() == actual.height()) {
-    int left = actual.width(), top = actual.height(), right = -1, bottom = -1;
-    for (int y = 0; y < actual.height(); ++y)
-      for (int x = 0; x < actual.width(); ++x) {
-        if (!differ_strongly(expected.at(x, y), actual.at(x, y))) continue;
+  constexpr int kThumbnail = 320, kMargin = 6, kGap = 6;  // pixels
+  const int width = actual.width(), height = actual.height();
+  if (expected.width() != width || expected.height() != height) return actual;
+  int left = width, top = height, right = -1, bottom = -1;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (differ_strongly(expected.at(x, y), actual.at(x, y))) {
         left = std::min(left, x), right = std::max(right, x);
         top = std::min(top, y), bottom = std::max(bottom, y);
       }
-    if (right >= 0)
-      marked.stroke({left - kMargin, top - kMargin, right - left + 2 * kMargin, bottom - top + 2 * kMargin},
-                    kDiffers, 4);
-  }
-  while (marked.width() >= 2 * kThumbnail) marked = report::halved(marked);
-  return marked;
+  left = std::max(0, left - kMargin), right = std::min(width, std::max(left, right) + kMargin);
+  top = std::max(0, top - kMargin), bottom = std::min(height, std::max(top, bottom) + kMargin);
+  render::Image out(2 * (right - left) + kGap, bottom - top, render::palette::kFaint);
+  for (int y = top; y < bottom; ++y)
+    for (int x = left; x < right; ++x) {
+      out.at(x - left, y - top) = expected.at(x, y);
+      out.at(right - left + kGap + x - left, y - top) = actual.at(x, y);
+    }
+  while (out.width() >= 2 * kThumbnail) out = report::halved(out);
+  return out;
 }
 
 void add_comparison(GoldenResult& result, report::Comparison comparison, const render::Image& expected,
@@ -204,6 +208,30 @@ void add_divergence(GoldenResult& result, const Golden& golden, const GoldenRun&
                   {},
                   {pictures.expected_caption, pictures.actual_caption}},
                  pictures.expected, pictures.actual);
+}
+
+/// Adds the proof maps of the first differing step, if the same bodies' pairs of nodes are recorded.
+void add_maps(GoldenResult& result, const Golden& golden, const GoldenRun& run) {
+  constexpr int kSize = 480, kDot = 2;  // pixels
+  std::optional<trace::EventId> event;
+  frames::RecordedRun p = recorded_run_of(run);
+  const trace::Trace* traces[] = {&golden.trace, p.trace};
+  const auto step = step_of(*traces[0], *traces[1], *result.verdict.divergence, event);
+  if (!step || !same_bodies(*traces[0], *traces[1])) return;
+  render::Image squares[2];
+  std::string text = "All pairs of a face of A (down) and one of B (across), in the order of their trees";
+  for (std::size_t i = 0; i < 2; ++i) {
+    p.trace = traces[i];
+    auto map = *step < p.trace->steps.size() ? frames::proof_map(p, *step) : std::nullopt;
+    if (!map || map->size[0] == 0 || map->size[1] == 0) return;
+    const Eigen::AlignedBox2d whole(Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1));
+    squares[i] = pixels_of(*map, render::style_of(render::StyleName::screen), whole, kSize, kDot);
+    text += (i == 0 ? "; decided by " : " in the approved run, by ") +
+            render::counted(map->cells.size(), "test", "tests") + (i == 0 ? "" : " in this one");
+  }
+  add_comparison(result,
+                 {result.name + "-maps", result.name + ": proof maps of step " + std::to_string(*step), text},
+                 squares[0], squares[1]);
 }
 
 void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run, const ImageVerdict& v) {
@@ -240,7 +268,7 @@ std::string answers_text(const GoldenResult& r) {
 
 /// Returns "132 events equal".
 std::string events_text(const GoldenResult& r) {
-  if (!r.verdict.rejection.empty()) return r.verdict.rejection;
+  if (!r.verdict.rejection.empty()) return "not tested";
   if (!r.spec.compares(Level::events)) return "not compared";
   return render::counted(r.events, "event", "events") + (r.verdict.divergence ? " differ" : " equal");
 }
@@ -265,8 +293,6 @@ std::string with_arrows(std::string text) {
   for (std::size_t i = 0; (i = text.find(" -> ", i)) != std::string::npos;) text.replace(i, 4, " \u2192 ");
   return text;
 }
-
-/// The differences by step, and their possible causes.
 
 report::Table effects_table(const GoldenResult& r) {
   constexpr std::size_t kMaxRows = 200;
@@ -315,7 +341,10 @@ GoldenResult test_golden(const Golden& golden, const GoldenRun& run, const std::
   result.steps = run.recording.trace.steps.size();
   result.events = run.recording.trace.events.size();
   result.approve = approve;
-  if (result.verdict.divergence) add_divergence(result, golden, run);
+  if (result.verdict.divergence) {
+    add_divergence(result, golden, run);
+    add_maps(result, golden, run);
+  }
   for (const ImageVerdict& v : result.verdict.images)
     if (all || !v.passed) add_image(result, golden, run, v);
   if (!result.verdict.images_passed()) {
@@ -400,7 +429,8 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
     }
     std::string why = r.verdict.rejection;
     for (const std::string& cause : r.verdict.causes) why += (why.empty() ? "" : "; ") + cause;
-    std::vector<report::Comparison> section = {{r.name, r.name, with_arrows(why), false, {}, {}, r.approve}};
+    std::vector<report::Comparison> section = {
+        {r.name, r.name, with_arrows(why), false, {}, {}, r.verdict.rejection.empty() ? r.approve : ""}};
     section.insert(section.end(), r.comparisons.begin(), r.comparisons.end());
     std::stable_partition(section.begin() + 1, section.end(), [](const report::Comparison& c) {
       return !c.pngs[0].empty() || !c.pngs[1].empty();
