@@ -422,7 +422,7 @@ void add_key_of_boxes(std::vector<LegendItem>& key, int dim) {
 
 }  // namespace
 
-Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
+Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wrong) {
   const bool apart = pair.meet == exact::Meet::disjoint, in_3d = bodies.dim() == 3;
   const std::vector<Vector3d> of_a = corners_of(bodies.a, bodies.pose_a, pair.pair.a),
                               of_b = corners_of(bodies.b, bodies.pose_b, pair.pair.b);
@@ -431,10 +431,10 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
   std::vector<SceneBody> named = bodies.in_scene();
   for (SceneBody& body : named) body.name.clear();
   SceneHighlight highlight;
-  highlight.under_test = {pair.pair.a, pair.pair.b};
+  if (!wrong) highlight.under_test = {pair.pair.a, pair.pair.b};
   Scene scene = build_scene(named, highlight);
-  outline(scene.list, of_a, palette::edge_of(palette::body(Side::a)), 3);
-  outline(scene.list, of_b, palette::edge_of(palette::body(Side::b)), 3);
+  for (const auto& [side, corners] : {std::pair(Side::a, &of_a), {Side::b, &of_b}})
+    outline(scene.list, *corners, wrong ? palette::kWrong : palette::edge_of(palette::body(side)), 3);
   // The contact's corners, or the closest points, with the segment, polygon or plane between them.
   std::vector<Vector3d> points(pair.nearest.begin(), pair.nearest.end());
   if (!apart) points.clear();
@@ -465,6 +465,7 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
       : pair.meet == exact::Meet::cross ? "the faces cross"
                                         : "the faces touch";
   overlay.key = std::move(scene.key);
+  if (wrong) overlay.key.push_back({Mark::line, palette::kWrong, "wrong pair"});
   overlay.key.push_back({Mark::line, palette::kContact, apart ? "closest points" : "contact"});
   if (boxes)
     add_key_of_boxes(overlay.key, bodies.dim());
@@ -478,7 +479,7 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies) {
                  : fit_top(both, width, height, 0.3);
   };
   const Panel panel{std::move(scene.list), camera, "", false};
-  return draw_panels({&panel, 1}, overlay, screen_of(1200, 900));
+  return draw_panels({&panel, 1}, overlay, screen_of(1200, wrong ? 560 : 900));
 }
 
 namespace {

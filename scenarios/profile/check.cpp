@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "render/pictures/answer_picture.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/profile/captured_run.hpp"
 #include "scenarios/profile/tree_report.hpp"
@@ -18,8 +19,6 @@ namespace lrb::profile {
 namespace {
 
 using render::group_digits;
-
-constexpr std::size_t kOwners = 10;
 
 /// Ratio of the ends of the scale: triangles with less than a thousandth of the maximum are pale.
 constexpr double kRange = 1000;
@@ -58,14 +57,22 @@ render::Image draw_waste(std::span<const WasteMap> maps) {
     for (const bool from_behind : {false, true})
       panels.push_back(panel_of(body.rep, map, scale, from_behind));
   }
+  constexpr int kSheetWidth = 1160, kHeight = 300;  // one row, so that all sides of both engines are compared
   render::Look look;
-  look.width = 560;
-  look.height = 460;
+  look.width = kSheetWidth / static_cast<int>(panels.size());
+  look.height = kHeight;
   render::MontageOptions options;
-  options.columns = 2;
+  options.columns = static_cast<int>(panels.size());
   render::Overlay overlay;
   overlay.scale = scale;
   return pictures::with_overlay(pictures::draw_sheet(panels, look, options), overlay);
+}
+
+render::Image draw_wrong(const ShownPair& wrong) {
+  const bodies::LoadedBody a = captured_body(wrong.meshes[0]), b = captured_body(wrong.meshes[1]);
+  const pictures::PosedBodies posed{a.rep, wrong.poses[0], b.rep, wrong.poses[1]};
+  return pictures::picture_of(explain_pair(a.rep, posed.pose_a, b.rep, posed.pose_b, wrong.pair), posed,
+                              true);
 }
 
 std::uint64_t visits_in(const capture::Capture& capture) {
@@ -84,6 +91,12 @@ void report(const QueryVerdict& v, const capture::Query& query, CapturedBodies& 
   if (v.answer == Judgement::undecidable) out.undecidable.push_back(head + v.remark);
   if (v.wrong.empty()) return;
   const auto trees = bodies.trees_of(query).value();
+  if (const WrongPair& w = v.wrong.front(); !out.first_wrong && !w.undecidable &&
+                                            query.probe.shape == capture::ProbeShape::none &&
+                                            trees[0] != trees[1])
+    out.first_wrong = {{bodies.mesh_of(trees[0]), bodies.mesh_of(trees[1])},
+                       query.poses,
+                       {SimplexId(w.triangles.a), SimplexId(w.triangles.b)}};
   for (const WrongPair& w : v.wrong)
     (w.undecidable ? out.undecidable : out.wrong)
         .push_back(head + sentence(w, bodies.tree(trees[0]), bodies.tree(trees[1])));
@@ -102,16 +115,14 @@ void for_each_kind(std::span<const Check> checks, const Row& row) {
     for (const auto& [kind, sums] : c.kinds) row(c.engine, io::in_words(name_of(kind)), sums);
 }
 
-report::Table owner_table(std::span<const Check> checks) {
-  report::Table t{"Pairs of nodes with the most waste beneath",
-                  {"engine", "node of A", "node of B", "wasted visits", "queries"}};
-  t.note =
-      "Nothing intersects beneath these pairs. Volumes that fit perfectly would end the descent there. "
-      "Nodes have the engine's numbers.";
+report::Table advice_table(std::span<const Check> checks) {
+  report::Table t{"What to change", {"engine", "about", "finding"}};
   for (const Check& c : checks)
-    for (std::size_t i = 0; i < c.owners.size(); ++i)
-      t.rows.push_back({c.engine, c.owner_names[i][0], c.owner_names[i][1], group_digits(c.owners[i].visits),
-                        group_digits(c.owners[i].queries)});
+    for (const auto& [about, text] : {std::pair{"poses", c.pose_error},
+                                      {"trees", c.tree_faults},
+                                      {"sample", c.sample},
+                                      {"visits", advice(c.sum().prices)}})
+      if (!text.empty()) t.rows.push_back({c.engine, about, text});
   return t;
 }
 
@@ -312,13 +323,8 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
   out.pose_error = pose_errors.sentence();
   visited.erase(CapturedBodies::kProbe);
   out.tree_faults = sentence_of_faults(visited, bodies);
-  out.owners = book.worst_owners(kOwners);
-  for (OwnerWaste& o : out.owners) o.visits *= capture.every, o.queries *= capture.every;
   for (WasteMap& map : out.waste)
     for (double& visits : map.waste) visits *= static_cast<double>(capture.every);
-  for (const OwnerWaste& o : out.owners)
-    out.owner_names.push_back(
-        {bodies.tree(o.trees[0]).name_of_node(o.nodes[0]), bodies.tree(o.trees[1]).name_of_node(o.nodes[1])});
   return out;
 }
 
@@ -370,40 +376,27 @@ report::Table verdict_table(std::span<const Check> checks) {
 
 std::vector<std::string> add_checks(report::Document& page, std::span<const Check> checks) {
   std::vector<std::string> notes;
-  for (const Check& c : checks)
-    if (!c.wrong.empty()) page.text({"Wrong answer of " + c.engine, c.wrong.front()});
-  for (const Check& c : checks) {
-    if (!c.pose_error.empty()) page.text({"Poses of " + c.engine, c.pose_error});
-    if (!c.tree_faults.empty()) page.text({"Trees of " + c.engine, c.tree_faults});
-    if (!c.sample.empty()) page.text({"Sample of " + c.engine, c.sample});
-    page.text({"Advice for " + c.engine, advice(c.sum().prices)});
-  }
-  if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
-  for (const Check& c : checks) {
-    const CheckSums sum = c.sum();
-    const Prices& p = sum.prices;
-    page.number({"Wrong queries of " + c.engine,
-                 group_digits(sum.outcomes[static_cast<std::size_t>(Judgement::wrong)]),
-                 "of " + group_digits(sum.queries)})
-        .number({"Wasted visits of " + c.engine,
-                 percent(p.visits - p.needed - p.proof - p.unattributed, p.visits),
-                 "of " + group_digits(p.visits)})
-        .number({"Triangle tests for nothing", percent(p.triangle_tests_for_nothing, p.triangle_tests),
-                 "of " + group_digits(p.triangle_tests)});
-  }
-  for (std::size_t i = 0; i < checks.size(); ++i) try {
-      if (!checks[i].waste.empty())
-        page.picture(
-            "waste_" + std::to_string(i + 1) + ".png", draw_waste(checks[i].waste),
-            "Where visits are wasted, " + checks[i].engine,
-            "Wasted visits, by volumes or order, shared evenly by the triangles beneath both nodes.");
+  const auto draw = [&](const char* kind, const Check& c, const auto& image, const std::string& title,
+                        const std::string& caption) {
+    try {
+      page.picture(kind + std::to_string(&c - checks.data() + 1) + ".png", image(), title, caption);
     } catch (const EnvironmentError& e) {
-      notes.push_back(std::string("the waste was not drawn: ") + e.what());
+      notes.push_back("not drawn: " + title + ": " + e.what());
     }
+  };
+  for (const Check& c : checks)
+    if (c.first_wrong)
+      draw(
+          "wrong_", c, [&] { return draw_wrong(*c.first_wrong); }, "Wrong answer of " + c.engine,
+          c.wrong.front());
+  if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
+  page.table(verdict_table(checks)).table(price_table(checks)).table(advice_table(checks));
+  for (const Check& c : checks)
+    if (!c.waste.empty())
+      draw(
+          "waste_", c, [&] { return draw_waste(c.waste); }, "Where visits are wasted, " + c.engine,
+          "Wasted visits, by volumes or order, shared evenly by the triangles beneath both nodes.");
   for (const Check& c : checks) page.chart(chart_by_query(c));
-  page.table(price_table(checks));
-  page.table(verdict_table(checks));
-  if (const report::Table t = owner_table(checks); !t.rows.empty()) page.table(t);
   return notes;
 }
 

@@ -52,16 +52,21 @@ struct CheckSums {
 /// Returns the sums over one query.
 CheckSums sums_of(const CheckedQuery& query);
 
+/// A wrong pair of two posed bodies.
+struct ShownPair {
+  std::array<capture::Mesh, 2> meshes;
+  std::array<Pose, 2> poses;
+  SimplexPair pair;
+};
+
 struct Check {
   std::string engine;
   Precision precision = Precision::float64;
   std::vector<CheckedQuery> queries;
-  // Of a sample, these sums are scaled to all queries.
-  std::map<capture::QueryKind, CheckSums> kinds;
-  std::vector<OwnerWaste> owners;                       ///< the ten worst
-  std::vector<std::array<std::string, 2>> owner_names;  ///< (|owners|) nodes by the engine's numbers
-  std::vector<WasteMap> waste;                          ///< of the two trees with most waste
+  std::map<capture::QueryKind, CheckSums> kinds;  ///< of a sample, scaled to all queries
+  std::vector<WasteMap> waste;           ///< of the two trees with most waste
   std::vector<std::string> wrong;        ///< a line for each wrong pair or answer that was kept
+  std::optional<ShownPair> first_wrong;  ///< of two bodies; that of the first line about a pair
   std::vector<std::string> undecidable;  ///< the same, for those within the error bound
 
   /// A sentence if most reported pairs are wrong, but right after the reversal of a PoseError.

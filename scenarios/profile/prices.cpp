@@ -389,17 +389,6 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
     ++out.triangles_by_volumes;
     if (ends[up]) ++(distance ? out.triangles_by_order : out.triangles_by_test);
   }
-  // Waste by owner.
-  std::map<std::uint32_t, std::uint64_t> beneath;
-  for (const std::uint32_t i : walk.from_root())
-    if (wasted[i]) ++beneath[owner[i]];
-  for (const auto& [i, visits] : beneath) {
-    OwnerWaste& o = owners_[{walk.trees()[0], walk.trees()[1], events[i].a, events[i].b}];
-    o.trees = walk.trees();
-    o.nodes = {events[i].a, events[i].b};
-    o.visits += visits;
-    ++o.queries;
-  }
 }
 
 /// Estimates what larger leaves would save.
@@ -427,15 +416,6 @@ void PriceBook::price_leaves(const QueryWalk& walk, Prices& out) {
       out.saved_by_leaves[s] += static_cast<std::int64_t>(beneath[i]) - static_cast<std::int64_t>(tests);
     }
   }
-}
-
-std::vector<OwnerWaste> PriceBook::worst_owners(std::size_t most) const {
-  std::vector<OwnerWaste> out;
-  for (const auto& [key, waste] : owners_) out.push_back(waste);
-  std::stable_sort(out.begin(), out.end(),
-                   [](const OwnerWaste& x, const OwnerWaste& y) { return x.visits > y.visits; });
-  if (out.size() > most) out.resize(most);
-  return out;
 }
 
 std::vector<double> PriceBook::waste_by_triangle(std::uint32_t tree) {

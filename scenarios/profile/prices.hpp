@@ -110,14 +110,6 @@ inline constexpr std::pair<const char*, std::uint64_t Prices::*> kPriceCounts[] 
     {"triangles_by_order", &Prices::triangles_by_order},
 };
 
-/// The waste beneath a pair of nodes that is a proof.
-struct OwnerWaste {
-  std::array<std::uint32_t, 2> trees{};  ///< indices in Capture::trees
-  std::array<std::uint32_t, 2> nodes{};  ///< numbers in these trees
-  std::uint64_t visits = 0;              ///< wasted, over all queries
-  std::uint64_t queries = 0;             ///< with waste beneath the pair
-};
-
 /// Prices of queries, added up.
 class PriceBook {
  public:
@@ -130,8 +122,6 @@ class PriceBook {
   Prices add(const capture::Query& query, const QueryWalk* walk, std::span<const TrianglePair> exact,
              bool split);
 
-  /// Returns the pairs with most waste, the worst first.
-  std::vector<OwnerWaste> worst_owners(std::size_t most) const;
   /// Returns the waste by triangle of a tree's mesh. Half of each wasted visit goes to either node, and is
   /// shared evenly by the triangles beneath. The sum over all trees is the number of wasted visits.
   std::vector<double> waste_by_triangle(std::uint32_t tree);
@@ -146,7 +136,6 @@ class PriceBook {
 
   CapturedBodies& bodies_;
   Workspace workspace_;
-  std::map<std::array<std::uint32_t, 4>, OwnerWaste> owners_;    ///< by trees and nodes
   std::map<std::uint32_t, std::vector<double>> waste_of_nodes_;  ///< by tree
 };
 
