@@ -36,11 +36,6 @@ std::string page_root_css() {
   return root_css(Colours{kPaper, kCard, kInk, kSoft, kLine, kAccent, kGrid, kBad, kGood} + kSeries);
 }
 
-std::string scene_root_css() {
-  using namespace page;
-  return root_css(Colours{kSketchBody, kSketchRegion, kSketchBare});
-}
-
 std::string grid_root_css() {
   using namespace page;
   return root_css(Colours{kWrong, kCrashed, kTimedOut, kRejected, kOnlyRejected} + kLevels +

@@ -39,11 +39,6 @@ inline constexpr std::array<PageColour, 7> kSeries = {{{"s0", palette::kBlue, pa
                                                        {"s5", palette::kSkyBlue, {143, 208, 245}},
                                                        {"s6", {107, 107, 107}, {169, 169, 169}}}};
 
-/// The sketch above the view of a run.
-inline constexpr PageColour kSketchBody{"sketch-body", {42, 111, 174}, {42, 111, 174}};
-inline constexpr PageColour kSketchRegion{"sketch-region", palette::body(Side::a), palette::body(Side::a)};
-inline constexpr PageColour kSketchBare{"sketch-bare", palette::kRefining, palette::kRefining};
-
 // Grids of outcomes.
 inline constexpr PageColour kWrong{"wrong", palette::kVermillion, {255, 154, 82}};
 inline constexpr PageColour kCrashed{"crashed", {20, 22, 26}, kWhite};
@@ -67,9 +62,8 @@ std::string css(Rgba c);
 /// Returns the CSS rules that define the colours as variables of a page's root, for both themes.
 std::string root_css(std::span<const PageColour> colours);
 
-/// The variables of every page, of views of runs, and of grids of outcomes.
+/// The variables of every page, and of grids of outcomes.
 std::string page_root_css();
-std::string scene_root_css();
 std::string grid_root_css();
 
 }  // namespace lrb::render

@@ -273,22 +273,22 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
     doc.tree_view(view_json(tree, mesh, index, f));
   else
     doc.purpose("No view: it is limited to " + group_digits(kMaxFaces) + " triangles.");
+  doc.picture(
+      "nodes.svg", icicle_svg(tree, index, f), "All nodes",
+      "By depth, the root on top. Width: triangles below the node. Colour: its EPO, from pale (none) to dark (the largest).",
+      true);
+  doc.key_figures();
   if (faults > 0) {
-    report::Table table{"Faults", {"kind", "number", "found"}};
+    report::Table table{"Faults", {"kind", "found"}};
     for (const FoundFault& fault : report.faults.first) {
-      table.rows.push_back({io::in_words(name_of(fault.kind)),
-                            group_digits(report.faults.totals[static_cast<std::size_t>(fault.kind)]),
-                            text_of(fault, tree, mesh)});
+      table.rows.push_back({io::in_words(name_of(fault.kind)), text_of(fault, tree, mesh)});
       table.targets.push_back(target_of(tree, fault.node));
     }
-    table.note = "The first " + std::to_string(TreeFaults::kShown) + " of each kind.";
+    if (faults > table.rows.size())
+      table.note = "The first " + std::to_string(TreeFaults::kShown) + " of each kind.";
     doc.table(table);
   }
   if (!trees.rows.empty()) doc.table(trees);
-  doc.picture(
-      "nodes.svg", icicle_svg(tree, index, f), "All nodes",
-      "By depth, the root on top. Width: triangles below the node. Colour: its EPO, from dark blue (none) to yellow (the largest).",
-      true);
   if (!f.worst.empty()) {
     report::Table table = node_table("Worst nodes by EPO", f.worst, tree, f);
     table.note =

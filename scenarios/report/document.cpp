@@ -413,7 +413,7 @@ Document& Document::views(const std::vector<View>& views) {
 Document& Document::view(const std::string& json, const std::string& name) {
   view_data_ = "<script type=\"application/json\" id=\"scene-data\">" + script_safe(json) + "</script>\n";
   for (const char* library : {"three.min.js", "OrbitControls.js"}) libraries_ += "\n" + embedded(library);
-  use(render::scene_root_css() + embedded("scene.css"), name);
+  use(embedded("scene.css"), name);
   return add(io::embedded_file(name + ".html"));
 }
 
@@ -423,7 +423,10 @@ Document& Document::scene(const std::string& json) {
 }
 
 Document& Document::tree_view(const std::string& json) {
-  view(json, "tree");
+  return view(json, "tree");
+}
+
+Document& Document::key_figures() {
   if (!numbers_.empty()) add("<dl class=\"numbers\">\n" + numbers_ + "</dl>\n");
   numbers_.clear();
   return *this;

@@ -178,8 +178,8 @@ class Document {
   Document& comparisons(const std::vector<Comparison>& comparisons);
   Document& views(const std::vector<View>& views);  ///< with one camera and one time step
   Document& scene(const std::string& json);         ///< a run, for the 3D view
-  /// A body and its tree, for the 3D view; then the key figures so far.
-  Document& tree_view(const std::string& json);
+  Document& tree_view(const std::string& json);     ///< a body and its tree, for the 3D view
+  Document& key_figures();                          ///< those so far, here instead of at the top
   /// Pictures of a sequence, whose files are in `folder`. `budget`: see inline_pngs().
   Document& frames(const std::vector<Frame>& frames, const std::string& folder,
                    std::size_t budget = kInlineBudget);

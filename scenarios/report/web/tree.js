@@ -172,9 +172,6 @@ class TreePage {
     put("node-others", faces(this.others));
     put("node-area", rounded(nodes.area[node], 3));
     put("node-epo", rounded(nodes.epo[node], 3) + share);
-    put("view-caption",
-        `node ${nodes.ids[node]}, depth ${nodes.depth[node]}: ${faces(triangles)}, and ` +
-          `${faces(this.others)} of other nodes in its volume`);
     const link = (other, text) => {
       const title = `Depth ${nodes.depth[other]}, ${faces(nodes.last[other] - nodes.first[other])}`;
       return textButton(text, () => this.select(other), title);
