@@ -125,11 +125,11 @@ std::string sentence_of(const frames::RecordedRun& p) {
     const std::string both = body_text(p, 0) + ", " + body_text(p, 1);
     if (p.trace->has_engine_reports())
       return "For " + both + ", " + p.trace->header.engine + " " + engine_sentence(p);
-    std::string out = both;
+    std::string out = both, proof;
     const auto& steps = p.trace->steps;
     if (const auto& search = p.trace->header.first_contact; search && search->step)
-      out += ". First touch at " + spec::contact_step(*search) + ", " + spec::contact_way(*search) +
-             ", proven collision-free until then";
+      out += ". First touch at " + spec::contact_step(*search),
+          proof = ". Proven collision-free until the first touch, " + spec::contact_way(*search);
     else if (const trace::EventId at = record::first_contact(*p.trace); at != kNull)
       out += steps.size() > 1
                  ? ". They intersect from step " + std::to_string(steps[p.trace->step_of(at)].index)
@@ -144,6 +144,7 @@ std::string sentence_of(const frames::RecordedRun& p) {
                                              })
                                 ->index) +
              " costs most";
+    out += proof;
     for (const LrbRep* rep : p.reps)
       if (rep->region_count() == 0 && p.trace->header.engine.empty())
         out += std::string(". ") + (rep == p.reps[0] ? "A" : "B") + (rep->closed() ? "" : " is open and") +

@@ -1,13 +1,14 @@
-import { byId, copyText, digits, element, plural, short, textButton } from "./dom.js";
+import { byId, copyText, digits, element, plural, rounded, textButton } from "./dom.js";
 import { fillList } from "./scene_panels.js";
 import { NONE, SIDES } from "./scene_run.js";
 
 // ---- beside the view: why the two faces of an event, or two that were clicked, intersect or not; and for a
 // step without contact what separates the bodies
-/** Returns a positive number rounded down to four digits, for lower bounds. */
+const short = (x) => rounded(x, 3);
+/** Returns a positive number rounded down, for lower bounds. */
 const least = (x) => {
-  const near = Number(x.toPrecision(4));
-  return short(near > x ? x - 0.5 * 10 ** (Math.floor(Math.log10(x)) - 3) : x);
+  const near = Number(x.toPrecision(3));
+  return short(near > x ? x - 0.5 * 10 ** (Math.floor(Math.log10(x)) - 2) : x);
 };
 /** Distances of more ulps are shown without them: double arithmetic decides them reliably. */
 const MOST_ULPS = 1e6;
@@ -54,7 +55,9 @@ export class WhyPanel {
     if (simplices) this.showPair(simplices, found);
     else if (separation) this.showStep(separation);
     this.command = explanations.commandFor(events.stepNumber(selection.event), simplices);
-    byId("why-command").textContent = this.command;
+    // Lines break between words, not after a hyphen of an option.
+    byId("why-command").replaceChildren(...(this.command || "").split(" ").flatMap((word, i) =>
+      [i ? " " : "", element("span", { style: "white-space: nowrap" }, word)]));
     byId("why-ask").hidden = !this.command;
     byId("why-copied").textContent = "";
     this.tell();
@@ -91,12 +94,11 @@ export class WhyPanel {
       corners
         .slice(0, this.events.dim)
         .map(({ distance, exact, inDouble }) => {
-          const where = exact > 0 ? "in front" : exact < 0 ? "behind" : "in it";
-          const wrong = inDouble === exact ? "" : `, where doubles say ${inDouble}`;
-          return `${where}${exact ? ` ${short(Math.abs(distance))}` : ""}${wrong}`;
+          const wrong = inDouble === exact ? "" : ` (doubles: side ${inDouble})`;
+          return (exact ? (exact > 0 ? "+" : "\u2212") + short(Math.abs(distance)) : "0") + wrong;
         })
-        .join("; "),
-      `Exact side of the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}, and distance from it`,
+        .join(", "),
+      `Distances from the other face\u2019s ${this.events.dim === 3 ? "plane" : "line"}; +: in front`,
     ]);
     if (e.meet === 0)
       rows.push(
