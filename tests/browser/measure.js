@@ -3,7 +3,7 @@
 (async function () {
   const { byId } = dom_js,
     run = typeof scene_js === "undefined" ? null : scene_js.run;
-  const found = new Map(); // fault: [example, number]
+  const found = new Map(), figures = []; // fault: [example, number]
   const fail = (what, where) => {
     const known = found.get(what);
     if (known) known[1]++;
@@ -249,13 +249,19 @@
     if (page.scrollWidth > page.clientWidth) fail("the page scrolls sideways", `${page.scrollWidth} of ${page.clientWidth} pixels`);
   }
 
-  /** The view as a page opens: its share of the window, and nothing over it; a run's follows the title. */
-  function measureView(least, isRun) {
-    const rect = (e) => e.getBoundingClientRect(),
-      canvas = rect(byId("view-canvas")),
-      share = (canvas.width * canvas.height) / (innerWidth * innerHeight);
-    if (innerWidth === 1280 && share < least)
-      fail(`the view has less than ${100 * least} % of the window`, `${(100 * share).toFixed(1)} %`);
+  /** The pictures of any page as it opens: their share of the first screen at 1280 pixels. `least`: per cent. */
+  function measureShare(least) {
+    if (innerWidth !== 1280) return;
+    const share = [...document.querySelectorAll("canvas, img, iframe, section svg")].filter(isShown).reduce((sum, e) => {
+      const { left, right, top, bottom } = e.getBoundingClientRect();
+      return sum + Math.max(0, Math.min(right, innerWidth) - left) * Math.max(0, Math.min(bottom, innerHeight) - top);
+    }, 0) * 100 / (innerWidth * innerHeight);
+    figures.push(`pictures have ${share.toFixed(0)} % of the first screen`);
+    if (share < least) fail(`pictures have less than ${least} % of the first screen`, `${share.toFixed(1)} %`);
+  }
+  /** Nothing is over the view as a page opens; a run's follows the title. */
+  function measureView(isRun) {
+    const rect = (e) => e.getBoundingClientRect(), canvas = rect(byId("view-canvas"));
     if (isRun && innerWidth < 640 && canvas.top > 0.15 * innerHeight)
       fail("the view is not first", `at ${canvas.top} of ${innerHeight} pixels`);
     if (isRun && innerWidth < 640 && rect(byId("tools")).height > 50)
@@ -310,7 +316,9 @@
       if (isRun && run.view) run.view.draw();
       measureAll(name === "as it opens" ? document.body : byId("scene"));
       const canvas = byId("view-canvas");
-      if (canvas && isShown(canvas) && name === "as it opens") measureView(isRun ? 0.6 : 0.33, isRun);
+      if (name !== "as it opens") continue;
+      measureShare(isRun ? 60 : canvas || document.querySelector("iframe") ? 33 : 1);
+      if (canvas && isShown(canvas)) measureView(isRun);
     }
     for (const name of isRun ? run.tabs.names : []) {
       run.tabs.show(name);
@@ -323,5 +331,5 @@
   }
   if (complaints.length) fail("the console is not empty", complaints.join("; "));
   const lines = [...found].map(([what, [where, n]]) => `FAIL ${what}${n > 1 ? `, ${n} times` : ""}: ${where}`);
-  top.postMessage({ measured: lines.join("\n") }, "*");
+  top.postMessage({ measured: [...figures, ...lines].join("\n") }, "*");
 })();
