@@ -57,7 +57,7 @@ export class WhyPanel {
     this.command = explanations.commandFor(events.stepNumber(selection.event), simplices);
     // Lines break between words, not after a hyphen of an option.
     byId("why-command").replaceChildren(...(this.command || "").split(" ").flatMap((word, i) =>
-      [i ? " " : "", element("span", { style: "white-space: nowrap" }, word)]));
+      [i ? " " : "", element("span", { style: "display: inline-block; max-width: 100%" }, word)]));
     byId("why-ask").hidden = !this.command;
     byId("why-copied").textContent = "";
     this.tell();
