@@ -47,7 +47,8 @@ Mesh read_body(const std::string& path, Corners corners, std::vector<std::string
 }
 
 LoadedBody load_body(const std::string& path, const BuildOptions& options, Corners corners) {
-  return make_body_of_file(path, {.build = with_cache(options), .join = corners == Corners::joined}, kIfJoined);
+  return make_body_of_file(path, {.build = with_cache(options), .join = corners == Corners::joined},
+                           kIfJoined);
 }
 
 LoadedBody load_faces(const std::string& path, Corners corners, unsigned threads) {

@@ -64,10 +64,10 @@ struct Check {
   Precision precision = Precision::float64;
   std::vector<CheckedQuery> queries;
   std::map<capture::QueryKind, CheckSums> kinds;  ///< of a sample, scaled to all queries
-  std::vector<WasteMap> waste;           ///< of the two trees with most waste
-  std::vector<std::string> wrong;        ///< a line for each wrong pair or answer that was kept
-  std::optional<ShownPair> first_wrong;  ///< of two bodies; that of the first line about a pair
-  std::vector<std::string> undecidable;  ///< the same, for those within the error bound
+  std::vector<WasteMap> waste;                    ///< of the two trees with most waste
+  std::vector<std::string> wrong;                 ///< a line for each wrong pair or answer that was kept
+  std::optional<ShownPair> first_wrong;           ///< of two bodies; that of the first line about a pair
+  std::vector<std::string> undecidable;           ///< the same, for those within the error bound
 
   /// A sentence if most reported pairs are wrong, but right after the reversal of a PoseError.
   std::string pose_error;

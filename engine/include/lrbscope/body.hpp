@@ -145,8 +145,8 @@ MadeBody make_body(LrbRep rep, bool turn = true);
 /// Checks a mesh and calls make_body() or make_body_of_faces(), as `options.regions` says.
 MadeBody make_body(Mesh mesh, const BodyOptions& options);
 
-/// Makes the body of a mesh file or an .lrb file, which is opened once and told by its content. `if_joined` is
-/// appended to the note on merged vertices.
+/// Makes the body of a mesh file or an .lrb file, which is opened once and told by its content. `if_joined`
+/// is appended to the note on merged vertices.
 MadeBody make_body_of_file(const std::string& path, const BodyOptions& options,
                            std::string_view if_joined = {});
 

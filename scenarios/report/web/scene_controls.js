@@ -1,5 +1,5 @@
 import { byId, copyText, digits, Playback } from "./dom.js";
-import { COUNTERS } from "./scene_bodies.js";
+import { COUNTERS } from "./scene_colours.js";
 
 // ---- the time line: sliders over steps and over the events of a step, buttons, and playback
 export class Timeline {

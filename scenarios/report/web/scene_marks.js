@@ -1,5 +1,6 @@
 import { byId, digits, element } from "./dom.js";
-import { COUNTERS, discard, edgesOf, FaceMesh, mixed } from "./scene_bodies.js";
+import { COUNTERS, mixed } from "./scene_colours.js";
+import { discard, edgesOf, FaceMesh } from "./scene_faces.js";
 import { boxEdges, roundPoints, thickGeometry, thickLines, thickMaterial, WHITE } from "./scene_lines.js";
 import { SIDES, unpack } from "./scene_run.js";
 

@@ -1,5 +1,7 @@
 import { byId, oncePerFrame } from "./dom.js";
-import { BodyView, Colours, COUNTERS, countsSoFar, Glass, sumsOfGroups } from "./scene_bodies.js";
+import { BodyView } from "./scene_bodies.js";
+import { Colours, COUNTERS, countsSoFar, sumsOfGroups } from "./scene_colours.js";
+import { Glass } from "./scene_faces.js";
 import { SceneCamera } from "./scene_camera.js";
 import { ContactCurves, Legend, Marks, MeasuredMarks, WhyMarks } from "./scene_marks.js";
 import { lensOf, setHoles } from "./scene_lines.js";

@@ -1,5 +1,5 @@
 import { byId, digits, linkRow, listenToKeys, percent, plural, rounded, textButton } from "./dom.js";
-import { mixed } from "./scene_bodies.js";
+import { mixed } from "./scene_colours.js";
 import { boxEdges, WHITE } from "./scene_lines.js";
 import { Body, grouped, NONE, unpack } from "./scene_run.js";
 import { BodiesCanvas, onClick, webglWorks } from "./scene_view.js";
