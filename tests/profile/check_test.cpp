@@ -80,6 +80,14 @@ TEST_CASE("A capture's sums are those of its queries") {
   CHECK(scaled.sum().queries == 6);
   CHECK(scaled.sum().prices.visits == 3 * sum.prices.visits);
   CHECK(scaled.sample.ends_with("that of visits has a standard error of 0 %."));  // all have as many
+  capture::Capture part = c.engine.capture;
+  part.queries[1].events.resize(part.queries[1].events.size() / 2);
+  FaultyEngine::close(part.queries[1]);
+  const Check uneven = check(part, {});
+  const auto x = static_cast<double>(uneven.queries[0].prices.visits),
+             y = static_cast<double>(uneven.queries[1].prices.visits);
+  const long percent = std::lround(std::ceil(100 * std::abs(x - y) * std::sqrt(2.0 / 3) / (x + y)));
+  CHECK(uneven.sample.ends_with(" error of " + std::to_string(percent) + " %."));
   c.engine.capture.every = 1;
   REQUIRE(checked.wrong.size() == 1);
   CHECK(checked.wrong[0].find("query 2: missed " + std::to_string(lost[0]) + "," + std::to_string(lost[1]) +

@@ -158,6 +158,13 @@ TEST_CASE("volume and depth of an overlap are as precise as the overlap is large
           std::min(inside, kEdge) * kEdge * kEdge);
   check(box({-100, -100, -0.5}, {100, 100, 0}), 200, box({3, 5, -kDeep}, {3.25, 5.5, 2}), kDeep,
         0.125 * kDeep);
+  // No more than the smaller body's volume; from 0 where it would be rounded up to the least double.
+  const LrbRep part = closed(box({0, 0, 0}, {0.2, 0.2, 0.2}));
+  CHECK(clash(closed(box({-1, -1, -1}, {1, 1, 1})), Pose{}, part, Pose::rotation({1, 2, 3}, 0.7))
+            .volume->upper <= 0.008 * (1 + 1e-12));
+  CHECK(clash(closed(shapes::scaled(box({0, 0, 0}, {3, 1, 1}), 0x1p-358)), Pose{},
+              closed(shapes::scaled(box({2.25, 0, 0}, {4, 1, 1}), 0x1p-358)), Pose{})
+            .volume->lower == 0);
 }
 
 TEST_CASE("near pairs of subnormal bodies, and of small parts of large ones") {

@@ -423,8 +423,14 @@ TEST_CASE("rays, points and boxes are read with their frames, and refused if the
   CHECK(q.poses[1].apply({2, 0, 0}) == Eigen::Vector3d(1, 2, 3 + 2));
   CHECK(read(with_probe(2, ray)).queries.at(0).poses[1].t == Eigen::Vector3d(1, 2, 3));
   CHECK(read(with_probe(3, box, LRBCAP_ANY)).queries.at(0).probe.numbers == box);
-  for (const auto& [at, x] :
-       {std::pair{std::size_t{0}, nan}, {4, inf}, {5, 0.0}, {6, nan}, {6, inf}, {7, 0.25}, {7, nan}}) {
+  for (const auto& [at, x] : {std::pair{std::size_t{0}, nan},
+                              {0, 2e150},
+                              {4, inf},
+                              {5, 0.0},
+                              {6, nan},
+                              {6, inf},
+                              {7, 0.25},
+                              {7, nan}}) {
     Numbers wrong = ray;
     wrong[at] = x;
     contains(refusal(with_probe(1, wrong)),
@@ -438,6 +444,7 @@ TEST_CASE("rays, points and boxes are read with their frames, and refused if the
   contains(refusal(with_probe(1, ray, LRBCAP_ANY, 1, 2)),
            {"event 1: expected node and triangle 0 of the ray"});
   const Bytes good = with_probe(1, ray);
+  contains(refusal(with(good, "QRYB", 20, 1u)), {"one described tree"});  // and another
   contains(refusal(with(good, "QRYB", 36, 4u)), {"expected a ray (1), a point (2) or a box (3), found 4"});
   // The version of the chunk keeps older readers from taking the numbers for a pose.
   constexpr std::size_t kVersion = 4 - kHeader;  // from the content backward
