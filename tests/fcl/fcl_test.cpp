@@ -160,9 +160,14 @@ TEST_CASE("contacts have points in both meshes, and the normal and depth of the 
       CHECK(c.pos.x() < 1 + 1e-12);
     }
     CHECK(lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(3), result) == result.numContacts());
+    ::fcl::CollisionResultd few;
+    CHECK(lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(3), few) == 3);
   }
   CHECK(lrb::fcl::known_bodies().of(inward.get(), lrb::fcl::arrays_of(*inward)) ==
         lrb::fcl::known_bodies().of(inward.get(), lrb::fcl::arrays_of(*inward)));
+  const Body before = lrb::fcl::known_bodies().of(inward.get(), lrb::fcl::arrays_of(*inward));
+  inward->tri_indices[0][0] = inward->tri_indices[0][0] == 7 ? 6 : 7;  // another first corner
+  CHECK_FALSE(before == lrb::fcl::known_bodies().of(inward.get(), lrb::fcl::arrays_of(*inward)));
 }
 
 TEST_CASE("FCL's names work without qualification; other shapes and moving objects are passed to FCL") {
