@@ -64,7 +64,7 @@ record::Recording open_recording(const ExportOptions& o, Input kind, const Globa
     spec::Scenario scenario = spec::open_scenario(o.input);
     scenario.events =
         std::max(scenario.events,
-                 o.picture.colour_by ? render::needed_level(*o.picture.colour_by) : EventLevel::faces);
+                 o.picture.colour_by ? pictures::needed_level(*o.picture.colour_by) : EventLevel::faces);
     return record::record(scenario, progress_report(globals.quiet));
   }
   const std::string path = record::trace_of(o.input);
@@ -141,7 +141,7 @@ int export_body(const ExportOptions& given, const Globals& globals) {
   reject(o.asks_for("contacts"), "--what contacts", kNoRun);
   reject(o.asks_for("poses"), "--what poses", kNoRun);
   reject(!o.of.empty(), "--of", kNoRun);
-  using ColourBy = render::FrameSpec::ColourBy;
+  using ColourBy = pictures::FrameSpec::ColourBy;
   reject(o.picture.colour_by.value_or(ColourBy::kind) >= ColourBy::face_tests, "--colour-by",
          "expected kind, layer or region for a body; the other quantities need a run");
   if (o.what.empty()) o.what = {o.chooses_wrapper() ? "wrapper" : "body"};
@@ -193,7 +193,7 @@ int export_run(const ExportOptions& given, Input kind, const Globals& globals) {
   const trace::EventId first = cursor.step()->first_event;
   moment.events = std::span(run.trace.events).subspan(first, event + std::size_t{1} - first);
   set_colours(o, moment);
-  if (const EventLevel needed = render::needed_level(moment.colour_by); needed > run.trace.header.level)
+  if (const EventLevel needed = pictures::needed_level(moment.colour_by); needed > run.trace.header.level)
     throw InputError("--colour-by " + std::string(name_of(moment.colour_by)) + ": " +
                      printable_name(o.input) + " lacks the events for it; record the run with --events " +
                      std::string(name_of(needed)));
@@ -263,9 +263,9 @@ Command add_export(App& root, const Globals& globals) {
   app->add_option("--up", o->up, "x|y|z", "Axis of the bodies that points up (.glb)")
       ->one_of({"x", "y", "z"})
       ->capture_default_str();
-  add_choice<render::FrameSpec::ColourBy>(*app, "--colour-by", o->picture.colour_by,
-                                          "Quantity that faces are coloured by");
-  add_choice<render::FrameSpec::ColourPer>(
+  add_choice<pictures::FrameSpec::ColourBy>(*app, "--colour-by", o->picture.colour_by,
+                                            "Quantity that faces are coloured by");
+  add_choice<pictures::FrameSpec::ColourPer>(
       *app, "--colour-per", o->picture.colour_per,
       "Colour a face by its own value, or by the sum over its region or level");
   return {app, [o, &globals] { return run_export(*o, globals); }};

@@ -42,7 +42,7 @@ struct FigureOptions {
 struct Source {
   std::string name, purpose;
   record::Recording recording;
-  render::FrameSpec frames;
+  pictures::FrameSpec frames;
   bool own_view = false;    ///< no view was given
   bool up_applied = false;  ///< the views already follow --up
 };
@@ -149,11 +149,11 @@ figure::FigureSpec figure_spec(const FigureOptions& o, const std::string& file) 
 
 /// Returns views to choose from, with the options for them as titles: two for each axis that may point up, or
 /// six around the one given.
-std::vector<render::FrameSpec::View> views_to_try(const std::string& up, const LrbRep& rep) {
+std::vector<pictures::FrameSpec::View> views_to_try(const std::string& up, const LrbRep& rep) {
   constexpr double kElevation = 0.45;
-  std::vector<render::FrameSpec::View> out;
+  std::vector<pictures::FrameSpec::View> out;
   for (const char axis : up.empty() ? std::string("zyx") : up) {
-    render::FrameSpec::View view;
+    pictures::FrameSpec::View view;
     view.directed = true;
     view.up = turned_up({view.from, view.up}, axis - 'x').up;
     const Eigen::Vector3d side = pictures::broadside(pictures::box_of(rep), view.up);
@@ -174,8 +174,8 @@ std::vector<render::FrameSpec::View> views_to_try(const std::string& up, const L
   return out;
 }
 
-render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const Globals& globals) {
-  render::FrameSpec frames = source.frames;
+pictures::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const Globals& globals) {
+  pictures::FrameSpec frames = source.frames;
   if (o.close_up) frames.views = frames::whole_and_contact(frames.views);
   // Two bodies: one view by default, so that the figure takes at most half a page.
   const std::size_t views = o.views > 0                                         ? o.views
@@ -198,11 +198,11 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
   const std::vector<bodies::LoadedBody>& bodies = source.recording.bodies;
   const bool complete = source.recording.trace.header.request.recursion == Recursion::complete;
   const bool hides_values =
-      render::is_value(frames.colour_by) && frames.colour_by != render::FrameSpec::ColourBy::refinements;
+      pictures::is_value(frames.colour_by) && frames.colour_by != pictures::FrameSpec::ColourBy::refinements;
   const bool hides_contact = bodies.size() == 2 && bodies[0].rep.dim() == 3;
   if (!o.wrappers.value_or(!complete || !(hides_values || hides_contact))) {
     if (frames.views.empty()) frames.views.emplace_back();
-    for (render::FrameSpec::View& view : frames.views) {
+    for (pictures::FrameSpec::View& view : frames.views) {
       view.wrapper = false;
       if (!o.try_views) view.title.clear();  // it may speak of wrappers
     }
@@ -210,11 +210,11 @@ render::FrameSpec frame_spec(const FigureOptions& o, const Source& source, const
   frames::check_views(frames.views, source.recording.bodies[0].rep.dim());
   if (source.own_view && picture.camera.from.empty() && !o.try_views) {
     if (frames.views.empty()) frames.views.emplace_back();
-    for (render::FrameSpec::View& view : frames.views)
+    for (pictures::FrameSpec::View& view : frames.views)
       view.from = pictures::broadside(pictures::box_of(source.recording.bodies[0].rep), view.up);
   }
   const trace::TraceHeader& header = source.recording.trace.header;
-  if (const EventLevel needed = render::needed_level(frames); needed > header.level)
+  if (const EventLevel needed = pictures::needed_level(frames); needed > header.level)
     throw InputError(
         "--colour-by or --node-boxes: the run lacks the events for it; record it with --events " +
         std::string(name_of(needed)));
@@ -231,7 +231,7 @@ void write_figure(const figure::Figure& drawn, const std::string& file) {
 }
 
 int run_proof_map(const FigureOptions& o, const Source& source, const std::string& file) {
-  render::Look look;
+  pictures::Look look;
   look.style = o.picture.style.value_or(render::StyleName::print);
   look.transparent = o.picture.transparent;
   const frames::RecordedRun recorded = run::recorded_run_of(source.name, source.purpose, source.recording);
@@ -246,7 +246,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   const std::string file = o.file.empty() ? "out/" + source.name + ".pdf" : o.file;
   if (o.figure.proof_map) return run_proof_map(o, source, file);
   figure::FigureSpec spec = figure_spec(o, file);
-  render::FrameSpec frames = frame_spec(o, source, globals);
+  pictures::FrameSpec frames = frame_spec(o, source, globals);
   if (o.try_views && source.recording.trace.events.size() > 0)
     spec.choice = {figure::Choice::By::events,
                    {static_cast<std::uint32_t>(source.recording.trace.events.size() - 1)}};
@@ -256,7 +256,7 @@ int run_figure(const FigureOptions& o, const Globals& globals) {
   if (o.close_up) {
     frames::widen_close_ups(recorded, frames.views);
     // A close-up of the whole bodies shows the same as the first view.
-    if (frames.views.size() == 2 && frames.views[1].camera != render::FrameSpec::Camera::contact &&
+    if (frames.views.size() == 2 && frames.views[1].camera != pictures::FrameSpec::Camera::contact &&
         !frames.views[0].wrapper) {
       frames.views.pop_back();
       note(globals, {"--close-up: left out, because the contact is nearly as large as the bodies"});

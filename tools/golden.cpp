@@ -311,7 +311,7 @@ golden::GoldenSpec spec_to_approve(const GoldenOptions& o, const std::string& na
   if (!o.size.empty()) {
     PictureOptions picture;
     picture.size = o.size;
-    render::FrameSpec frames;
+    pictures::FrameSpec frames;
     apply(picture, frames);
     spec.width = frames.width;
     spec.height = frames.height;

@@ -128,7 +128,7 @@ struct InspectOptions {
 };
 
 /// Returns the drawing options, with this size unless one is given. Height 0: to be computed.
-render::Look sheet_look(const InspectOptions& o, int width, int height) {
+pictures::Look sheet_look(const InspectOptions& o, int width, int height) {
   if (!o.render && o.drawing.empty()) {
     const CameraOptions& camera = o.pictures.camera;
     const std::pair<bool, const char*> of_pictures[] = {{!o.pictures.size.empty(), "--size"},
@@ -144,7 +144,7 @@ render::Look sheet_look(const InspectOptions& o, int width, int height) {
         throw InputError(std::string(name) + ": needs --render or --draw; add one, or leave " + name +
                          " out");
   }
-  render::FrameSpec frames;
+  pictures::FrameSpec frames;
   frames.width = width;
   frames.height = height;
   apply(o.pictures, frames);
@@ -154,7 +154,7 @@ render::Look sheet_look(const InspectOptions& o, int width, int height) {
 
 /// Prints a JSON line for each pair of faces that intersect.
 int list_self_intersections(const InspectOptions& o, const Globals& globals) {
-  const render::Look look = sheet_look(o, pictures::kAnswerWidth, pictures::kAnswerHeight);
+  const pictures::Look look = sheet_look(o, pictures::kAnswerWidth, pictures::kAnswerHeight);
   std::vector<std::string> notes;
   SelfIntersections found;
   std::optional<LrbRep> body;  // to be drawn
@@ -313,7 +313,7 @@ Json layers_json(const LrbRep& rep) {
 void draw_findings(const pictures::FaultyMesh& faulty, const InspectOptions& o, Json& j,
                    std::vector<std::string>& notes) {
   const std::string& path = o.drawing;
-  const render::Look look = sheet_look(o, pictures::kFindingsSheetWidth, 0);
+  const pictures::Look look = sheet_look(o, pictures::kFindingsSheetWidth, 0);
   frames::check_views(look.views, faulty.mesh.dim);
   j["drawing"] = nullptr;
   if (const auto picture = pictures::picture_of(faulty, look)) {
@@ -326,7 +326,7 @@ void draw_findings(const pictures::FaultyMesh& faulty, const InspectOptions& o, 
 
 /// Measures the regions, and draws the ten with the largest waste if pictures are requested (`picture` is not
 /// empty).
-void report_regions(const LrbRep& rep, const InspectOptions& o, const render::Look& look,
+void report_regions(const LrbRep& rep, const InspectOptions& o, const pictures::Look& look,
                     const std::string& picture, Json& j) {
   if (rep.region_count() == 0)
     throw InputError(rep.name() +
@@ -349,7 +349,7 @@ void report_regions(const LrbRep& rep, const InspectOptions& o, const render::Lo
   j["advice"] = bodies::advice(rep, trials);
 }
 
-void look_broadside(const LrbRep& rep, render::Look& look) {
+void look_broadside(const LrbRep& rep, pictures::Look& look) {
   if (look.views.empty()) look.views.emplace_back();
   look.views[0].from = pictures::broadside(pictures::box_of(rep), look.views[0].up);
 }
@@ -384,7 +384,7 @@ std::string as_text(const Json& j) {
 int run_inspect(const InspectOptions& o, const Globals& globals) {
   if (o.self_intersections) return list_self_intersections(o, globals);
   if (o.levels) return list_levels(o, globals);
-  render::Look look = sheet_look(o, pictures::kBodySheetWidth, pictures::kBodySheetHeight);
+  pictures::Look look = sheet_look(o, pictures::kBodySheetWidth, pictures::kBodySheetHeight);
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;

@@ -40,7 +40,7 @@ void add_count(App& app, const std::string& name, std::uint64_t& count, const st
 }
 
 /// Reads --size.
-void apply_size(const std::string& size, render::FrameSpec& spec) {
+void apply_size(const std::string& size, pictures::FrameSpec& spec) {
   if (size.empty()) return;
   const char* end = size.data() + size.size();
   const auto [x, e1] = std::from_chars(size.data(), end, spec.width);
@@ -166,7 +166,7 @@ void add_picture_options(App& app, PictureOptions& options, UpOption up) {
          "--format", [&options](const std::string& word) { options.svg = word == "svg"; }, "png|svg",
          "svg: also write frames and montage as SVG (2D bodies only)")
       ->one_of({"png", "svg"});
-  add_choice<render::FrameSpec::At>(app, "--frames", options.at, "Events after which a frame is drawn");
+  add_choice<pictures::FrameSpec::At>(app, "--frames", options.at, "Events after which a frame is drawn");
   app.add_option("--every", options.every, "N", "Draw only every N-th of the frames selected by --frames")
       ->in_range(1, 1000000000);
   app.add_option("--most", options.most, "N", "Maximum number of frames, evenly spaced")->in_range(1, 10000);
@@ -176,9 +176,9 @@ void add_picture_options(App& app, PictureOptions& options, UpOption up) {
 }
 
 void add_colour_options(App& app, PictureOptions& options) {
-  add_choice<render::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by,
-                                          "Quantity that faces are coloured by");
-  add_choice<render::FrameSpec::ColourPer>(
+  add_choice<pictures::FrameSpec::ColourBy>(app, "--colour-by", options.colour_by,
+                                            "Quantity that faces are coloured by");
+  add_choice<pictures::FrameSpec::ColourPer>(
       app, "--colour-per", options.colour_per,
       "Colour a face by its own value, or by the sum over its region or level");
   app.add_option("--node-boxes", options.node_boxes, "DEPTH",
@@ -192,7 +192,7 @@ void check_view(const PictureOptions& options, std::size_t views) {
                      std::to_string(*options.view));
 }
 
-void apply(const PictureOptions& options, render::FrameSpec& spec) {
+void apply(const PictureOptions& options, pictures::FrameSpec& spec) {
   if (!options.animation.empty()) frames::check_animation(options.animation);
   apply_size(options.size, spec);
   if (options.dpi) spec.dpi = *options.dpi;
@@ -235,12 +235,12 @@ void add_orbit_option(App& app, CameraOptions& options) {
       ->in_range(-36000.0, 36000.0);
 }
 
-void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views) {
+void apply(const CameraOptions& options, std::vector<pictures::FrameSpec::View>& views) {
   const bool any = !options.from.empty() || !options.look_at.empty() || !options.up.empty() || options.zoom ||
                    options.orthographic || options.orbit;
   if (!any) return;
   if (views.empty()) views.emplace_back();
-  for (render::FrameSpec::View& view : views) {
+  for (pictures::FrameSpec::View& view : views) {
     view.directed = !options.from.empty() || !options.up.empty() || options.orthographic.has_value() ||
                     options.orbit.has_value();
     if (!options.up.empty()) {
@@ -254,7 +254,7 @@ void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& v
     }
     if (!options.from.empty()) {
       view.from = io::parse_vector(options.from, "--from");
-      if (view.camera == render::FrameSpec::Camera::fixed) view.camera = render::FrameSpec::Camera::scene;
+      if (view.camera == pictures::FrameSpec::Camera::fixed) view.camera = pictures::FrameSpec::Camera::scene;
     }
     if (!(view.from.cross(view.up).squaredNorm() > 0))
       throw InputError("--from: expected a direction other than zero that is not parallel to the up axis (" +
@@ -263,7 +263,7 @@ void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& v
     if (options.zoom) view.zoom = *options.zoom;
     if (options.orthographic) view.orthographic = *options.orthographic;
     if (options.orbit) {
-      view.camera = render::FrameSpec::Camera::orbit;
+      view.camera = pictures::FrameSpec::Camera::orbit;
       view.turn_degrees = *options.orbit;
     }
   }
@@ -316,12 +316,12 @@ void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals
 
 void choose_views(const CameraOptions& given, spec::Scenario& scenario, record::Recording& recording) {
   const frames::RecordedRun recorded = run::recorded_run_of(scenario, recording);
-  std::vector<render::FrameSpec::View>& views = scenario.frames.views;
+  std::vector<pictures::FrameSpec::View>& views = scenario.frames.views;
   const Eigen::Vector3d up = views[0].up;
   // Directions are compared in drawn pictures, which a run without frames must not need.
-  if (given.from.empty() && scenario.frames.at != render::FrameSpec::At::none) {
+  if (given.from.empty() && scenario.frames.at != pictures::FrameSpec::At::none) {
     const Eigen::Vector3d from = frames::min_hidden(recorded, up, views[0].from);
-    for (render::FrameSpec::View& view : views) view.from = from;
+    for (pictures::FrameSpec::View& view : views) view.from = from;
   }
   frames::widen_close_ups(recorded, views);
   recording.trace.header.pictures = spec::pictures_text(scenario.frames);

@@ -85,7 +85,7 @@ void add_camera_options(App& app, CameraOptions& options, UpOption up = UpOption
 void add_orbit_option(App& app, CameraOptions& options);
 /// Applies the options to all views. --up rotates existing views; --from and --look-at are given in the axes
 /// of the bodies' files, and are not rotated. Throws InputError for an invalid camera.
-void apply(const CameraOptions& options, std::vector<render::FrameSpec::View>& views);
+void apply(const CameraOptions& options, std::vector<pictures::FrameSpec::View>& views);
 
 /// The camera options, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
 /// --frames, --every, --most, --colour-by, --colour-per and --node-boxes, which override the scenario.
@@ -97,10 +97,10 @@ struct PictureOptions {
   bool transparent = false;
   std::optional<render::StyleName> style;
   bool titles = true, legend = true;
-  std::optional<render::FrameSpec::At> at;
+  std::optional<pictures::FrameSpec::At> at;
   std::optional<std::uint32_t> every, most, view;
-  std::optional<render::FrameSpec::ColourBy> colour_by;
-  std::optional<render::FrameSpec::ColourPer> colour_per;
+  std::optional<pictures::FrameSpec::ColourBy> colour_by;
+  std::optional<pictures::FrameSpec::ColourPer> colour_per;
   std::optional<std::uint32_t> node_boxes;
 };
 void add_picture_options(App& app, PictureOptions& options, UpOption up = UpOption::axis);
@@ -110,7 +110,7 @@ void add_size_options(App& app, PictureOptions& options);
 void add_style_option(App& app, PictureOptions& options, const std::string& usual);
 /// Adds --colour-by and --node-boxes alone.
 void add_colour_options(App& app, PictureOptions& options);
-void apply(const PictureOptions& options, render::FrameSpec& spec);
+void apply(const PictureOptions& options, pictures::FrameSpec& spec);
 /// Throws InputError if --view is none of the `views` views.
 void check_view(const PictureOptions& options, std::size_t views);
 

@@ -29,7 +29,7 @@ std::string line_of(std::size_t point, const PointDistance& d) {
 }
 
 int run_points(const PointsOptions& o, const Globals& globals) {
-  const render::Look look = look_of(o.draw);
+  const pictures::Look look = look_of(o.draw);
   const std::vector<Eigen::Vector3d> points = io::read_points(o.points);
   const bodies::LoadedBody body = bodies::load_faces(o.body, o.corners);
   note(globals, body.notes);

@@ -73,8 +73,8 @@ report::Gnuplot contact_chart(const std::vector<ContactBounds>& history) {
   return stacked(times, distances);
 }
 
-render::Look look_of(const DrawOptions& options) {
-  render::FrameSpec look;
+pictures::Look look_of(const DrawOptions& options) {
+  pictures::FrameSpec look;
   look.width = pictures::kAnswerWidth;
   look.height = pictures::kAnswerHeight;
   apply(options.look, look);

@@ -110,7 +110,7 @@ struct DrawOptions {
   bool is_watched() const { return history || !chart.empty(); }
 };
 /// Returns the style of the pictures. Throws InputError for an unsupported size.
-render::Look look_of(const DrawOptions& options);
+pictures::Look look_of(const DrawOptions& options);
 /// Adds --draw, --size and --up. `picture`: content of the picture that --draw writes.
 void add_picture_options(App& app, DrawOptions& options, const std::string& picture);
 /// Adds these, --chart and, if `with_history`, --convergence.
@@ -141,7 +141,7 @@ struct PosedQuestion : PosedFiles {
     return bodies::load_faces_of_two(a, b, corners);
   }
   static bool has_picture(const auto&) { return true; }
-  static auto picture(const auto& answer, const auto& bodies, const render::Look& look) {
+  static auto picture(const auto& answer, const auto& bodies, const pictures::Look& look) {
     return pictures::picture_of(answer, bodies, look);
   }
 };
@@ -150,7 +150,7 @@ template <class Q>
 int answer_each(Q& q, const Globals& globals) {
   typename Q::Lines list(q.poses);
   if constexpr (requires { q.check(); }) q.check();
-  const render::Look look = look_of(q.draw);
+  const pictures::Look look = look_of(q.draw);
   const auto both = q.load(globals);
   const LrbRep &a = both[0].rep, &b = both[1].rep;
   if constexpr (requires { q.check(a); }) q.check(a);

@@ -109,7 +109,7 @@ struct PairsQuestion : PosedQuestion {
 
   static bool has_picture(const CollideResult& result) { return result.separation.has_value(); }
   static auto picture(const CollideResult& result, const pictures::PosedBodies& p,
-                      const render::Look& /*its own*/) {
+                      const pictures::Look& /*its own*/) {
     return pictures::picture_of(*result.separation, p);
   }
 };

@@ -114,7 +114,7 @@ struct NearQuestion : PosedQuestion {
     w.end_array();
   }
 
-  auto picture(const NearPairsResult& result, const PosedBodies& p, const render::Look& look) const {
+  auto picture(const NearPairsResult& result, const PosedBodies& p, const pictures::Look& look) const {
     return pictures::picture_of(result, request.within, p, look);
   }
 };
@@ -178,7 +178,7 @@ struct ManifoldQuestion : PosedQuestion {
     w.end_array();
   }
 
-  auto picture(const ManifoldResult& result, const PosedBodies& p, const render::Look& look) const {
+  auto picture(const ManifoldResult& result, const PosedBodies& p, const pictures::Look& look) const {
     return pictures::picture_of(result, request.margin, p, look);
   }
 };

@@ -62,7 +62,8 @@ OfBody read_of_body(const std::string& option, const std::string& what, const st
 }
 
 /// Shows only the requested regions and describes each: once, unless frames are requested.
-void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies, render::FrameSpec& spec) {
+void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodies,
+             pictures::FrameSpec& spec) {
   std::vector<std::uint32_t> regions, layers;
   for (const bodies::LoadedBody& body : bodies) {
     regions.push_back(body.rep.region_count());
@@ -84,7 +85,7 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
     of_body.erase(std::unique(of_body.begin(), of_body.end()), of_body.end());
   }
   if (o.events.empty() && !o.picture.at) {
-    spec.at = render::FrameSpec::At::events;
+    spec.at = pictures::FrameSpec::At::events;
     spec.events = {0};
     if (o.montage == 0) spec.montage = 0;
   }
@@ -92,12 +93,13 @@ void isolate(const RenderOptions& o, const std::vector<bodies::LoadedBody>& bodi
 }
 
 /// Returns the drawing options: those of the run, `pictures`, overridden by the command line.
-render::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
-  render::FrameSpec spec = spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
+pictures::FrameSpec frame_spec(const RenderOptions& o, spec::Show show, const std::string& pictures = "") {
+  pictures::FrameSpec spec =
+      spec::read_pictures(pictures, printable_name(o.trace), spec::default_frames(show));
   if (o.close_up) spec.views = frames::whole_and_contact(spec.views);
   apply(o.picture, spec);
   if (!o.events.empty()) {
-    spec.at = render::FrameSpec::At::events;
+    spec.at = pictures::FrameSpec::At::events;
     spec.events = o.events;
   }
   if (o.montage > 0) spec.montage = o.montage;
@@ -119,18 +121,18 @@ int run_render(const RenderOptions& given, const Globals& globals) {
   const std::vector<bodies::LoadedBody>& bodies = recording.bodies;
   const frames::RecordedRun p = run::recorded_run_of(trace.header.scenario, {}, recording);
   const std::string folder = output_folder(o);
-  render::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);
+  pictures::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);
   isolate(o, bodies, spec);
   const std::vector<std::pair<std::string, std::string>> text = {
       {"Software", "lrbscope " + trace.header.lrbscope},
       {"lrbscope:scenario", trace.header.scenario},
       {"lrbscope:scenario_hash", trace::to_hex(trace.header.scenario_hash)},
   };
-  if (const EventLevel needed = render::needed_level(spec); needed > trace.header.level)
+  if (const EventLevel needed = pictures::needed_level(spec); needed > trace.header.level)
     throw InputError(printable_name(o.trace) +
                      " lacks the events for --colour-by or --node-boxes; record the run with --events " +
                      std::string(name_of(needed)));
-  if (render::needed_level(spec) == EventLevel::nodes && recording.trees.empty())
+  if (pictures::needed_level(spec) == EventLevel::nodes && recording.trees.empty())
     throw InputError("--colour-by or --node-boxes: " + printable_name(o.trace) + " is of " +
                      trace.header.engine +
                      " and does not contain its trees; record them with `lrbscope import`");

@@ -31,7 +31,7 @@ int run_pair(const CrowdOptions& o, const spec::Crowd& crowd, const Globals& glo
   spec::Scenario scenario = crowd::scenario_of_pair(crowd, motion, pair);
   scenario.frames.montage = 6;
   scenario.frames.views = frames::whole_and_contact();
-  if (o.no_frames) scenario.frames.at = render::FrameSpec::At::none;
+  if (o.no_frames) scenario.frames.at = pictures::FrameSpec::At::none;
   const std::string folder = o.folder.empty() ? "out/" + scenario.name : o.folder;
   record::Recording recording =
       record::record(scenario, {kinds[motion.kind(pair.i)], kinds[motion.kind(pair.j)]}, progress);

@@ -113,7 +113,7 @@ struct SweepQuestion : PosedQuestion {
   }
 
   static auto picture(const FirstContactResult& result, const MotionLines::Moved& m,
-                      const render::Look& look) {
+                      const pictures::Look& look) {
     return pictures::picture_of(result, m.a, m.b, m.motion, look);
   }
   std::optional<report::Gnuplot> chart() const { return contact_chart(reported.history); }

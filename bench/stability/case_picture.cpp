@@ -401,7 +401,7 @@ render::Image worst_case_picture(const cases::Case& c, std::span<const SimplexPa
          close->caption + ", " + render::short_number(diagonal(box) / extent) + " times as large", false});
   }
   const render::Overlay overlay = overlay_of(s, verdict, text);
-  render::Look look;
+  pictures::Look look;
   look.width = kWidth;
   look.height = kHeight;
   const render::PixelRect place = render::lay_out(overlay, kWidth, kHeight).picture;

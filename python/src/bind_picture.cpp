@@ -8,7 +8,7 @@
 namespace lrb::python {
 namespace {
 
-using View = render::FrameSpec::View;
+using View = pictures::FrameSpec::View;
 
 int side(const py::handle& given) {
   const std::uint64_t n = count({given, "size"});
@@ -19,7 +19,7 @@ int side(const py::handle& given) {
 
 /// The picture in terms of the run's spec, and whether the direction was given.
 struct Wanted {
-  render::FrameSpec frames;
+  pictures::FrameSpec frames;
   bool from_given = false;
 };
 
@@ -37,7 +37,7 @@ Eigen::Vector3d direction(const Argument& arg) {
 
 Wanted wanted(const Given& given) {
   Wanted out;
-  render::FrameSpec& f = out.frames;
+  pictures::FrameSpec& f = out.frames;
   f.width = 960;
   f.height = 720;
   if (const Argument size = given["size"]; !size.is_none()) {
@@ -61,11 +61,11 @@ Wanted wanted(const Given& given) {
   if (!(view.zoom > 0 && view.zoom < 1e6)) throw InputError("zoom: expected a number above 0");
   view.orthographic = flag(given["orthographic"]);
   view.wrapper = flag(given["wrappers"]);
-  if (flag(given["close_up"])) view.camera = render::FrameSpec::Camera::contact;
+  if (flag(given["close_up"])) view.camera = pictures::FrameSpec::Camera::contact;
   f.views = {view};
   f.colour_by = word(given["colour_by"], f.colour_by);
   f.transparent = flag(given["transparent"]);
-  f.at = render::FrameSpec::At::events;
+  f.at = pictures::FrameSpec::At::events;
   return out;
 }
 

@@ -154,7 +154,7 @@ that shows the bodies, rotatable, after any event.)");
   words["Wrapper.mode"] = names<WrapperMode>();
   words["recursion"] = names<Recursion>();
   words["events"] = names<EventLevel>();
-  words["colour_by"] = names<decltype(render::FrameSpec::colour_by)>();
+  words["colour_by"] = names<decltype(pictures::FrameSpec::colour_by)>();
   m.attr("_words") = words;
   c.def_property_readonly(
       "steps", &steps_of,

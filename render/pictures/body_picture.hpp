@@ -17,7 +17,7 @@ namespace lrb::pictures {
 // Contact sheets: panels (a), (b), ... of the look's size, in pixels of the file, seen from its first view.
 
 /// Draws a body, some of its intermediate wrappers, and its outermost wrapper.
-render::Image body_sheet(const LrbRep& rep, const render::Look& look);
+render::Image body_sheet(const LrbRep& rep, const pictures::Look& look);
 
 /// The size of a panel unless one is requested.
 inline constexpr int kBodySheetWidth = 640, kBodySheetHeight = 520;
@@ -32,7 +32,7 @@ struct ShownRegion {
 /// region from the direction that its lids face, with its lids translucent over its floor, and the rest as a
 /// ghost. `values`: (|real faces|); `name`: of the value.
 render::Image region_sheet(const LrbRep& rep, std::span<const double> values, const std::string& name,
-                           std::span<const ShownRegion> regions, const render::Look& look);
+                           std::span<const ShownRegion> regions, const pictures::Look& look);
 
 /// Returns the mean direction of a region's lids; zero if they face nearly all directions, and in 2D.
 Eigen::Vector3d outlook(const LrbRep& rep, RegionId r);
@@ -54,7 +54,7 @@ struct FaultyMesh {
 /// Draws a mesh's findings: the whole mesh in panel (a), from the look's first view, then a close-up of the
 /// first finding of each kind. All open edges are drawn; the close-up shows the longest loop. `look`: in
 /// pixels of the file; height 0: as required. Returns nullopt if no finding has a position.
-std::optional<render::Image> picture_of(const FaultyMesh& faulty, const render::Look& look);
+std::optional<render::Image> picture_of(const FaultyMesh& faulty, const pictures::Look& look);
 
 /// The width of the picture unless one is requested.
 inline constexpr int kFindingsSheetWidth = 1600;

@@ -14,7 +14,7 @@
 #include <lrbscope/observe.hpp>
 #include <lrbscope/render/style.hpp>
 
-namespace lrb::render {
+namespace lrb::pictures {
 
 /// The appearance of pictures: their size, style, views and texts.
 struct Look {
@@ -39,7 +39,7 @@ struct Look {
   int supersampling = 2;
   std::vector<View> views;  ///< side by side; empty: one of the whole scene
   bool transparent = false;
-  StyleName style = StyleName::screen;
+  render::StyleName style = render::StyleName::screen;
   bool titles = true;  ///< above and below a picture: its title, the event, counters, and titles of views
   bool legend = true;  ///< colour key and scale
 
@@ -48,10 +48,10 @@ struct Look {
   double scale() const { return dpi > 0 ? dpi / kScreenDpi : 1; }
   View first_view() const { return views.empty() ? View{} : views[0]; }
   /// Returns the background; nullopt if pictures are transparent.
-  std::optional<Rgba> paper() const {
-    return transparent ? std::nullopt : std::optional(style_of(style).paper);
+  std::optional<render::Rgba> paper() const {
+    return transparent ? std::nullopt : std::optional(render::style_of(style).paper);
   }
-  Rgba background() const { return paper().value_or(kTransparent); }
+  render::Rgba background() const { return paper().value_or(render::kTransparent); }
 };
 
 /// The events that become pictures, and their appearance.
@@ -125,11 +125,6 @@ constexpr auto enum_names(FrameSpec::ColourPer) {
   return std::to_array<EnumName<Word>>(
       {{Word::face, "face"}, {Word::region, "region"}, {Word::level, "level"}});
 }
-constexpr auto enum_names(StyleName) {
-  using Word = StyleName;
-  return std::to_array<EnumName<Word>>(
-      {{Word::screen, "screen"}, {Word::print, "print"}, {Word::dark, "dark"}});
-}
 /// Returns true if a colouring shows numbers, by a colour scale.
 constexpr bool is_value(FrameSpec::ColourBy by) {
   using Word = FrameSpec::ColourBy;
@@ -148,4 +143,4 @@ constexpr EventLevel needed_level(const FrameSpec& frames) {
   return frames.node_boxes && colours == EventLevel::faces ? EventLevel::nodes : colours;
 }
 
-}  // namespace lrb::render
+}  // namespace lrb::pictures

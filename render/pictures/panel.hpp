@@ -39,7 +39,7 @@ struct Panel {
 inline const render::Lighting kScaleLighting{.ambient = 0.78, .head = 0.1, .key = 0.16, .fill = 0.05};
 
 /// Draws a panel without its title.
-render::Image draw_panel(render::Rasterizer& rasterizer, const Panel& panel, const render::Look& look,
+render::Image draw_panel(render::Rasterizer& rasterizer, const Panel& panel, const pictures::Look& look,
                          int width, int height);
 
 /// Returns the rectangles of panels in a picture, side by side along its longer side.
@@ -48,24 +48,24 @@ std::vector<render::PixelRect> panel_places(const render::PixelRect& picture, st
 
 /// Draws panels side by side, each with its title inside.
 render::Image draw_row(render::Rasterizer& rasterizer, std::span<const Panel> panels,
-                       const render::Look& look, const render::PixelRect& picture);
+                       const pictures::Look& look, const render::PixelRect& picture);
 
 /// Draws panels side by side, between the texts of an overlay.
 render::Image draw_panels(std::span<const Panel> panels, const render::Overlay& overlay,
-                          const render::Look& look);
+                          const pictures::Look& look);
 
 /// Draws panels of the look's size in rows, with letters and titles below them.
-render::Image draw_sheet(std::span<const Panel> panels, const render::Look& look,
+render::Image draw_sheet(std::span<const Panel> panels, const pictures::Look& look,
                          render::MontageOptions options = {});
 
 /// Adds an overlay above and below a picture. The picture keeps its size.
 render::Image with_overlay(const render::Image& picture, const render::Overlay& overlay, double scale = 1);
 
 /// Clears the texts of a frame that `look` omits.
-void leave_out_texts(render::Overlay& overlay, const render::Look& look);
+void leave_out_texts(render::Overlay& overlay, const pictures::Look& look);
 
 /// Converts the size to pixels of the file.
-void to_pixels(render::Look& look);
+void to_pixels(pictures::Look& look);
 
 /// Writes a picture, and creates its folder. Throws EnvironmentError if it cannot be written.
 void write_picture(const render::Image& picture, const std::string& path, double dpi = 0);
@@ -91,8 +91,8 @@ struct Framing {
 };
 
 /// Returns a view's camera. `progress` in [0, 1] is the share of the sequence that has passed, for orbits.
-render::Camera camera_for(const render::Look::View& view, const Framing& framing, double width, double height,
-                          double progress = 0);
+render::Camera camera_for(const pictures::Look::View& view, const Framing& framing, double width,
+                          double height, double progress = 0);
 
 // Bodies.
 

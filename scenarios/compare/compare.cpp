@@ -331,8 +331,8 @@ render::Image draw_bodies(const Runs& runs, const record::ProgressReport& progre
   std::vector<render::Panel> panels;
   for (std::size_t i = 0; i < 2; ++i) {
     const trace::Trace& trace = runs.of[i]->trace;
-    render::FrameSpec frame = runs.scenarios[i]->frames;
-    frame.colour_by = render::FrameSpec::ColourBy::region;
+    pictures::FrameSpec frame = runs.scenarios[i]->frames;
+    frame.colour_by = pictures::FrameSpec::ColourBy::region;
     panels.push_back(panel_after(run::recorded_run_of(*runs.scenarios[i], *runs.of[i]), std::move(frame),
                                  static_cast<trace::EventId>(trace.events.size() - 1), runs.names[i], framing,
                                  progress));

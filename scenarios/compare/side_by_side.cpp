@@ -17,7 +17,7 @@ namespace lrb::compare {
 namespace {
 
 using render::group_digits;
-using ColourBy = render::FrameSpec::ColourBy;
+using ColourBy = pictures::FrameSpec::ColourBy;
 using FaceValues = std::array<std::vector<double>, 2>;  ///< of A and of B
 
 /// Returns the face values that determine the colours in a step.
@@ -91,10 +91,10 @@ ColourBy common_colours(const Runs& runs) {
   return runs.of[0]->trees.empty() || runs.of[1]->trees.empty() ? ColourBy::face_tests : ColourBy::box_tests;
 }
 
-render::Panel panel_after(const frames::RecordedRun& recorded, render::FrameSpec frame, trace::EventId event,
-                          const std::string& title, const pictures::Framing& framing,
+render::Panel panel_after(const frames::RecordedRun& recorded, pictures::FrameSpec frame,
+                          trace::EventId event, const std::string& title, const pictures::Framing& framing,
                           const record::ProgressReport& progress) {
-  frame.at = render::FrameSpec::At::events;
+  frame.at = pictures::FrameSpec::At::events;
   frame.events = {event};
   frame.width = 900;
   frame.height = 700;
@@ -126,7 +126,7 @@ render::Image draw(const Runs& runs, std::size_t step, const record::ProgressRep
     recorded.value_range = frames::scale_without_the_smallest(shown);
     if (!value_name.empty()) recorded.face_values = &shown;
     recorded.value_name = value_name;
-    render::FrameSpec frame = runs.scenarios[i]->frames;
+    pictures::FrameSpec frame = runs.scenarios[i]->frames;
     frame.colour_by = by;
     frame.views = {frame.first_view()};
     frame.views[0].wrapper = false;

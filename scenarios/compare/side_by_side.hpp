@@ -33,11 +33,11 @@ std::string cut_words(const Runs& runs);
 void reject_folder_of_run(const std::string& folder, const std::string& option = "-o");
 
 /// Meaning of the colours: box tests if both runs have recorded pairs of nodes, else face tests.
-render::FrameSpec::ColourBy common_colours(const Runs& runs);
+pictures::FrameSpec::ColourBy common_colours(const Runs& runs);
 
 /// Draws one view of a run after an event. `framing`: the content of the picture.
-render::Panel panel_after(const frames::RecordedRun& recorded, render::FrameSpec frame, trace::EventId event,
-                          const std::string& title, const pictures::Framing& framing,
+render::Panel panel_after(const frames::RecordedRun& recorded, pictures::FrameSpec frame,
+                          trace::EventId event, const std::string& title, const pictures::Framing& framing,
                           const record::ProgressReport& progress);
 /// Draws panels beside each other, without letters.
 render::Image in_a_row(const std::vector<render::Panel>& panels);

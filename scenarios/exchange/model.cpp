@@ -57,7 +57,7 @@ void check_model_file(const std::string& path) {
 
 namespace {
 
-using ColourBy = render::FrameSpec::ColourBy;
+using ColourBy = pictures::FrameSpec::ColourBy;
 using render::Rgba;
 
 constexpr double kNone = -1;

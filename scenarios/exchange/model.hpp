@@ -95,8 +95,8 @@ struct Moment {
   /// The events of the time step so far, used for counters; nullopt: no events, and no such columns.
   std::optional<std::span<const trace::Event>> events;
   std::span<const ContactRegion> contacts;
-  render::FrameSpec::ColourBy colour_by = render::FrameSpec::ColourBy::kind;
-  render::FrameSpec::ColourPer colour_per = render::FrameSpec::ColourPer::face;
+  pictures::FrameSpec::ColourBy colour_by = pictures::FrameSpec::ColourBy::kind;
+  pictures::FrameSpec::ColourPer colour_per = pictures::FrameSpec::ColourPer::face;
 };
 
 struct Wanted {

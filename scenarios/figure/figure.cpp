@@ -23,19 +23,19 @@ namespace {
 
 using Eigen::AlignedBox2d;
 using Eigen::Vector2d;
-using View = render::FrameSpec::View;
+using View = pictures::FrameSpec::View;
 
 /// Returns the frames' spec with widths in points: a thin line, of width 1, gets the figure's line width.
-render::FrameSpec in_points(render::FrameSpec frames, const FigureSpec& figure) {
+pictures::FrameSpec in_points(pictures::FrameSpec frames, const FigureSpec& figure) {
   // The figure sets the line width, whatever the style.
-  frames.dpi = figure.line_width * render::FrameSpec::kScreenDpi / style_of(frames.style).weight;
+  frames.dpi = figure.line_width * pictures::FrameSpec::kScreenDpi / style_of(frames.style).weight;
   if (frames.views.empty()) frames.views.emplace_back();
   return frames;
 }
 
 class FigureJob {
  public:
-  FigureJob(const frames::RecordedRun& recorded, const render::FrameSpec& frames, const FigureSpec& figure)
+  FigureJob(const frames::RecordedRun& recorded, const pictures::FrameSpec& frames, const FigureSpec& figure)
       : recorded_(recorded),
         figure_(figure),
         frames_(in_points(frames, figure)),
@@ -114,7 +114,7 @@ class FigureJob {
     return out;
   }
 
-  bool shows_values() const { return render::is_value(frames_.colour_by); }
+  bool shows_values() const { return pictures::is_value(frames_.colour_by); }
 
   render::Camera camera(const View& view, std::size_t moment) const {
     const double progress =
@@ -459,7 +459,7 @@ class FigureJob {
 
   /// Returns false for a close-up of a contact without contacts, beside other views.
   bool shows_anything(const View& view) const {
-    return view.camera != render::FrameSpec::Camera::contact || frames_.views.size() == 1 ||
+    return view.camera != pictures::FrameSpec::Camera::contact || frames_.views.size() == 1 ||
            state_.in_contact();
   }
 
@@ -564,7 +564,7 @@ class FigureJob {
 
   const frames::RecordedRun& recorded_;
   const FigureSpec& figure_;
-  render::FrameSpec frames_;
+  pictures::FrameSpec frames_;
   double dpi_;
   Chosen chosen_;
   pictures::Framing framing_;
@@ -591,7 +591,7 @@ class FigureJob {
 
 }  // namespace
 
-Figure draw_figure(const frames::RecordedRun& recorded, const render::FrameSpec& frames,
+Figure draw_figure(const frames::RecordedRun& recorded, const pictures::FrameSpec& frames,
                    const FigureSpec& figure, const record::ProgressReport& progress) {
   return FigureJob(recorded, frames, figure).draw(progress);
 }

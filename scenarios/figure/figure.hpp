@@ -48,12 +48,12 @@ struct Figure {
 
 /// Draws the figure. `frames` defines the meaning of colours, the visible regions and the viewpoint. Throws
 /// InputError for requests that a figure cannot show.
-Figure draw_figure(const frames::RecordedRun& recorded, const render::FrameSpec& frames,
+Figure draw_figure(const frames::RecordedRun& recorded, const pictures::FrameSpec& frames,
                    const FigureSpec& figure, const record::ProgressReport& progress);
 
 /// Draws the proof map of a step (proof_map.hpp): of the one in `figure.choice`, or of the last with a
 /// traversal. Throws InputError if its traversal was not recorded.
-Figure draw_proof_map(const frames::RecordedRun& recorded, const render::Look& look,
+Figure draw_proof_map(const frames::RecordedRun& recorded, const pictures::Look& look,
                       const FigureSpec& figure);
 
 /// Returns the file of a page that `paint` paints, in points.

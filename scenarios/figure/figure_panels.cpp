@@ -24,8 +24,8 @@ struct States {
 std::vector<EventId> candidates(const frames::RecordedRun& recorded) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.header.construction) {
-    render::FrameSpec passes;
-    passes.at = render::FrameSpec::At::pass;
+    pictures::FrameSpec passes;
+    passes.at = pictures::FrameSpec::At::pass;
     return record::moments(passes, trace);
   }
   std::vector<EventId> out;

@@ -33,7 +33,7 @@ inline render::FaceLooks looks(const render::DrawList& list, const render::Proje
 class PanelPainter {
  public:
   /// `dim`: of the bodies; `margin`: around the content of each panel, points.
-  PanelPainter(const render::FrameSpec& frames, int dim, double margin)
+  PanelPainter(const pictures::FrameSpec& frames, int dim, double margin)
       : frames_(frames), is_flat_(dim == 2), margin_(margin) {}
 
   /// Returns the part of the view, in its own units, that a panel shows at a scale in points per unit.
@@ -53,7 +53,7 @@ class PanelPainter {
                   const PanelPlace& place, double scale) const;
   render::Image pixels(const render::DrawList& list, const DeepView& deep);
 
-  const render::FrameSpec& frames_;
+  const pictures::FrameSpec& frames_;
   bool is_flat_;
   double margin_;
 };

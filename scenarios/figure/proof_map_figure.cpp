@@ -192,7 +192,7 @@ class MapFigure {
 
 }  // namespace
 
-Figure draw_proof_map(const frames::RecordedRun& recorded, const render::Look& look,
+Figure draw_proof_map(const frames::RecordedRun& recorded, const pictures::Look& look,
                       const FigureSpec& figure) {
   const trace::Trace& trace = *recorded.trace;
   if (trace.header.engine.empty() && trace.header.level == EventLevel::faces)

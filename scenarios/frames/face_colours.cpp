@@ -16,8 +16,9 @@ std::uint32_t level_of(const LrbRep& rep, FaceId face) {
   return is_region(cell) ? rep.depth(cell.as_region()) : 0;
 }
 
-std::vector<double> grouped(std::vector<double> values, render::FrameSpec::ColourPer per, const LrbRep& rep) {
-  using ColourPer = render::FrameSpec::ColourPer;
+std::vector<double> grouped(std::vector<double> values, pictures::FrameSpec::ColourPer per,
+                            const LrbRep& rep) {
+  using ColourPer = pictures::FrameSpec::ColourPer;
   if (per == ColourPer::face || values.empty()) return values;
   const auto group = [&](FaceId f) {
     return per == ColourPer::region ? region_of(rep, f) : level_of(rep, f);
@@ -35,7 +36,7 @@ std::vector<double> grouped(std::vector<double> values, render::FrameSpec::Colou
 
 namespace {
 
-using ColourBy = render::FrameSpec::ColourBy;
+using ColourBy = pictures::FrameSpec::ColourBy;
 
 const std::vector<std::uint32_t>& chosen(const trace::FaceCounts& counts, ColourBy by) {
   switch (by) {

@@ -22,14 +22,15 @@ std::uint32_t level_of(const LrbRep& rep, FaceId face);
 
 /// Returns, for each face (|F|), the sum of the values over its region or its region depth; a face without a
 /// region keeps its own value.
-std::vector<double> grouped(std::vector<double> values, render::FrameSpec::ColourPer per, const LrbRep& rep);
+std::vector<double> grouped(std::vector<double> values, pictures::FrameSpec::ColourPer per,
+                            const LrbRep& rep);
 
 // Computes the value by which each face is coloured.
 
 /// Returns the value of each face (|F|), counted over `events`; empty if `by` does not colour by value.
 /// `tree`: the tree traversed for the body, null if pairs of its nodes were not recorded; there are no box
 /// tests then.
-std::vector<double> face_values(render::FrameSpec::ColourBy by, const LrbRep& rep, Side side,
+std::vector<double> face_values(pictures::FrameSpec::ColourBy by, const LrbRep& rep, Side side,
                                 std::span<const trace::Event> events, const trace::TreeShape* tree);
 
 /// Returns {maximum / 50, maximum} of the values of A's and B's faces: a scale on which smaller values look

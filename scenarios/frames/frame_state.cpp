@@ -21,7 +21,7 @@ std::string short_name(const LrbRep& rep) {
 
 }  // namespace
 
-FrameState::FrameState(RecordedRun run, const render::FrameSpec& spec, bool point_out_refined)
+FrameState::FrameState(RecordedRun run, const pictures::FrameSpec& spec, bool point_out_refined)
     : run_(std::move(run)),
       trace_(*run_.trace),
       spec_(spec),
@@ -65,7 +65,7 @@ bool FrameState::shows_separating_plane(const Moment& m) const {
   return !is_single() && m.proof == nullptr && !m.answer->distance && !m.answer->near && !m.answer->points &&
          m.answer->relation == Relation::separate && request.recursion == Recursion::complete &&
          !request.is_coarse() && trace_.header.engine.empty() &&
-         spec_.colour_by < render::FrameSpec::ColourBy::face_tests;
+         spec_.colour_by < pictures::FrameSpec::ColourBy::face_tests;
 }
 
 void FrameState::add_pass(Moment& m) const {
@@ -148,20 +148,20 @@ render::SceneHighlight FrameState::scene_highlight(bool wrapper, bool plain) con
 render::SceneOptions FrameState::scene_options(const SceneParts& parts) const {
   render::SceneOptions options;
   switch (spec_.colour_by) {
-    case render::FrameSpec::ColourBy::kind:
+    case pictures::FrameSpec::ColourBy::kind:
       break;
-    case render::FrameSpec::ColourBy::layer:
+    case pictures::FrameSpec::ColourBy::layer:
       options.colour_by = render::ColourBy::layer;
       break;
-    case render::FrameSpec::ColourBy::region:
+    case pictures::FrameSpec::ColourBy::region:
       options.colour_by = render::ColourBy::region;
       break;
     default:
       options.colour_by = render::ColourBy::value;
       options.value_name = io::in_words(name_of(spec_.colour_by));
-      if (spec_.colour_per != render::FrameSpec::ColourPer::face)
+      if (spec_.colour_per != pictures::FrameSpec::ColourPer::face)
         options.value_name += " in the " + std::string(name_of(spec_.colour_per));
-      else if (spec_.colour_by == render::FrameSpec::ColourBy::box_tests)
+      else if (spec_.colour_by == pictures::FrameSpec::ColourBy::box_tests)
         options.value_range = scale_without_the_smallest(parts.values);
       if (!run_.value_name.empty()) options.value_name = run_.value_name;
       if (run_.value_range) options.value_range = run_.value_range;

@@ -35,7 +35,7 @@ std::string built_text(const trace::Event& e);
 class FrameState {
  public:
   /// The data that `run` points to, and `spec`, must outlive this object.
-  FrameState(RecordedRun run, const render::FrameSpec& spec, bool point_out_refined);
+  FrameState(RecordedRun run, const pictures::FrameSpec& spec, bool point_out_refined);
 
   FrameState(FrameState&&) = default;
 
@@ -141,7 +141,7 @@ class FrameState {
 
   RecordedRun run_;
   const trace::Trace& trace_;
-  const render::FrameSpec& spec_;
+  const pictures::FrameSpec& spec_;
   bool point_out_refined_;  ///< frames follow refinements, so that the last one is the new part
   trace::Cursor cursor_;
   std::vector<trace::PassSummary> passes_;  ///< of a construction

@@ -38,9 +38,9 @@ class FrameJob {
  public:
   /// Lays out the texts of all frames, which determine the size of the pictures; `events` is not empty.
   /// Throws InputError if they do not fit.
-  FrameJob(const RecordedRun& p, const render::FrameSpec& spec, const std::vector<trace::EventId>& events,
+  FrameJob(const RecordedRun& p, const pictures::FrameSpec& spec, const std::vector<trace::EventId>& events,
            const pictures::Framing* framing = nullptr)
-      : state(p, spec, spec.at != render::FrameSpec::At::step),
+      : state(p, spec, spec.at != pictures::FrameSpec::At::step),
         look_(spec),
         framing_(framing != nullptr ? *framing : frame_sequence(p, spec)),
         overlays_(overlays_of(state, events, p.title)) {
@@ -62,10 +62,10 @@ class FrameJob {
   /// Draws the views of the current state as frame i. `plain`: see FrameState::scene().
   render::Image picture(std::size_t i, bool plain = false) {
     std::vector<pictures::Panel> panels;
-    for (const render::Look::View& view : look_.views) {
+    for (const pictures::Look::View& view : look_.views) {
       // A panel of a montage is looked at alone: without a contact it shows where the bodies are nearest.
       std::vector<Eigen::Vector3d> nearest;
-      if (plain && view.camera == render::FrameSpec::Camera::contact && !state.in_contact() &&
+      if (plain && view.camera == pictures::FrameSpec::Camera::contact && !state.in_contact() &&
           state.reps().size() == 2)
         nearest =
             nearest_points({*state.reps()[0], state.pose(Side::a), *state.reps()[1], state.pose(Side::b)});
@@ -119,7 +119,7 @@ class FrameJob {
   FrameState state;
 
  private:
-  render::DrawList list(const render::Look::View& view, bool plain) const {
+  render::DrawList list(const pictures::Look::View& view, bool plain) const {
     return state.scene(view.wrapper, plain).list;
   }
   /// Returns the share of the sequence that has passed at frame i, for orbits.
@@ -127,7 +127,7 @@ class FrameJob {
     return overlays_.size() > 1 ? static_cast<double>(i) / static_cast<double>(overlays_.size() - 1) : 0;
   }
 
-  render::Look look_;
+  pictures::Look look_;
   pictures::Framing framing_;
   std::vector<render::Overlay> overlays_;
   render::PixelRect place_;
@@ -139,7 +139,7 @@ struct Montage {
   std::vector<render::Panel> panels;
   std::vector<std::string> svgs;  ///< for panels with one view; else empty
 
-  std::vector<std::string> write(const RecordedRun& p, const render::FrameSpec& spec,
+  std::vector<std::string> write(const RecordedRun& p, const pictures::FrameSpec& spec,
                                  const std::string& folder, const render::PngOptions& png,
                                  render::FrameWriter& writer) const {
     render::MontageOptions options;
@@ -173,9 +173,9 @@ void write_svgs(const std::vector<std::string>& views, const std::string& name) 
 }
 
 /// Throws InputError for colours or boxes that need a recorded tree traversal if there is none.
-void check_colours(const RecordedRun& recorded, const render::FrameSpec& spec) {
-  if (render::needed_level(spec) == EventLevel::faces) return;
-  const std::string what = render::needed_level(spec.colour_by) == EventLevel::faces
+void check_colours(const RecordedRun& recorded, const pictures::FrameSpec& spec) {
+  if (pictures::needed_level(spec) == EventLevel::faces) return;
+  const std::string what = pictures::needed_level(spec.colour_by) == EventLevel::faces
                                ? std::string("boxes of tree nodes")
                                : "colours by " + std::string(name_of(spec.colour_by));
   if (recorded.reps.size() != 2)
@@ -199,14 +199,14 @@ const std::vector<CollideResult>& results_of(const RecordedRun& recorded) {
   return recorded.results != nullptr ? *recorded.results : none;
 }
 
-void check_views(const std::vector<render::Look::View>& views, int dim) {
+void check_views(const std::vector<pictures::Look::View>& views, int dim) {
   if (dim == 2 && std::any_of(views.begin(), views.end(), [](const auto& view) { return view.directed; }))
     throw InputError(
         "--from, --up, --projection and --orbit: expected 3D bodies, found 2D bodies, which are always drawn "
         "from above; use --look-at and --zoom");
 }
 
-void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec) {
+void check_frames(const RecordedRun& recorded, const pictures::FrameSpec& spec) {
   check_views(spec.views, recorded.reps[0]->dim());
   static_cast<void>(record::moments(spec, *recorded.trace));
   if (spec.svg && recorded.reps[0]->dim() != 2)
@@ -215,13 +215,13 @@ void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec) {
   check_frame_size(spec);
 }
 
-void check_frame_size(const render::Look& spec) {
+void check_frame_size(const pictures::Look& spec) {
   // Pictures are drawn in twice the width and height, in buffers that Mesa limits to less than 2 GiB.
   constexpr int kMax = 8192, kMaxPixels = 48'000'000;
-  render::Look in_file = spec;
+  pictures::Look in_file = spec;
   pictures::to_pixels(in_file);
   if (in_file.width <= kMax && in_file.height <= kMax && in_file.width * in_file.height <= kMaxPixels) return;
-  const auto text = [](const render::Look& of) {
+  const auto text = [](const pictures::Look& of) {
     return std::to_string(of.width) + "x" + std::to_string(of.height);
   };
   const bool scaled = in_file.width != spec.width;
@@ -234,7 +234,7 @@ void check_frame_size(const render::Look& spec) {
 namespace {
 
 /// Returns the specification with sizes in pixels and, if it gives none, the view that a thin body needs.
-render::FrameSpec completed(render::FrameSpec spec, const RecordedRun& recorded) {
+pictures::FrameSpec completed(pictures::FrameSpec spec, const RecordedRun& recorded) {
   pictures::to_pixels(spec);
   if (const auto from = view_of_thin_body(recorded, spec)) spec.views.emplace_back().from = *from;
   return spec;
@@ -263,10 +263,10 @@ std::vector<std::size_t> panels_of(const RecordedRun& recorded, const std::vecto
 
 }  // namespace
 
-std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& given,
+std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const pictures::FrameSpec& given,
                                        const record::ProgressReport& progress,
                                        const pictures::Framing* framing) {
-  const render::FrameSpec spec = completed(given, recorded);
+  const pictures::FrameSpec spec = completed(given, recorded);
   std::vector<PaintedFrame> out;
   const std::vector<trace::EventId> events = record::moments(spec, *recorded.trace);
   if (events.empty()) return out;
@@ -279,11 +279,11 @@ std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render
   return out;
 }
 
-DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& given,
+DrawnFrames draw_frames(const RecordedRun& recorded, const pictures::FrameSpec& given,
                         const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const record::ProgressReport& progress) {
-  const render::FrameSpec spec = completed(given, recorded);
+  const pictures::FrameSpec spec = completed(given, recorded);
   DrawnFrames out;
   const std::vector<trace::EventId> events = record::moments(spec, *recorded.trace);
   std::optional<FrameJob> laid_out;  // before any file is written: frames may be too small

@@ -65,22 +65,23 @@ struct PaintedFrame {
 };
 
 /// Throws InputError if frames exceed the maximum number of pixels.
-void check_frame_size(const render::Look& spec);
+void check_frame_size(const pictures::Look& spec);
 /// Throws InputError for views that bodies of this dimension cannot have.
-void check_views(const std::vector<render::Look::View>& views, int dim);
+void check_views(const std::vector<pictures::Look::View>& views, int dim);
 /// Throws InputError for frames that cannot be drawn: of events that do not exist, as SVG in 3D, or too
 /// large.
-void check_frames(const RecordedRun& recorded, const render::FrameSpec& spec);
+void check_frames(const RecordedRun& recorded, const pictures::FrameSpec& spec);
 
 /// Draws the same frames as draw_frames(), in memory, without montage or SVG. `framing` replaces the run's
 /// own framing.
-std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const render::FrameSpec& spec,
+std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const pictures::FrameSpec& spec,
                                        const record::ProgressReport& progress,
                                        const pictures::Framing* framing = nullptr);
 
 /// Draws frames to folder/frames/ and, if requested, folder/montage.png with folder/caption.txt; if there are
 /// certificates of separation, the last one to folder/separation.png. Writes `text` into every frame's file.
-DrawnFrames draw_frames(const RecordedRun& recorded, const render::FrameSpec& spec, const std::string& folder,
+DrawnFrames draw_frames(const RecordedRun& recorded, const pictures::FrameSpec& spec,
+                        const std::string& folder,
                         const std::vector<std::pair<std::string, std::string>>& text,
                         const record::ProgressReport& progress);
 

@@ -59,7 +59,7 @@ std::vector<Vector3d> contacts_of(const RecordedRun& p) {
 /// Returns the points that a body shows: those of all its wrappers, with regions moved if it is exploded; or
 /// those of the isolated regions, with some room around them if the rest is drawn.
 std::vector<Vector3d> shown_points(const LrbRep& rep, const std::vector<RegionId>& isolated, bool alone,
-                                   const render::FrameSpec& spec) {
+                                   const pictures::FrameSpec& spec) {
   std::vector<Vector3d> out;
   if (alone) {
     for (const RegionId r : isolated)
@@ -180,17 +180,17 @@ Vector3d min_hidden_of(const RecordedRun& recorded, const std::vector<Vector3d>&
 }
 
 /// Returns true if a close-up of the contacts would show almost as much as a view of both bodies.
-bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& close_up) {
+bool close_up_is_whole(const RecordedRun& recorded, const pictures::Look::View& close_up) {
   const std::size_t step = last_contact(recorded);
   if (step >= recorded.trace->steps.size() || recorded.reps[0]->dim() != 3) return false;
   constexpr double kCloser = 1.8;  // minimum magnification of a close-up
   pictures::Framing framing;
   framing.points = points_at(recorded, step);
   framing.contacts = contacts_of(recorded);
-  render::Look::View whole = close_up;
-  whole.camera = render::Look::Camera::scene;
+  pictures::Look::View whole = close_up;
+  whole.camera = pictures::Look::Camera::scene;
   const Eigen::AlignedBox3d box = render::bounds(framing.points);
-  const auto unit = [&](const render::Look::View& view) {
+  const auto unit = [&](const pictures::Look::View& view) {
     const render::Camera camera = pictures::camera_for(view, framing, kWidth, kHeight, 0);
     return render::Projection(camera, kWidth, kHeight, box).unit_per_pixel(camera.target);
   };
@@ -199,12 +199,12 @@ bool close_up_is_whole(const RecordedRun& recorded, const render::Look::View& cl
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& p, const render::Look& look) {
+std::optional<Eigen::Vector3d> view_of_thin_body(const RecordedRun& p, const pictures::Look& look) {
   if (!look.views.empty() || p.reps.size() != 1 || p.reps[0]->dim() != 3 || p.trace->steps.empty()) return {};
   constexpr double kThin = 0.25;
   const Eigen::AlignedBox3d box = pictures::box_of(*p.reps[0], p.trace->steps[0].pose_a);
   if (box.isEmpty()) return {};
-  const Eigen::Vector3d size = box.sizes(), up = render::Look::View{}.up;
+  const Eigen::Vector3d size = box.sizes(), up = pictures::Look::View{}.up;
   int thinnest = 0, vertical = 0;
   const double least = size.minCoeff(&thinnest);
   up.cwiseAbs().maxCoeff(&vertical);
@@ -222,7 +222,7 @@ std::vector<Vector3d> nearest_points(const pictures::PosedBodies& bodies) {
   return {found.witness[0].point, found.witness[1].point};
 }
 
-pictures::Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& spec) {
+pictures::Framing frame_sequence(const RecordedRun& p, const pictures::FrameSpec& spec) {
   const bool regions_alone = !(spec.isolate[0].empty() && spec.isolate[1].empty());
   pictures::Framing f;
   f.dim = p.reps[0]->dim();
@@ -234,7 +234,7 @@ pictures::Framing frame_sequence(const RecordedRun& p, const render::FrameSpec& 
   }
   f.contacts = contacts_of(p);
   const bool closes_up = std::any_of(spec.views.begin(), spec.views.end(), [](const auto& view) {
-    return view.camera == render::FrameSpec::Camera::contact;
+    return view.camera == pictures::FrameSpec::Camera::contact;
   });
   if (f.contacts.empty() && closes_up && p.reps.size() == 2 && !p.trace->steps.empty()) {
     const trace::Step& s =
@@ -266,24 +266,24 @@ Vector3d min_hidden(const RecordedRun& recorded, const Vector3d& up, const Vecto
   return min_hidden_of(recorded, candidates, up, candidates.front());
 }
 
-std::vector<render::FrameSpec::View> whole_and_contact(const std::vector<render::FrameSpec::View>& as) {
-  render::FrameSpec::View whole, contact;
-  if (!as.empty() && as[0].camera != render::FrameSpec::Camera::fixed) {
+std::vector<pictures::FrameSpec::View> whole_and_contact(const std::vector<pictures::FrameSpec::View>& as) {
+  pictures::FrameSpec::View whole, contact;
+  if (!as.empty() && as[0].camera != pictures::FrameSpec::Camera::fixed) {
     whole.from = contact.from = as[0].from;
     whole.up = contact.up = as[0].up;
     whole.orthographic = contact.orthographic = as[0].orthographic;
   }
   whole.title = "Overview with wrappers";
   contact.title = "Contact without wrappers";
-  contact.camera = render::FrameSpec::Camera::contact;
+  contact.camera = pictures::FrameSpec::Camera::contact;
   contact.wrapper = false;
   return {whole, contact};
 }
 
-void widen_close_ups(const RecordedRun& recorded, std::vector<render::Look::View>& views) {
-  for (render::Look::View& view : views) {
-    if (view.camera != render::Look::Camera::contact || !close_up_is_whole(recorded, view)) continue;
-    view.camera = render::Look::Camera::scene;
+void widen_close_ups(const RecordedRun& recorded, std::vector<pictures::Look::View>& views) {
+  for (pictures::Look::View& view : views) {
+    if (view.camera != pictures::Look::Camera::contact || !close_up_is_whole(recorded, view)) continue;
+    view.camera = pictures::Look::Camera::scene;
     if (!view.wrapper) view.title = "Without wrappers";
   }
 }

@@ -368,8 +368,8 @@ const std::string& name_of(const Source& source) {
   return std::visit([](const auto& s) -> const std::string& { return s.name; }, source);
 }
 
-const render::FrameSpec& frames_of(const Source& source) {
-  return std::visit([](const auto& s) -> const render::FrameSpec& { return s.frames; }, source);
+const pictures::FrameSpec& frames_of(const Source& source) {
+  return std::visit([](const auto& s) -> const pictures::FrameSpec& { return s.frames; }, source);
 }
 
 namespace {

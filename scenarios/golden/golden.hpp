@@ -85,7 +85,7 @@ struct GoldenImage {
 /// A capture of another engine, which is read when its golden is tested. Its golden has the file's name.
 struct CapturedQueries {
   std::string name, file;
-  render::FrameSpec frames;
+  pictures::FrameSpec frames;
 };
 
 /// The file that a golden belongs to.
@@ -94,7 +94,7 @@ using Source = std::variant<spec::Scenario, CapturedQueries>;
 /// Opens a scenario, a shipped one by name, or a file; or a capture. Throws InputError.
 Source open_source(const std::string& name_or_path);
 const std::string& name_of(const Source& source);
-const render::FrameSpec& frames_of(const Source& source);
+const pictures::FrameSpec& frames_of(const Source& source);
 
 struct Golden {
   std::string name;  ///< name of the scenario and of its folder

@@ -76,26 +76,26 @@ std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector
   return out;
 }
 
-render::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
-  render::FrameSpec spec;
-  spec.at = render::FrameSpec::At::events;
+pictures::FrameSpec spec_for(const GoldenRun& run, bool close_up) {
+  pictures::FrameSpec spec;
+  spec.at = pictures::FrameSpec::At::events;
   spec.width = kWidth;
   spec.height = kHeight;
-  render::Look::View whole;
+  pictures::Look::View whole;
   whole.from = run.scenario.frames.first_view().from;
   whole.up = run.scenario.frames.first_view().up;
   whole.title = "Whole, with wrappers";
   spec.views = {whole};
   if (close_up) {
-    render::Look::View close = whole;
-    close.camera = render::Look::Camera::contact;
+    pictures::Look::View close = whole;
+    close.camera = pictures::Look::Camera::contact;
     close.title = "Close up, with wrappers";
     spec.views.push_back(close);
   }
   return spec;
 }
 
-frames::PaintedFrame paint(const GoldenRun& run, const SideShown& side, render::FrameSpec spec,
+frames::PaintedFrame paint(const GoldenRun& run, const SideShown& side, pictures::FrameSpec spec,
                            const pictures::Framing& framing, const std::string& title) {
   frames::RecordedRun p = recorded_run_of(run);
   p.title = run.scenario.name + ", " + title;
@@ -137,7 +137,7 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
       for (const Eigen::Vector3d& p : subject_of(side, reps)) framing.contacts.push_back(p);
     if (const CollideResult* result = find_result(run, *step); framing.contacts.empty() && result != nullptr)
       framing.contacts = render::contact_points(result->regions);
-    const render::FrameSpec spec = spec_for(run, !framing.contacts.empty());
+    const pictures::FrameSpec spec = spec_for(run, !framing.contacts.empty());
     frames::PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing, "approved"),
                                         paint(run, sides[1], spec, framing, "found")};
     out.expected = std::move(pictures[0].image);

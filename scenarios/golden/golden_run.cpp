@@ -184,7 +184,7 @@ std::string to_text(const render::Camera& c) {
 
 }  // namespace
 
-void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames) {
+void set_default_size(GoldenSpec& spec, const pictures::FrameSpec& frames) {
   const double shape = double{1} * frames.height / frames.width;
   const double height = std::clamp(kDefaultWidth * shape, double{kMinHeight}, double{kMaxHeight});
   spec.height = static_cast<int>(std::lround(height));
@@ -194,7 +194,7 @@ void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames) {
 namespace {
 
 /// Selects the pictures of a golden.
-void set_pictures(render::FrameSpec& frames, const GoldenSpec& spec) {
+void set_pictures(pictures::FrameSpec& frames, const GoldenSpec& spec) {
   frames.width = spec.width;
   frames.height = spec.height;
   frames.dpi = 0;

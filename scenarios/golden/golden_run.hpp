@@ -44,7 +44,7 @@ std::string camera_text(const std::vector<render::Camera>& cameras);
 
 /// Sets the default size of a golden's pictures if none is given: of the scenario's shape, small enough to be
 /// kept and large enough for their text.
-void set_default_size(GoldenSpec& spec, const render::FrameSpec& frames);
+void set_default_size(GoldenSpec& spec, const pictures::FrameSpec& frames);
 
 // Compares a run's answers with the approved ones, step by step, regardless of the cause.
 

@@ -145,7 +145,7 @@ render::Image draw_heat_maps(const PaperPair& pair, const CloseUp& easiest, cons
   }
   std::vector<pictures::Panel> panels;
   for (const PanelView& view : views) panels.push_back(panel_of(pair, view, most));
-  render::Look look;
+  pictures::Look look;
   look.width = kPanelWidth;
   look.height = kPanelHeight;
   render::MontageOptions options;

@@ -388,14 +388,14 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
   return out;
 }
 
-render::FrameSpec captured_frames() {
-  render::FrameSpec out;
+pictures::FrameSpec captured_frames() {
+  pictures::FrameSpec out;
   out.views = frames::whole_and_contact();
   out.views[0].wrapper = false;
   out.views[0].title = "Overview";
   out.views[1].title = "Contact";
   out.most = 12;
-  out.colour_by = render::FrameSpec::ColourBy::box_tests;
+  out.colour_by = pictures::FrameSpec::ColourBy::box_tests;
   return out;
 }
 

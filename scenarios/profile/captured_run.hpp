@@ -76,7 +76,7 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
 std::string mesh_name(const capture::Capture& capture, std::uint32_t tree);
 
 /// Returns the pictures of a captured run: the bodies and the contact, side by side.
-render::FrameSpec captured_frames();
+pictures::FrameSpec captured_frames();
 /// Returns the scenario of a pair's run: its title, its pictures and the hash of what defines it. `file`: of
 /// the capture.
 spec::Scenario captured_scenario(const capture::Capture& capture, const TreePair& pair,

@@ -58,7 +58,7 @@ render::Image draw_waste(std::span<const WasteMap> maps) {
       panels.push_back(panel_of(body.rep, map, scale, from_behind));
   }
   constexpr int kSheetWidth = 1160, kHeight = 300;  // one row, so that all sides of both engines are compared
-  render::Look look;
+  pictures::Look look;
   look.width = kSheetWidth / static_cast<int>(panels.size());
   look.height = kHeight;
   render::MontageOptions options;

@@ -48,7 +48,7 @@ std::vector<EventId> pass_ends(const trace::Trace& trace) {
   return out;
 }
 
-std::vector<EventId> listed(const render::FrameSpec& spec, const trace::Trace& trace) {
+std::vector<EventId> listed(const pictures::FrameSpec& spec, const trace::Trace& trace) {
   std::vector<EventId> out = spec.events;
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -85,28 +85,28 @@ EventId last_event(const trace::Trace& trace, std::size_t step) {
   return static_cast<EventId>(end - 1);
 }
 
-std::vector<EventId> moments(const render::FrameSpec& spec, const trace::Trace& trace) {
+std::vector<EventId> moments(const pictures::FrameSpec& spec, const trace::Trace& trace) {
   if (trace.events.empty()) return {};
   std::vector<EventId> all;
   switch (spec.at) {
-    case render::FrameSpec::At::none:
+    case pictures::FrameSpec::At::none:
       return {};
-    case render::FrameSpec::At::step:
+    case pictures::FrameSpec::At::step:
       all = every(step_ends(trace), spec.every);
       break;
-    case render::FrameSpec::At::refinement:
+    case pictures::FrameSpec::At::refinement:
       all = every(wrapper_changes(trace), spec.every);
       break;
-    case render::FrameSpec::At::pass:
+    case pictures::FrameSpec::At::pass:
       all = every(pass_ends(trace), spec.every);
       break;
-    case render::FrameSpec::At::every: {
+    case pictures::FrameSpec::At::every: {
       std::vector<EventId> events(trace.events.size());
       for (EventId e = 0; e < events.size(); ++e) events[e] = e;
       all = every(events, spec.every);
       break;
     }
-    case render::FrameSpec::At::events:
+    case pictures::FrameSpec::At::events:
       all = listed(spec, trace);
       break;
   }

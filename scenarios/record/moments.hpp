@@ -11,7 +11,7 @@ namespace lrb::record {
 
 /// Returns the events after which pictures are taken, ascending, at most spec.most of them. Throws InputError
 /// for events that the trace does not have, and for passes if it is not a construction.
-std::vector<trace::EventId> moments(const render::FrameSpec& spec, const trace::Trace& trace);
+std::vector<trace::EventId> moments(const pictures::FrameSpec& spec, const trace::Trace& trace);
 
 /// Returns the index of the size that differs least from this one, as a ratio.
 std::size_t nearest_by_ratio(std::span<const double> sizes, double size);

@@ -176,7 +176,7 @@ trace::RecorderSettings recorder_settings(const spec::Scenario& s) {
   settings.request = s.request;
   settings.clock = s.clock;
   settings.event_cap = s.event_cap;
-  settings.level = std::max(s.events, render::needed_level(s.frames));
+  settings.level = std::max(s.events, pictures::needed_level(s.frames));
   settings.coherent = s.more.coherent;
   return settings;
 }

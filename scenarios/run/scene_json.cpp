@@ -468,9 +468,9 @@ std::string too_large_text(std::size_t faces, const SceneLimits& limits) {
 /// Returns the viewpoint of the first view of the frames, at which the page's view starts. Returns null if
 /// none is given.
 json view_json(const trace::TraceHeader& header) {
-  const std::vector<render::FrameSpec::View> views =
+  const std::vector<pictures::FrameSpec::View> views =
       spec::read_pictures(header.pictures, header.scenario).views;
-  if (views.empty() || views[0].camera == render::FrameSpec::Camera::fixed) return nullptr;
+  if (views.empty() || views[0].camera == pictures::FrameSpec::Camera::fixed) return nullptr;
   const auto vector = [](const Eigen::Vector3d& v) { return json({v.x(), v.y(), v.z()}); };
   return {
       {"from", vector(views[0].from)}, {"up", vector(views[0].up)}, {"orthographic", views[0].orthographic}};

@@ -48,7 +48,7 @@ struct BodySpec {
   Pose pose;  ///< initial pose, and the constant one if it does not move
 };
 
-using render::FrameSpec;
+using pictures::FrameSpec;
 
 /// Further queries at each step, and whether steps are coherent.
 struct StepQuestions {

@@ -26,7 +26,7 @@ TEST_CASE("a long body is viewed from its long side, whatever the up direction")
 }
 
 TEST_CASE("a thin upright body is drawn from its broad side, unless a view is given") {
-  const auto view = [](const Vector3d& size, const render::Look& look = {}) {
+  const auto view = [](const Vector3d& size, const pictures::Look& look = {}) {
     Mesh mesh = shapes::box();
     for (Vector3d& v : mesh.vertices) v = v.cwiseProduct(size);
     const LrbRep rep = LrbRep::without_regions(mesh, true, false);
@@ -42,7 +42,7 @@ TEST_CASE("a thin upright body is drawn from its broad side, unless a view is gi
   for (const auto& from : {*plate, *rod}) CHECK(std::abs(from.x()) > 2 * std::abs(from.y()));
   CHECK_FALSE(view({1, 2, 2}));
   CHECK_FALSE(view({2, 2, 0.1}));  // lies flat: seen from above by default
-  render::Look given;
+  pictures::Look given;
   given.views.emplace_back();
   CHECK_FALSE(view({0.1, 2, 2}, given));
 }

@@ -244,7 +244,7 @@ TEST_CASE("an inset is below its panel, with a frame; a callout in it is not in 
     CHECK(inset.max().y() <= layout.height);
     CHECK(inset.sizes().x() == doctest::Approx(inset.sizes().y()));
   }
-  render::FrameSpec print;
+  pictures::FrameSpec print;
   print.style = render::StyleName::print;
   const Figure plain = draw_figure(s.run, print, spec, record::kSilent);
   spec.insets = {parse_inset("b:contact:3"), parse_inset("a:region:b0")};

@@ -13,7 +13,7 @@ using namespace lrb;
 
 namespace {
 
-using ColourPer = render::FrameSpec::ColourPer;
+using ColourPer = pictures::FrameSpec::ColourPer;
 
 record::Recording rocks() {
   spec::Scenario s = test::approach("rock", 6);

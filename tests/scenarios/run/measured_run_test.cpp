@@ -54,7 +54,7 @@ std::string note_on_depth(const record::Recording& r) {
 }
 
 /// The state at the end of a step.
-frames::FrameState at_end(const record::Recording& r, std::size_t step, const render::FrameSpec& spec) {
+frames::FrameState at_end(const record::Recording& r, std::size_t step, const pictures::FrameSpec& spec) {
   frames::FrameState state(played(r), spec, false);
   state.seek(r.trace.steps[step].first_event + static_cast<trace::EventId>(r.trace.events_of(step).size()) -
              1);
@@ -93,7 +93,7 @@ TEST_CASE("measured runs: each step has its distance and clash, and the contact 
 
 TEST_CASE("measured runs: frames show closest points and separation vectors with their lengths") {
   const record::Recording r = recorded(R"({"distance": true, "clash": true})"), plain = recorded("{}");
-  const render::FrameSpec spec;
+  const pictures::FrameSpec spec;
   const frames::FrameState apart = at_end(r, 0, spec), met = at_end(r, 6, spec);
   CHECK(draws_line(apart.scene().list, pictures::kGapColour));
   CHECK_FALSE(draws_line(apart.scene().list, pictures::kSeparationColour));
@@ -129,7 +129,7 @@ TEST_CASE("measured runs: distances of points that move with B are those of the 
   CHECK(inside > 0);
   CHECK(trace::trace_from_json(trace::trace_to_json(r.trace), "t.json").steps.back().result ==
         r.trace.steps.back().result);
-  const render::FrameSpec spec;
+  const pictures::FrameSpec spec;
   const frames::FrameState last = at_end(r, r.trace.steps.size() - 1, spec);
   CHECK(last.caption().find(" of 4 points inside, smallest distance -") != std::string::npos);
   CHECK(draws_line(last.scene().list, render::palette::kContact));
@@ -163,7 +163,7 @@ TEST_CASE("measured runs: near pairs and contact manifolds of each step are thos
   CHECK(kept_ids > 0);
   CHECK_FALSE(plain.trace.steps[0].result.near.has_value());
   CHECK_FALSE(plain.trace.steps[0].result.manifold.has_value());
-  const render::FrameSpec spec;
+  const pictures::FrameSpec spec;
   const frames::FrameState met = at_end(r, 6, spec);
   CHECK(draws_line(met.scene().list, pictures::kSeparationColour));
   CHECK(met.caption().find(" pairs of faces within 0.6, ") != std::string::npos);

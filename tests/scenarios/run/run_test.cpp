@@ -43,16 +43,16 @@ TEST_CASE("only expectations that are not met are reported") {
 
 TEST_CASE("moments: first and last are always included, within the limit") {
   const record::Recording r = record::record(test::approach("ball", 4), record::kSilent);
-  render::FrameSpec spec;
+  pictures::FrameSpec spec;
   CHECK(record::moments(spec, r.trace).size() == 8);
   spec.most = 3;
   const std::vector<trace::EventId> three = record::moments(spec, r.trace);
   REQUIRE(three.size() == 3);
   CHECK(three.front() == record::last_event(r.trace, 0));
   CHECK(three.back() == r.trace.events.size() - 1);
-  spec.at = render::FrameSpec::At::none;
+  spec.at = pictures::FrameSpec::At::none;
   CHECK(record::moments(spec, r.trace).empty());
-  spec.at = render::FrameSpec::At::refinement;
+  spec.at = pictures::FrameSpec::At::refinement;
   spec.most = 100'000;
   for (const trace::EventId e : record::moments(spec, r.trace))
     CHECK((r.trace.events[e].kind == EventKind::refine || r.trace.events[e].kind == EventKind::step));

@@ -79,10 +79,10 @@ TEST_CASE("a scenario's query has the fields and enumerators of requests") {
   CHECK(at("/properties/show") == words<spec::Show>());
   CHECK(at("/properties/trace/properties/clock") == words<trace::Clock>());
   CHECK(at("/properties/expect/items/properties/relation") == words<Relation>());
-  CHECK(at("/definitions/frames/properties/at") == words<render::FrameSpec::At>());
-  CHECK(at("/definitions/frames/properties/colour_by") == words<render::FrameSpec::ColourBy>());
-  CHECK(at("/definitions/frames/properties/colour_per") == words<render::FrameSpec::ColourPer>());
-  CHECK(at("/definitions/view/properties/camera") == words<render::FrameSpec::Camera>());
+  CHECK(at("/definitions/frames/properties/at") == words<pictures::FrameSpec::At>());
+  CHECK(at("/definitions/frames/properties/colour_by") == words<pictures::FrameSpec::ColourBy>());
+  CHECK(at("/definitions/frames/properties/colour_per") == words<pictures::FrameSpec::ColourPer>());
+  CHECK(at("/definitions/view/properties/camera") == words<pictures::FrameSpec::Camera>());
   json kinds = json::array();
   for (const json& kind : document["definitions"]["motion"]["oneOf"])
     kinds.push_back(kind["properties"]["kind"]["const"]);

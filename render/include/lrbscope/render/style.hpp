@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/observe.hpp>
 
@@ -162,6 +163,11 @@ Rgba category(std::uint32_t index);
 namespace lrb::render {
 
 enum class StyleName : std::uint8_t { screen, print, dark };
+constexpr auto enum_names(StyleName) {
+  using Word = StyleName;
+  return std::to_array<EnumName<Word>>(
+      {{Word::screen, "screen"}, {Word::print, "print"}, {Word::dark, "dark"}});
+}
 
 struct Style {
   Rgba paper;                  ///< the background, which pale colours are mixed towards
