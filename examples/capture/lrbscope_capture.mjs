@@ -1,11 +1,12 @@
-// Records collision queries in JavaScript, in the format of lrbscope_capture.h. With shapecast() of three-mesh-bvh:
+// Records collision queries in JavaScript, in the format of lrbscope_capture.h. With shapecast() of
+// three-mesh-bvh:
 //
 //   const capture = new Capture("three-mesh-bvh 0.9"), cow = capture.meshBVH("cow", bvh);
-//   const box = capture.meshBVH("box", new MeshBVH(new THREE.BoxGeometry())); // for pictures; tested as a whole
-//   capture.begin(SHAPE, cow, null, box, null);
-//   const met = bvh.shapecast({
-//     intersectsBounds(box, isLeaf, score, depth, node) { const is = ...; capture.node(node, 0, is); return is; },
-//     intersectsTriangle(triangle, number) { const is = ...; capture.prim(number, 0, is); return is; },
+//   const box = capture.meshBVH("box", new MeshBVH(new THREE.BoxGeometry())); // for pictures; tested as a
+//   whole capture.begin(SHAPE, cow, null, box, null); const met = bvh.shapecast({
+//     intersectsBounds(box, isLeaf, score, depth, node) { const is = ...; capture.node(node, 0, is); return
+//     is; }, intersectsTriangle(triangle, number) { const is = ...; capture.prim(number, 0, is); return is;
+//     },
 //   });
 //   capture.end(met ? INTERSECTING : SEPARATE, met ? 1 : 0);
 //   fs.writeFileSync("run.lrbcap", capture.close()); // or a Blob to download
@@ -36,18 +37,22 @@ export class Capture {
   constructor(engine) {
     this.#chunk("HEAD", utf8(engine));
     this.#chunk("SYNC", wallClock());
-    for (const begin = performance.now(); performance.now() - begin < 1; ) {} // two readings give the length of a tick
+    for (const begin = performance.now(); performance.now() - begin < 1;) {
+    }  // two readings give the length of a tick
     this.#chunk("SYNC", wallClock());
   }
 
-  // Describe a body; they return the number of its tree. nodes: the root first, each { box: least and greatest x, y, z,
-  // children: indices of nodes, prims: triangles }.
+  // Describe a body; they return the number of its tree. nodes: the root first, each { box: least and
+  // greatest x, y, z, children: indices of nodes, prims: triangles }.
   tree(name, vertices, triangles, nodes) {
-    const id = ++this.#trees, text = utf8(name), sizes = [vertices.length / 3, triangles.length / 3, text.length];
-    const ranges = (lists, end = 0) => [u32([0, ...lists.map((list) => (end += list.length))]), u32(lists.flat())];
+    const id = ++this.#trees, text = utf8(name),
+          sizes = [vertices.length / 3, triangles.length / 3, text.length];
+    const ranges =
+        (lists, end = 0) => [u32([0, ...lists.map((list) => (end += list.length))]), u32(lists.flat())];
     this.#chunk("MESH", u32([id, ...sizes]), text, f64(vertices), u32(triangles));
-    this.#chunk("TREE", u32([id, id, 0, nodes.length, AABB, 0, 0, 0]), ...ranges(nodes.map((node) => node.children)),
-      ...ranges(nodes.map((node) => node.prims)), f64(nodes.flatMap((node) => Array.from(node.box))));
+    this.#chunk(
+        "TREE", u32([id, id, 0, nodes.length, AABB, 0, 0, 0]), ...ranges(nodes.map((node) => node.children)),
+        ...ranges(nodes.map((node) => node.prims)), f64(nodes.flatMap((node) => Array.from(node.box))));
     return id;
   }
   meshBVH(name, bvh) {
@@ -61,8 +66,9 @@ export class Capture {
     return this.tree(name, positions(bvh.geometry), corners(bvh.geometry), nodes);
   }
 
-  // Record a query, its tests and its answer. Poses: 3x4 numbers, row by row; null: the identity. Tree 0: any shape,
-  // or a probe, which is a RAY, POINT or BOX with the numbers of LRBCAP_RAY, _POINT or _BOX in place of its pose.
+  // Record a query, its tests and its answer. Poses: 3x4 numbers, row by row; null: the identity. Tree 0: any
+  // shape, or a probe, which is a RAY, POINT or BOX with the numbers of LRBCAP_RAY, _POINT or _BOX in place
+  // of its pose.
   begin(kind, treeA, poseA, treeB, poseB, probe = 0) {
     const head = u32([0, 0, ++this.#queries, kind, treeA, treeB, 0, 0, 1, probe]);
     this.#chunk("QRYB", head, f64(poseA ?? IDENTITY), f64(upTo(12).map((i) => (poseB ?? IDENTITY)[i] ?? 0)));

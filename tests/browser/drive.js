@@ -40,7 +40,8 @@
       most = Math.max(...steps.map(({ result }) => result.pairs)),
       step = steps.find(({ result }) => result.pairs === most).index;
     equal(events.stepNumber(selection.event), step, "opens in the step with most pairs");
-    const later = indices().filter((i) => i > selection.event && events.kind[i] === events.CONTACT && events.stepNumber(i) === step);
+    const later = indices().filter(
+        (i) => i > selection.event && events.kind[i] === events.CONTACT && events.stepNumber(i) === step);
     equal(`${events.kind[selection.event]} ${later}`, `${events.CONTACT} `, "at its last contact");
     check(text("view-caption").includes("contact"), "the caption says so", text("view-caption"));
     const shown = data.frames[parseInt(text("count")) - 1];
@@ -147,10 +148,11 @@
     press("Escape");
     equal(wrappers.sizes.join(), sizes, "Esc undoes it");
     view.draw();
-    const { array } = view.glass.mesh.geometry.attributes.position,
-      ahead = view.camera.camera.getWorldDirection(new THREE.Vector3()),
-      far = (i) => ahead.dot(new THREE.Vector3(...array.subarray(i, i + 3))),
-      depths = Array.from({ length: array.length / 9 }, (_, t) => far(9 * t) + far(9 * t + 3) + far(9 * t + 6));
+    const {array} = view.glass.mesh.geometry.attributes.position,
+          ahead = view.camera.camera.getWorldDirection(new THREE.Vector3()),
+          far = (i) => ahead.dot(new THREE.Vector3(...array.subarray(i, i + 3))),
+          depths =
+              Array.from({length: array.length / 9}, (_, t) => far(9 * t) + far(9 * t + 3) + far(9 * t + 6));
     check(depths.length > 0 && depths.every((d, t) => t === 0 || d <= depths[t - 1] + 1e-3),
         "lids of both bodies are drawn from back to front");
     const depth = () => view.nearest(...at, view.views.flatMap((v) => [v.lids, v.real])), front = depth();
@@ -227,7 +229,10 @@
     check(view.whyMarks.group.children.length > 0, "also in the view");
   }
 
-  /** The proof map fills with the events: in the end every pair is decided, and contacts are those of the step. */
+  /**
+   * The proof map fills with the events: in the end every pair is decided, and contacts are those of the
+   * step.
+   */
   async function mapsAllPairs() {
     const { map } = run,
       step = events.step(firstContact()),
@@ -240,11 +245,14 @@
       return map.cells.pairs - map.counted.sums.subarray(0, 9).reduce((n, x) => n + x, 0);
     };
     tabs.show("Proof map");
-    equal(await undecided(first), run.scene.bodies.reduce((n, b) => n * b.realFaces, 1), "at first the map is one undecided square");
+    equal(
+        await undecided(first), run.scene.bodies.reduce((n, b) => n * b.realFaces, 1),
+        "at first the map is one undecided square");
     const halfway = await undecided((first + last) >> 1);
     check(halfway > 0 && halfway < map.cells.pairs / 2, "it fills", halfway);
     equal(await undecided(last), 0, "in the end each pair is decided");
-    const inStep = indices().filter((i) => events.kind[i] === events.CONTACT && events.step(i) === step).length;
+    const inStep =
+        indices().filter((i) => events.kind[i] === events.CONTACT && events.step(i) === step).length;
     equal(map.counted.sums[7], inStep, "it has the contacts of the step");
     map.point([0.5, 0.5]);
     check(map.text(map.pointed).startsWith("Event "), "and says what decided a place", map.text(map.pointed));
@@ -348,7 +356,9 @@
       check(view.canvas.clientHeight > 0.25 * innerHeight, "beside a tab the view has a quarter of it");
     }
     for (const key of "11") press(key); // opens the first, and closes it
-    equal(`${tabs.shown} ${view.canvas.clientHeight}`, ` ${closed}`, "the tab's key closes it, and the view has the room");
+    equal(
+        `${tabs.shown} ${view.canvas.clientHeight}`, ` ${closed}`,
+        "the tab's key closes it, and the view has the room");
   }
 
   function withoutWebgl() {
@@ -444,7 +454,9 @@
     const caption = text("view-caption");
     check(caption.includes("A (it has no wrapper) and B's outermost wrapper"), "the caption says so");
     const legend = text("legend");
-    check(/A: open.*pseudo faces of B/.test(legend) && !/faces of A/.test(legend), "the legend has no pseudo faces of A", legend);
+    check(
+        /A: open.*pseudo faces of B/.test(legend) && !/faces of A/.test(legend),
+        "the legend has no pseudo faces of A", legend);
     const wanted = new THREE.Vector3(0.5, 0.6, 0.6).normalize();
     check(direction().distanceTo(wanted) < 1e-6, "looks from where frames do", direction().toArray());
     camera.turn(0.7, 0);

@@ -1,5 +1,5 @@
-// Clicks rows of the tables of regions of a comparison of two constructions, and prints "ok ..." or "FAIL ..." for each check of
-// the views beside each other, then "done".
+// Clicks rows of the tables of regions of a comparison of two constructions, and prints "ok ..." or "FAIL
+// ..." for each check of the views beside each other, then "done".
 (function () {
   const { check, equal } = driven,
     views = [...document.querySelectorAll(".views iframe")],

@@ -1,4 +1,5 @@
-// Operates the page of a tree with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, then "done".
+// Operates the page of a tree with mouse and keys, and prints "ok ..." or "FAIL ..." for each check, then
+// "done".
 (function () {
   const { check, equal, press } = driven,
     { treePage } = tree_js,
@@ -6,8 +7,10 @@
     { byId } = dom_js,
     words = (id) => byId(id).textContent;
 
-  /** Returns the number of faces with a point clearly in the volume of a node, which are not marked as below it
-      or in it: none is expected. */
+  /**
+     Returns the number of faces with a point clearly in the volume of a node, which are not marked as below
+     it or in it: none is expected.
+   */
   function unmarkedFaces() {
     const { places } = body.boxes,
       at = places.subarray(12 * treePage.node, 12 * treePage.node + 12),
@@ -23,7 +26,8 @@
       const [p, q, r] = [...body.face(face)].map((v) => [...body.vertices.subarray(3 * v, 3 * v + 3)]);
       let inside = false;
       for (let i = 0; i <= 4; i++)
-        for (let j = 0; i + j <= 4; j++) inside ||= isIn(p.map((x, k) => x + ((q[k] - x) * i) / 4 + ((r[k] - x) * j) / 4));
+        for (let j = 0; i + j <= 4; j++)
+          inside ||= isIn(p.map((x, k) => x + ((q[k] - x) * i) / 4 + ((r[k] - x) * j) / 4));
       unmarked += inside && treePage.kinds[face] === 0;
     }
     return unmarked;
@@ -72,7 +76,8 @@
     check(hit !== null, "the body is in the middle");
     for (const type of ["pointerdown", "click"]) byId("view-canvas").dispatchEvent(new MouseEvent(type, at));
     const { node } = treePage;
-    check(nodes.first[node] <= hit.face && hit.face < nodes.last[node], "a click selects a node with the face");
+    check(
+        nodes.first[node] <= hit.face && hit.face < nodes.last[node], "a click selects a node with the face");
     equal(nodes.children(node).length, 0, "which is a leaf");
     equal(treePage.kinds[hit.face], 2, "and the face is below it");
     press("i");

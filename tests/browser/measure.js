@@ -1,5 +1,6 @@
-// Measures a page in its window: boxes of text that are cut off, stick out, lie on each other or under something, text
-// that hardly differs from its background, invisible drawings. Posts "ok ...", "FAIL ..." and "done" to the top.
+// Measures a page in its window: boxes of text that are cut off, stick out, lie on each other or under
+// something, text that hardly differs from its background, invisible drawings. Posts "ok ...", "FAIL ..." and
+// "done" to the top.
 (async function () {
   const { byId } = dom_js,
     run = typeof scene_js === "undefined" ? null : scene_js.run;
@@ -65,18 +66,23 @@
     // Shapes of an SVG do not contain its text: those painted before it are under it.
     if (element instanceof SVGElement)
       for (const e of stack.slice(0, Math.max(0, start)))
-        if (isShape(e) && e.compareDocumentPosition(element) & Node.DOCUMENT_POSITION_FOLLOWING) layers.unshift(paintOf(e));
+        if (isShape(e) && e.compareDocumentPosition(element) & Node.DOCUMENT_POSITION_FOLLOWING)
+          layers.unshift(paintOf(e));
     return layers.reverse().reduce((below, c) => over(c, below), canvas);
   }
 
   // -- boxes of text
   const path = (e) => {
-    const name = (n) => n.localName + (n.id ? `#${n.id}` : n.classList.length ? `.${[...n.classList].join(".")}` : "");
+    const name = (n) => n.localName +
+        (n.id ? `#${n.id}` :
+             n.classList.length ? `.${[...n.classList].join(".")}` :
+                                  "");
     return [e.parentElement, e].filter(Boolean).map(name).join(" > ");
   };
   const clips = (value) => value === "hidden" || value === "clip";
   const scrolls = (value) => value === "auto" || value === "scroll";
-  const isShown = (e) => e.checkVisibility({ opacityProperty: true, visibilityProperty: true, contentVisibilityAuto: true });
+  const isShown = (e) =>
+      e.checkVisibility({opacityProperty: true, visibilityProperty: true, contentVisibilityAuto: true});
 
   /** Follows a box through all that clips it: {box, cut: who cuts it off, sticky: it may lie over others}. */
   function clipped(element, rect) {
@@ -92,7 +98,8 @@
       if (free || !holds || (e instanceof SVGElement && !(e instanceof SVGSVGElement))) continue;
       const area = e.getBoundingClientRect();
       const slack = 1.5;
-      for (const [low, high, overflow] of [["left", "right", style.overflowX], ["top", "bottom", style.overflowY]]) {
+      for (const [low, high, overflow] of [
+               ["left", "right", style.overflowX], ["top", "bottom", style.overflowY]]) {
         if (!clips(overflow) && !scrolls(overflow)) continue;
         if (clips(overflow) && (box[low] < area[low] - slack || box[high] > area[high] + slack)) cut ||= e;
         box[low] = Math.max(box[low], area[low]);
@@ -106,12 +113,16 @@
     const out = [], walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
     while (walker.nextNode()) {
       const element = walker.currentNode.parentElement, text = walker.currentNode.data.trim();
-      if (!text || element.closest("script, style, noscript, template, option, title, desc") || !isShown(element)) continue;
-      if (element.closest("[inert], .visually-hidden") || styleOf(element).clipPath === "inset(50%)") continue;
+      if (!text || element.closest("script, style, noscript, template, option, title, desc") ||
+          !isShown(element))
+        continue;
+      if (element.closest("[inert], .visually-hidden") || styleOf(element).clipPath === "inset(50%)")
+        continue;
       const range = document.createRange();
       range.selectNodeContents(walker.currentNode);
       for (const rect of range.getClientRects())
-        if (rect.width > 0.5 && rect.height > 0.5) out.push({ element, text: text.slice(0, 40), rect, range, node: walker.currentNode });
+        if (rect.width > 0.5 && rect.height > 0.5)
+          out.push({element, text: text.slice(0, 40), rect, range, node: walker.currentNode});
     }
     return out;
   }
@@ -124,7 +135,8 @@
       if (cut) fail(`cut off by ${path(cut)}`, `"${t.text}"`);
       const seen = box.right - box.left > 1 && box.bottom - box.top > 1;
       const inDialog = t.element.closest("dialog");
-      if (seen && !inDialog && (box.left < -1 || box.right > width + 1)) fail(`outside the window: ${path(t.element)}`, `"${t.text}"`);
+      if (seen && !inDialog && (box.left < -1 || box.right > width + 1))
+        fail(`outside the window: ${path(t.element)}`, `"${t.text}"`);
       const size = parseFloat(getComputedStyle(t.element).fontSize) * scaleOf(t.element);
       if (seen && size < 9) fail(`letters of ${size.toFixed(1)} pixels: ${path(t.element)}`, `"${t.text}"`);
       if (seen && !sticky) shown.push({ ...t, box });
@@ -133,10 +145,13 @@
     shown.forEach((p, i) => {
       for (let k = i + 1; k < shown.length && shown[k].box.top < p.box.bottom - 2; k++) {
         const q = shown[k];
-        if (p.node === q.node || Boolean(p.element.closest("dialog")) !== Boolean(q.element.closest("dialog"))) continue;
+        if (p.node === q.node ||
+            Boolean(p.element.closest("dialog")) !== Boolean(q.element.closest("dialog")))
+          continue;
         const x = Math.min(p.box.right, q.box.right) - Math.max(p.box.left, q.box.left);
         const y = Math.min(p.box.bottom, q.box.bottom) - q.box.top;
-        if (x > 2 && y > 3) fail(`${path(p.element)} and ${path(q.element)} overlap`, `"${p.text}" and "${q.text}"`);
+        if (x > 2 && y > 3)
+          fail(`${path(p.element)} and ${path(q.element)} overlap`, `"${p.text}" and "${q.text}"`);
       }
     });
   }
@@ -146,10 +161,13 @@
     return matrix ? Math.hypot(matrix.a, matrix.b) : 1;
   }
 
-  /** Scrolls through the page; of each text that comes into the window: contrast, and whether it is on top. Of texts that
-      are styled alike the first few say it. */
+  /**
+     Scrolls through the page; of each text that comes into the window: contrast, and whether it is on top.
+     Of texts that are styled alike the first few say it.
+   */
   function measureContrast(texts) {
-    const step = Math.max(300, innerHeight - 240), left = new Set(texts.filter((t) => !t.element.closest("dialog"))), alike = new Map();
+    const step = Math.max(300, innerHeight - 240),
+          left = new Set(texts.filter((t) => !t.element.closest("dialog"))), alike = new Map();
     const tall = document.documentElement.scrollHeight;
     for (let top = 0; top < tall && left.size; top += step) {
       scrollTo(0, top);
@@ -157,8 +175,11 @@
         if (t.rect.top - scrollY > innerHeight) continue;
         const { box, sticky } = clipped(t.element, t.range.getBoundingClientRect());
         const x = (box.left + Math.min(box.right, box.left + 8)) / 2, y = (box.top + box.bottom) / 2;
-        if (box.right - box.left < 1 || box.bottom - box.top < 1 || y < 1 || y > innerHeight - 1 || x < 0 || x > innerWidth) continue;
-        const key = `${path(t.element)} ${t.element.parentElement.parentElement?.className} ${styleOf(t.element).color}`;
+        if (box.right - box.left < 1 || box.bottom - box.top < 1 || y < 1 || y > innerHeight - 1 || x < 0 ||
+            x > innerWidth)
+          continue;
+        const key = `${path(t.element)} ${t.element.parentElement.parentElement?.className} ${
+            styleOf(t.element).color}`;
         const known = alike.get(key) || 0;
         if (known > 8) left.delete(t);
         if (known > 8) continue;
@@ -178,7 +199,9 @@
   }
   function measureText(t, front, x, y) {
     const { element } = t, style = styleOf(element);
-    const related = front && (front.contains(element) || element.contains(front) || front instanceof SVGElement || t.element.closest("svg"));
+    const related = front &&
+        (front.contains(element) || element.contains(front) || front instanceof SVGElement ||
+         t.element.closest("svg"));
     if (!related) fail(`${path(element)} is covered by ${front ? path(front) : "nothing"}`, `"${t.text}"`);
     if (element.closest(":disabled, [aria-disabled=true]")) return;
     const ink = colour(element instanceof SVGElement ? style.fill : style.color);
@@ -196,10 +219,12 @@
     for (const field of document.querySelectorAll("select, input:not([type=range])")) {
       if (!isShown(field)) continue;
       const style = getComputedStyle(field), select = field.localName === "select";
-      const text = select ? (field.selectedOptions[0] || { text: "" }).text : field.value || field.placeholder;
+      const text = select ? (field.selectedOptions[0] || {text: ""}).text : field.value || field.placeholder;
       pen.font = `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
-      const room = field.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight) - (select ? 14 : 0);
-      if (pen.measureText(text).width > room + 1) fail(`a field cuts off what it holds: ${path(field)}`, `"${text}"`);
+      const room = field.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight) -
+          (select ? 14 : 0);
+      if (pen.measureText(text).width > room + 1)
+        fail(`a field cuts off what it holds: ${path(field)}`, `"${text}"`);
       const ground = behind(field, -1, -1);
       const ink = select || field.value ? style.color : getComputedStyle(field, "::placeholder").color;
       const ratio = contrast(over(colour(ink), ground), ground);
@@ -215,11 +240,15 @@
     for (const key of document.querySelectorAll(".legend i, .swatch, .row span:nth-child(3)")) {
       if (!isShown(key)) continue;
       const style = getComputedStyle(key), ground = behind(key.parentElement, -1, -1);
-      const inks = [style.backgroundColor, style.outlineStyle !== "none" ? style.outlineColor : "", style.borderTopStyle !== "none" ? style.borderTopColor : ""];
+      const inks = [
+        style.backgroundColor, style.outlineStyle !== "none" ? style.outlineColor : "",
+        style.borderTopStyle !== "none" ? style.borderTopColor : ""
+      ];
       if (key.localName === "svg") inks.push(getComputedStyle(key.firstElementChild).fill);
       if (style.backgroundImage !== "none" || key.localName === "span") continue;
       const best = Math.max(...inks.map((ink) => contrast(over(colour(ink), ground), ground)));
-      if (best < 1.25) fail(`a key to a colour is not seen: ${path(key)}`, key.parentElement.textContent.slice(0, 40));
+      if (best < 1.25)
+        fail(`a key to a colour is not seen: ${path(key)}`, key.parentElement.textContent.slice(0, 40));
     }
     if (typeof Chart === "undefined") return;
     for (const chart of Object.values(Chart.instances)) {
@@ -232,8 +261,10 @@
       }
       if (chart.chartArea.width < 0.5 * chart.width) fail("a chart squeezed to the side", path(chart.canvas));
       const { legend } = chart;
-      for (const item of legend && legend.legendHitBoxes && legend.options.display ? legend.legendHitBoxes : [])
-        if (item.left < -1 || item.left + item.width > chart.width + 1 || item.top + item.height > chart.height + 1)
+      for (const item of legend && legend.legendHitBoxes && legend.options.display ? legend.legendHitBoxes :
+                                                                                     [])
+        if (item.left < -1 || item.left + item.width > chart.width + 1 ||
+            item.top + item.height > chart.height + 1)
           fail("a chart's legend is cut off", path(chart.canvas));
     }
   }
@@ -246,18 +277,27 @@
     measureFields();
     measureDrawings();
     const page = document.documentElement;
-    if (page.scrollWidth > page.clientWidth) fail("the page scrolls sideways", `${page.scrollWidth} of ${page.clientWidth} pixels`);
+    if (page.scrollWidth > page.clientWidth)
+      fail("the page scrolls sideways", `${page.scrollWidth} of ${page.clientWidth} pixels`);
   }
 
-  /** The pictures of any page as it opens: their share of the first screen at 1280 pixels. `least`: per cent. */
+  /**
+   * The pictures of any page as it opens: their share of the first screen at 1280 pixels. `least`: per cent.
+   */
   function measureShare(least) {
     if (innerWidth !== 1280) return;
-    const share = [...document.querySelectorAll("canvas, img, iframe, section svg")].filter(isShown).reduce((sum, e) => {
-      const { left, right, top, bottom } = e.getBoundingClientRect();
-      return sum + Math.max(0, Math.min(right, innerWidth) - left) * Math.max(0, Math.min(bottom, innerHeight) - top);
-    }, 0) * 100 / (innerWidth * innerHeight);
+    const share = [...document.querySelectorAll("canvas, img, iframe, section svg")].filter(isShown).reduce(
+                      (sum, e) => {
+                        const {left, right, top, bottom} = e.getBoundingClientRect();
+                        return sum +
+                            Math.max(0, Math.min(right, innerWidth) - left) *
+                            Math.max(0, Math.min(bottom, innerHeight) - top);
+                      },
+                      0) *
+        100 / (innerWidth * innerHeight);
     figures.push(`pictures have ${share.toFixed(0)} % of the first screen`);
-    if (share < least) fail(`pictures have less than ${least} % of the first screen`, `${share.toFixed(1)} %`);
+    if (share < least)
+      fail(`pictures have less than ${least} % of the first screen`, `${share.toFixed(1)} %`);
   }
   /** Nothing is over the view as a page opens; a run's follows the title. */
   function measureView(isRun) {
@@ -268,8 +308,10 @@
       fail("the tools have more than one row", `${rect(byId("tools")).height} pixels`);
     for (const part of document.querySelectorAll("header > *, .tools, .keys, .timeline, .panel, .tabs")) {
       const { left, right, top, bottom } = rect(part);
-      const isOver = Math.min(right, canvas.right) - Math.max(left, canvas.left) > 1 && Math.min(bottom, canvas.bottom) - Math.max(top, canvas.top) > 1;
-      if (isOver) fail(`${path(part)} lies over the view`, `${Math.round(top)} to ${Math.round(bottom)} pixels`);
+      const isOver = Math.min(right, canvas.right) - Math.max(left, canvas.left) > 1 &&
+          Math.min(bottom, canvas.bottom) - Math.max(top, canvas.top) > 1;
+      if (isOver)
+        fail(`${path(part)} lies over the view`, `${Math.round(top)} to ${Math.round(bottom)} pixels`);
     }
   }
 
@@ -280,10 +322,12 @@
       dialog.showModal();
       styles = new Map();
       const texts = textsIn(dialog), area = dialog.getBoundingClientRect();
-      if (area.left < -1 || area.right > innerWidth + 1) fail("a dialog is wider than the window", path(dialog));
+      if (area.left < -1 || area.right > innerWidth + 1)
+        fail("a dialog is wider than the window", path(dialog));
       measureBoxes(texts);
       for (const t of texts) {
-        const ground = behind(t.element, -1, -1), ratio = contrast(over(colour(getComputedStyle(t.element).color), ground), ground);
+        const ground = behind(t.element, -1, -1),
+              ratio = contrast(over(colour(getComputedStyle(t.element).color), ground), ground);
         if (ratio < 4.49) fail(`contrast ${ratio.toFixed(2)} of ${path(t.element)}`, `"${t.text}"`);
       }
       dialog.close();
@@ -297,7 +341,8 @@
       const side = run.events.bodies.findIndex((b) => b.regionCount > 0); // an open body has none
       if (side >= 0) run.selection.pickRegion(side, run.events.bodies[side].regionCount - 1);
     },
-    "at a pair that is explained": () => run.selection.goTo(Math.max(0, run.events.kind.indexOf(run.events.FACE_TEST))),
+    "at a pair that is explained": () =>
+        run.selection.goTo(Math.max(0, run.events.kind.indexOf(run.events.FACE_TEST))),
     "coloured by tests": () => run.controls && run.controls.colourBy("tests"),
     "filtered to nothing": () => {
       byId("filter-region").value = "999999";
@@ -330,6 +375,7 @@
     fail("measure.js", e.stack || e);
   }
   if (complaints.length) fail("the console is not empty", complaints.join("; "));
-  const lines = [...found].map(([what, [where, n]]) => `FAIL ${what}${n > 1 ? `, ${n} times` : ""}: ${where}`);
+  const lines =
+      [...found].map(([what, [where, n]]) => `FAIL ${what}${n > 1 ? `, ${n} times` : ""}: ${where}`);
   top.postMessage({ measured: [...figures, ...lines].join("\n") }, "*");
 })();

@@ -1,5 +1,6 @@
-// Page of mesh_bvh.sh: queries of two MeshBVH with spheres, recorded by lrbscope_capture.mjs. Sends the capture after each query, and at the end
-// what the page found by itself: the extremes of the trees, and the tests of each query with the boxes of the nodes.
+// Page of mesh_bvh.sh: queries of two MeshBVH with spheres, recorded by lrbscope_capture.mjs. Sends the
+// capture after each query, and at the end what the page found by itself: the extremes of the trees, and the
+// tests of each query with the boxes of the nodes.
 import * as THREE from "three";
 import { CONTAINED, MeshBVH, getBVHExtremes } from "three-mesh-bvh";
 import { Capture, INTERSECTING, SEPARATE, SHAPE } from "/lrbscope_capture.mjs";
@@ -20,8 +21,11 @@ function record() {
     found.trees.push({ nodes: nodeCount, leaves: leafNodeCount, depth: depth.max });
     return { bvh, tree: capture.meshBVH(indirect ? "indirect" : "direct", bvh) };
   });
-  const spheres = [[9, 1, true], [1, 0.5, true], [1, 0.5, false], [1.2, 2, false]]; // x of the centre, radius, stops at the first triangle
-  const balls = spheres.map(([, radius]) => capture.meshBVH("ball", new MeshBVH(new THREE.SphereGeometry(radius, 16, 8))));
+  const spheres = [
+    [9, 1, true], [1, 0.5, true], [1, 0.5, false], [1.2, 2, false]
+  ];  // x of the centre, radius, stops at the first triangle
+  const balls = spheres.map(
+      ([, radius]) => capture.meshBVH("ball", new MeshBVH(new THREE.SphereGeometry(radius, 16, 8))));
   for (const { bvh, tree } of knots)
     for (const [i, [x, radius, first]] of spheres.entries()) {
       const sphere = new THREE.Sphere(new THREE.Vector3(x, 0, 0), radius);
@@ -30,7 +34,8 @@ function record() {
       const met = bvh.shapecast({
         boundsTraverseOrder: first ? undefined : (box) => box.distanceToPoint(sphere.center),
         intersectsBounds(box, isLeaf, score, depth, node) {
-          const furthest = box.getCenter(new THREE.Vector3()).sub(sphere.center), size = box.getSize(new THREE.Vector3());
+          const furthest = box.getCenter(new THREE.Vector3()).sub(sphere.center),
+                size = box.getSize(new THREE.Vector3());
           for (const k of "xyz") furthest[k] = Math.abs(furthest[k]) + size[k] / 2;
           const result = furthest.length() <= radius ? CONTAINED : sphere.intersectsBox(box);
           capture.node(node, 0, result);

@@ -1,6 +1,7 @@
-// mesh_bvh_server.mjs FOLDER: serves the files of FOLDER on 127.0.0.1, and opens its page in Chromium by the shell's function `browse`.
-// Appends what the page posts to /capture to the pipe of `lrbscope live`, and writes what it posts to /found to a file. Answers
-// /capture?queries=N after the page of `live`, whose address is in FOLDER/live.log, lists N queries.
+// mesh_bvh_server.mjs FOLDER: serves the files of FOLDER on 127.0.0.1, and opens its page in Chromium by the
+// shell's function `browse`. Appends what the page posts to /capture to the pipe of `lrbscope live`, and
+// writes what it posts to /found to a file. Answers /capture?queries=N after the page of `live`, whose
+// address is in FOLDER/live.log, lists N queries.
 import { spawn } from "child_process";
 import fs from "fs";
 import http from "http";
@@ -20,7 +21,8 @@ async function followed(queries) {
 
 async function answer(request) {
   const url = new URL(request.url, "http://127.0.0.1");
-  if (request.method === "GET") return fs.readFileSync(folder + (url.pathname === "/" ? "/index.html" : url.pathname));
+  if (request.method === "GET")
+    return fs.readFileSync(folder + (url.pathname === "/" ? "/index.html" : url.pathname));
   const body = Buffer.concat(await request.toArray());
   if (url.pathname === "/capture") fs.writeSync(pipe, body);
   else fs.writeFileSync(`${folder}${url.pathname}.json`, body);
@@ -31,12 +33,15 @@ async function answer(request) {
 const server = http.createServer(async (request, response) => {
   try {
     const content = await answer(request);
-    response.setHeader("Content-Type", /js$/.test(request.url) ? "text/javascript" : "text/html").end(content);
+    response.setHeader("Content-Type", /js$/.test(request.url) ? "text/javascript" : "text/html")
+        .end(content);
   } catch (error) {
     response.writeHead(500).end(error.stack);
   }
 });
 server.listen(0, "127.0.0.1", () => {
   const page = fs.openSync(`${folder}/dom`, "w");
-  spawn("bash", ["-c", `browse http://127.0.0.1:${server.address().port}/`], { stdio: ["ignore", page, "inherit"] }).on("exit", (code) => process.exit(code ?? 1));
+  spawn("bash", ["-c", `browse http://127.0.0.1:${server.address().port}/`], {
+    stdio: ["ignore", page, "inherit"]
+  }).on("exit", (code) => process.exit(code ?? 1));
 });

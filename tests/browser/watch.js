@@ -16,9 +16,11 @@ addEventListener("securitypolicyviolation", (e) =>
 /** The checks of a driver. */
 const driven = {
   lines: [],
-  check: (is, what, found = "") => driven.lines.push(`${is ? "ok" : "FAIL"} ${what}${is ? "" : `: ${found}`}`),
+  check: (is, what, found = "") =>
+      driven.lines.push(`${is ? "ok" : "FAIL"} ${what}${is ? "" : `: ${found}`}`),
   equal: (found, wanted, what) => driven.check(found === wanted, what, `found ${found}, wanted ${wanted}`),
-  press: (key, more = {}) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, ...more })),
+  press: (key, more = {}) =>
+      document.body.dispatchEvent(new KeyboardEvent("keydown", {key, bubbles: true, ...more})),
 
   /** Runs the parts of a driver in turn, and writes the results at the end of the page. */
   async run(...parts) {

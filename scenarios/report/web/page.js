@@ -159,8 +159,9 @@ function axis({ label, log, min, max, ticks }, isWhole = true) {
     grid: { color: style("--grid"), borderColor: style("--line") },
     ticks: {
       color: style("--soft"), maxRotation: 0, precision: log || !isWhole ? undefined : 0,
-      ...(given.size ? { callback: (value) => given.get(value)?.replace(/^1e(-?\d+)$/, (_, n) => tenTo(n)) } : log
-        ? { callback(value) { return logLabel(value, this); } } : {}),
+      ...(given.size
+        ? { callback: (value) => given.get(value)?.replace(/^1e(-?\d+)$/, (_, n) => tenTo(n)) }
+        : log ? { callback(value) { return logLabel(value, this); } } : {}),
     },
   };
 }

@@ -266,7 +266,8 @@ export class BodyView {
   showRegions(regions, share) {
     this.clearPieces();
     const { body } = this, glass = { faces: [], shifts: [] }, solid = { faces: [], shifts: [] }, ends = [],
-      kept = new Set(regions), isBare = (f) => !kept.has(body.outer[f]) || this.rise(body.outer[f], share) > 0;
+      kept = new Set(regions),
+      isBare = (f) => !kept.has(body.outer[f]) || this.rise(body.outer[f], share) > 0;
     for (const r of regions) {
       const rises = this.rise(r, share) > 0, shift = rises ? this.explodeShift(r, share) : [0, 0, 0],
         lids = share > 0 && !rises ? body.lids(r).filter(isBare) : body.lids(r),

@@ -393,7 +393,8 @@ export class Legend {
         pale ? colours.edge(side) : null,
       ]),
       withLids = bodies.filter((_, side) =>
-          views[side].pieces.some((piece) => piece.triangles) || (views[side].lids.mesh.visible && views[side].lidCount));
+          views[side].pieces.some((piece) => piece.triangles) ||
+          (views[side].lids.mesh.visible && views[side].lidCount));
     if (now.by === "kind")
       for (const { side } of withLids)
         items.push([colours.lid(side), `pseudo faces${bodies.length > 1 ? ` of ${SIDES[side]}` : ""}`,
