@@ -241,8 +241,8 @@ std::vector<MethodEntry> ours_methods() {
       entry_of<OursCoherent>(
           {.name = "ours-coherent",
            .title = "lrbscope, coherent",
-           .remark = "As ours, at the last of nine poses that are 0.1 % of A's size apart; the others "
-                     "are not timed.",
+           .remark = "As ours, at the last of nine poses that are 0.1 % of A's unit (a power of two) and "
+                     "0.001 radians apart; the others are not timed.",
            .says = Says::relation,
            .traits = {Trait::takes_2d, Trait::moves_exactly, Trait::own_rep, Trait::knows_poses_in_advance},
            .style = kVariant,
@@ -251,8 +251,8 @@ std::vector<MethodEntry> ours_methods() {
       entry_of<OursMotion>(
           {.name = "ours-motion",
            .title = "lrbscope, a pose of a motion",
-           .remark = "Whether they intersect at each of 64 poses 0.1 % of A's size and 0.001 radians apart; "
-                     "the time of one pose.",
+           .remark = "Whether they intersect at each of 64 poses, 0.1 % of A's unit (a power of two) and "
+                     "0.001 radians apart, that end at the given one; the mean time of all.",
            .pairs = false,
            .says = Says::relation,
            .traits = {Trait::takes_2d, Trait::moves_exactly, Trait::own_rep, Trait::knows_poses_in_advance},

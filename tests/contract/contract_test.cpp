@@ -584,20 +584,4 @@ TEST_CASE("a clash has the same answer through every door to a body, and a reaso
   }
 }
 
-TEST_CASE("distances of points do not depend on threads or on the other points") {
-  const LrbRep body = test::closed(shapes::bumpy_sphere(3, 1));
-  RandomEngine random(12);
-  std::vector<Vector3d> points;
-  for (int i = 0; i < 300; ++i)
-    points.push_back(shapes::uniform(random, 0, 2) * shapes::random_direction(random));
-  const auto one = content(point_distances(body, {}, points, {}, 1));
-  CHECK((content(point_distances(body, {}, points, {}, 4)) == one));
-  for (std::size_t i = 0; i < points.size(); i += 7)
-    CHECK((content(point_distances(body, {}, std::span(points).subspan(i, 1))[0]) == one[i]));
-  points[1].y() = kNaN;
-  CHECK_THROWS_WITH_AS(point_distances(body, {}, points),
-                       "point 1: expected finite coordinates, found a NaN or an infinity", InputError);
-  CHECK_THROWS_AS(point_distances(body, {}, {}, {.tolerance = -1}), InputError);
-}
-
 }  // namespace lrb::contract

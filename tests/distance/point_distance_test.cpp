@@ -6,8 +6,10 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/answer_content.hpp"
 #include "tests/support/bodies.hpp"
 #include "tests/support/rational.hpp"
+#include <lrbscope/error.hpp>
 #include <lrbscope/point_distance.hpp>
 
 using namespace lrb;
@@ -17,7 +19,7 @@ using shapes::RandomEngine;
 
 namespace {
 
-using test::closed;
+using test::closed, test::content;
 
 /// The number of times that a closed surface winds around a point beside it.
 double winding(const std::vector<test::Points>& simplices, const Vector3d& p) {
@@ -208,4 +210,20 @@ TEST_CASE("signed distances to a body without faces are infinite") {
   CHECK_FALSE(d.side);
   CHECK(d.closest.simplex == kNull);
   CHECK(point_distances(nothing, {}, {}).empty());
+}
+
+TEST_CASE("distances of points do not depend on threads or on the other points") {
+  const LrbRep body = closed(shapes::bumpy_sphere(3, 1));
+  RandomEngine random(12);
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 300; ++i)
+    points.push_back(shapes::uniform(random, 0, 2) * shapes::random_direction(random));
+  const auto one = content(point_distances(body, {}, points, {}, 1));
+  CHECK((content(point_distances(body, {}, points, {}, 4)) == one));
+  for (std::size_t i = 0; i < points.size(); i += 7)
+    CHECK((content(point_distances(body, {}, std::span(points).subspan(i, 1))[0]) == one[i]));
+  points[1].y() = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH_AS(point_distances(body, {}, points),
+                       "point 1: expected finite coordinates, found a NaN or an infinity", InputError);
+  CHECK_THROWS_AS(point_distances(body, {}, {}, {.tolerance = -1}), InputError);
 }

@@ -156,10 +156,11 @@ void count_growth() {
       {crown(1000)},
       {fan_disk(1000), "check query"},
       {frustum(1000)},
-      {nested(16), "check build proof query", Pose::translation({1.9, 0, 0})},
-      {pieces(6)},
-      {tiles(16)},
-      {tiles(16), "query", Pose::translation({0, 0, 1})},
+      {nested(128), "check query", Pose::translation({1.9, 0, 0})},
+      {nested(16), "build proof"},
+      {pieces(24)},
+      {tiles(48)},
+      {tiles(48), "query", Pose::translation({0, 0, 1})},
       {drum(1000), "query", Pose::translation({0.5, 0, 0.5})}};
   for (const std::string kind : {"check", "build", "proof", "query"})
     count_build((kind + "_hard").c_str(), [&] {

@@ -1,4 +1,4 @@
-/// Constructions as traces: content, files, schema, summary, SQL and divergence.
+/// Constructions as traces: content, files, schema, summary and divergence.
 
 #include <array>
 #include <bit>

@@ -28,6 +28,7 @@ TEST_CASE("poses: blank lines, comments, commas, CRLF, plus signs") {
   CHECK(poses[0].r == Eigen::Matrix3d::Identity());
   CHECK(poses[0].t == Eigen::Vector3d(5, 6, 7));
   CHECK(poses[1].t == Eigen::Vector3d(-1.5, 2000, 0.25));
+  CHECK(same(io::parse_poses("1 2 3 4 5 6 7 8 9 10 11 12", "p.txt")[0], kPose));  // row by row
 }
 
 TEST_CASE("poses: errors report file and line") {
