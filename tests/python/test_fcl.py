@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lrbscope import InputError, fcl
-from shapes import ball_arrays, bvh_model, cube_arrays
+from shapes import ball_arrays, bvh_model, cube_arrays, random_poses
 
 
 def at(x=0.0, y=0.0, z=0.0):
@@ -131,25 +131,44 @@ def contacts(one, other):
     return result.contacts
 
 
-def test_contacts_of_shapes_have_the_separation_vector():
-    """From the first object to the second; the point is in the middle of the overlap."""
-    for x, y, normal, depth in ((0.75, 0.1, (1, 0, 0), 0.25), (-0.1, -0.5, (0, -1, 0), 0.5), (1, 0, (1, 0, 0), 0)):
-        (c,) = contacts(box(1), box(1, x, y, 0.2))
-        assert (c.b1, c.b2) == (-1, -1) and np.isclose(c.penetration_depth, depth)
-        assert np.allclose(c.normal, normal) and np.isclose(c.pos @ c.normal, 0.5 - depth / 2)
+def test_contacts_of_shapes_have_the_separation_vector(rng, monkeypatch):
+    """Along the normal B leaves A after the depth, and in no direction before."""
+    monkeypatch.setattr(fcl, "facets", 16)
+    shapes = [fcl.Box(1, 2, 0.5), fcl.Sphere(0.7), fcl.Cone(0.8, 1.5), fcl.Box(0.2, 0.2, 0.2)]
+    seen = 0
+    for i, pose in enumerate(random_poses(rng, 24, 0.5)):
+        place = pose[:3, 3]
+        one = fcl.CollisionObject(shapes[i % 4])
+        other = fcl.CollisionObject(shapes[i // 4 % 4], fcl.Transform(pose[:3, :3], place))
+        found = contacts(one, other)
+        seen += len(found)
+        for c in found:
+            assert (c.b1, c.b2, len(found)) == (-1, -1, 1) and c.penetration_depth > 0
+            ways = rng.normal(size=(20, 3))
+            ways = np.vstack([c.normal, ways / np.linalg.norm(ways, axis=1)[:, None]])
+            for part, directions in ((0.999, ways), (1.001, ways[:1])):
+                for direction in directions:
+                    other.setTranslation(place + part * c.penetration_depth * direction)
+                    assert bool(fcl.collide(one, other)) == (part < 1)
+    assert seen > 15
+    (touch,) = contacts(box(1), box(1, 1))
+    assert touch.penetration_depth == 0 and touch.normal.tolist() == [1, 0, 0]
 
 
-def test_triangles_of_a_mesh_in_a_shape():
+def test_triangles_of_a_mesh_in_a_shape(rng):
     """Those that cross the shape's surface, and those inside: each once, in either order of the objects."""
     triangle = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0]])
     apart = np.array([[0.1, 0.2, 0.3], [0.45, 0, 0], [2, 0, 0], [-0.5, 0, -0.6], [-0.2, 0.1, 0.4]])
-    mesh = fcl.CollisionObject(bvh_model((apart[:, None] + triangle).reshape(-1, 3), np.arange(15).reshape(-1, 3)))
-    one = box(1)
+    # Both are turned and moved alike.
+    pose = random_poses(rng, 1, 5)[0]
+    both = fcl.Transform(pose[:3, :3], pose[:3, 3])
+    model = bvh_model((apart[:, None] + triangle).reshape(-1, 3), np.arange(15).reshape(-1, 3))
+    mesh, one = fcl.CollisionObject(model, both), fcl.CollisionObject(fcl.Box(1, 1, 1), both)
     found = contacts(one, mesh)
     assert sorted(c.b2 for c in found) == sorted(c.b1 for c in contacts(mesh, one)) == [0, 1, 4]
     assert fcl.collide(one, mesh) == fcl.collide(mesh, one) == 1
     inside = {c.b2: c for c in found}[4]
-    assert inside.b1 == -1 and np.isclose(inside.penetration_depth, 0.1) and np.allclose(np.abs(inside.normal), (0, 0, 1))
+    assert inside.b1 == -1 and np.isclose(inside.penetration_depth, 0.1) and np.isclose(abs(inside.normal @ pose[:3, 2]), 1)
 
 
 def test_distances():
