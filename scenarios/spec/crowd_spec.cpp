@@ -182,10 +182,6 @@ Crowd parse_crowd(const std::string& text, const std::string& file) {
   return c;
 }
 
-std::vector<std::string> shipped_crowds() {
-  return shipped_names(kCrowdEnding);
-}
-
 Crowd open_crowd(const std::string& name_or_path) {
   const NamedText crowd = open_named(name_or_path, kCrowdEnding, "crowd");
   return parse_crowd(crowd.text, crowd.file);

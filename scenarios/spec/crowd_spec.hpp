@@ -59,6 +59,5 @@ Crowd parse_crowd(const std::string& text, const std::string& file);
 
 /// Reads a shipped crowd by name, or a crowd from a file. Throws InputError.
 Crowd open_crowd(const std::string& name_or_path);
-std::vector<std::string> shipped_crowds();
 
 }  // namespace lrb::spec
