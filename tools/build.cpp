@@ -74,7 +74,8 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   j["peak_bytes"] = peak_bytes();
   j["notes"] = notes;  // repairs made to the mesh, and weaknesses of the result
   ValidateReport report;
-  const ValidateOptions validating{.threads = o.build.threads};
+  // Levels are made here, perhaps at the same time.
+  const ValidateOptions validating{.levels = false, .threads = o.build.threads};
   Workers workers(o.build.threads);
   workers.both(
       [&] {

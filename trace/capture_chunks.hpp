@@ -2,7 +2,7 @@
 /// The chunks of a capture: docs/capture.md describes the format.
 ///
 /// A file is untrusted. Every count is compared with the bytes left in its chunk before anything is
-/// allocated, so that memory is bounded by a multiple of the file's size.
+/// allocated, so that memory is bounded by a multiple of the file's size; that of instances is by a number.
 
 #include <cstddef>
 #include <cstdint>

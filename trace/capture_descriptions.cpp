@@ -36,18 +36,19 @@ bool is_box(VolumeKind kind) {
   return kind == VolumeKind::aabb || kind == VolumeKind::obb;
 }
 
-/// Appends a moved volume: an AABB or OBB as an OBB, a sphere or RSS as an RSS.
+/// Appends a moved volume: an AABB or OBB as an OBB, a sphere or RSS as an RSS. An empty AABB becomes a
+/// point.
 void append_moved(std::span<const double> n, VolumeKind kind, const Pose& map, std::vector<double>& out) {
   const auto vector = [&](std::size_t i) { return Eigen::Vector3d(n[i], n[i + 1], n[i + 2]); };
   const auto append = [&](const Eigen::Vector3d& x) { out.insert(out.end(), x.data(), x.data() + 3); };
   const Eigen::Vector3d half =
-      kind == VolumeKind::aabb ? Eigen::Vector3d((vector(3) - vector(0)) / 2) : vector(0);
-  append(map.apply(kind == VolumeKind::aabb ? vector(0) + half : half));
+      kind == VolumeKind::aabb ? Eigen::Vector3d((vector(3) / 2 - vector(0) / 2).cwiseMax(0)) : vector(0);
+  append(map.apply(kind == VolumeKind::aabb ? vector(0) / 2 + vector(3) / 2 : half));
   for (int k = 0; k < 3 && kind == VolumeKind::aabb; ++k) append(half[k] * map.r.col(k));
   for (std::size_t i = 3; i + 2 < n.size() && kind != VolumeKind::aabb; i += 3) append(map.r * vector(i));
   if (is_box(kind)) return;
   if (kind == VolumeKind::sphere) out.insert(out.end(), 6, 0);
-  out.push_back(n.back() * map.r.col(0).norm());
+  out.push_back(n.back() * map.r.colwise().norm().maxCoeff());
 }
 
 }  // namespace
@@ -202,11 +203,16 @@ void Descriptions::join_instances(Tree& tree, std::uint32_t count, std::uint32_t
            " of instances; join the two upper levels");
     const Tree& body = out_.trees[index];
     const Mesh& its = out_.meshes[body.mesh];
-    joined_ +=
-        body.size() + body.child.size() + body.triangle.size() + its.triangles.size() + its.vertices.size();
-    require(
-        joined_ <= kMax,
-        "more than 8 million nodes, vertices and triangles of all instances; record fewer bodies or frames");
+    joined_ += body.size() + its.triangles.size() + its.vertices.size();
+    if (joined_ > kMax)
+      fail(
+          "instance " + text(i) +
+          ": more than 8 million nodes, vertices and triangles of instances so far; record fewer bodies or frames");
+    const auto lost =
+        std::ranges::find_if(body.triangle, [&](std::uint32_t t) { return t >= its.triangles.size(); });
+    if (lost != body.triangle.end())
+      fail("instance " + text(i) + ": a leaf has triangle " + text(*lost) + ", its mesh has " +
+           text(its.triangles.size()) + "; describe its tree alone for `lrbscope tree`");
     same_kind = same_kind && body.volume != VolumeKind::kdop && is_box(body.volume) == is_box(tree.volume);
     tree.splits = tree.splits || body.splits;
     tree.instances.push_back({index, nodes, triangles});
@@ -224,6 +230,10 @@ void Descriptions::join_instances(Tree& tree, std::uint32_t count, std::uint32_t
   out.first_child = out.first_triangle = {0};
   const auto end_node = [&](const Tree& of, std::uint32_t n, const Pose& map) {
     append_moved(of.volume_of(n), of.volume, map, out.volumes);
+    if (!std::all_of(out.volumes.end() - static_cast<std::ptrdiff_t>(out.numbers()), out.volumes.end(),
+                     [](double x) { return std::isfinite(x); }))
+      fail("node " + text(of.id_of(n)) + " of tree " + text(of.id) +
+           ": expected a volume whose moved numbers are finite; see docs/capture.md");
     out.first_child.push_back(static_cast<std::uint32_t>(out.child.size()));
     out.first_triangle.push_back(static_cast<std::uint32_t>(out.triangle.size()));
   };
@@ -260,8 +270,7 @@ void Descriptions::join_instances(Tree& tree, std::uint32_t count, std::uint32_t
     for (const auto& [a, b, c] : its.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
     for (std::uint32_t n = 0; n < body.size(); ++n) {
       for (const std::uint32_t child : body.children(n)) out.child.push_back(at.first_node + child);
-      for (const std::uint32_t t : body.triangles(n))  // one that does not exist stays so
-        out.triangle.push_back(t < its.triangles.size() ? at.first_triangle + t : kNull.kValue);
+      for (const std::uint32_t t : body.triangles(n)) out.triangle.push_back(at.first_triangle + t);
       out.ids.push_back(body.id_of(n));
       end_node(body, n, map);
     }

@@ -358,7 +358,8 @@ class Reader : public Descriptions {
   bool enters(const Query& query, Growing::Stored& part, const Event& e) {
     const std::uint32_t numbers[] = {e.a, e.b};
     const bool has_instances = !instances_of(query.trees[0]).empty() || !instances_of(query.trees[1]).empty();
-    if (e.kind != EventKind::nodes || e.tests != 0 || e.met != 0 || !has_instances) return false;
+    if (e.kind != EventKind::nodes || e.tests != 0 || e.met != 0 || e.axis != kNoAxis || !has_instances)
+      return false;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}})
       if (const std::size_t count = instances_of(query.trees[side]).size();
           numbers[side] != kNull && numbers[side] >= count)

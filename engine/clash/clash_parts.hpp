@@ -64,8 +64,8 @@ class SurfaceDistance {
 
   /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius around it
   /// is proven to contain no point of the surface. It is less than the distance by kClearanceMargin and
-  /// rounding, independently of the triangulation of the surface. May return early, with any clearance of at
-  /// most `enough`, if the point has no more.
+  /// rounding, independently of the triangulation of the surface. Returns 0, early, if it is at most
+  /// `enough`.
   double at(const Vector3d& x, double enough = -1) const;
 
  private:

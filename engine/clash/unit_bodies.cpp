@@ -83,7 +83,7 @@ double SurfaceDistance::at(const Vector3d& x, double enough) const {
     stack[size++] = far;
     stack[size++] = near;
   }
-  return least;
+  return least > enough ? least : 0;
 }
 
 namespace {

@@ -75,7 +75,7 @@ class Validator {
     if (!tree_holds) violation("the bounds of the query's tree do not contain its faces");
     if (hash_of(rep_.data()) != rep_.hash()) violation("the stored hash does not match the complex");
     // The thickness of regions is measured with the tree, so its bounds must be checked first.
-    if (tree_holds && rep_.has_levels()) check_levels(rep_.levels());
+    if (tree_holds && options_.levels && rep_.has_levels()) check_levels(rep_.levels());
   }
 
   /// Checks the data of levels of detail that are trusted when a file is read.

@@ -125,15 +125,19 @@ Expected<FirstContactResult&> first_contact(const LrbRep& a, const Motion& motio
 
 namespace {
 
-/// Ask one query of a batch, and write to `answer`, whose memory is reused.
-void ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
-         const CollideRequest& request, Workspace& workspace, Expected<CollideResult>& answer) try {
-  // An earlier answer keeps the memory of its vectors.
+/// Returns an answer without content, in the memory of an earlier one.
+CollideResult& emptied(Expected<CollideResult>& answer) {
   if (answer)
     clear(*answer);
   else
     answer = CollideResult{};
-  collide_watched(a, pose_a, b, pose_b, request, workspace.memory().of_collision(), nullptr, *answer);
+  return *answer;
+}
+
+/// Asks one query of a batch, and writes to `answer`, whose memory is reused.
+void ask(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b,
+         const CollideRequest& request, Workspace& workspace, Expected<CollideResult>& answer) try {
+  collide_watched(a, pose_a, b, pose_b, request, workspace.memory().of_collision(), nullptr, emptied(answer));
 } catch (const InputError& e) {
   answer = Error{e.what()};
 }
@@ -161,6 +165,7 @@ bool meets_at_none(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::sp
                    std::uint64_t most, QueryContext& context) {
   using Eigen::Matrix3d;
   using Eigen::Vector3d;
+  const FloatMode float_mode;
   const std::size_t midpoint = poses.size() / 2;  // not nearer to the first pose than to the last
   const Pose& from = poses[midpoint];
   const double half = static_cast<double>(midpoint), share = half / static_cast<double>(poses.size() - 1);
@@ -212,8 +217,8 @@ bool meets_at_none(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::sp
 bool asks_only_whether(const LrbRep& a, const LrbRep& b, const CollideRequest& request) {
   return request.mode == Mode::any_pair && request.recursion == Recursion::complete &&
          request.predicates == Predicates::exact && !request.is_coarse() && !request.contacts &&
-         !request.interiors_overlap && !request.separation && a.closed() && b.closed() &&
-         a.dim() == b.dim() && !a.tree().empty() && !b.tree().empty();
+         !request.interiors_overlap && !request.separation && a.closed() && b.closed() && a.dim() == 3 &&
+         b.dim() == 3 && !a.tree().empty() && !b.tree().empty();
 }
 
 }  // namespace
@@ -268,7 +273,7 @@ class Batch::Work {
 
  private:
   /// The number of poses that are proven apart at once, and the fewest for which this is tried. After
-  /// kMaxMisses attempts in a row that proved nothing, each pose is queried on its own.
+  /// kMaxMisses attempts in a row that proved nothing for these poses, each is queried on its own.
   static constexpr std::size_t kTogether = 64, kFewest = 4, kMaxMisses = 7;
   struct Range {
     std::size_t begin, end;
@@ -294,10 +299,10 @@ class Batch::Work {
                         workspaces_[worker].memory().of_collision())) {
         for (std::size_t k = begin; k < end; ++k) {
           if (std::exchange(known_[k], 1) != 0) continue;
-          answers[k] ? clear(*answers[k]) : static_cast<void>(answers[k] = CollideResult{});
-          answers[k]->mode = found->mode;
-          answers[k]->relation = found->relation;
-          answers[k]->interiors_overlap = found->interiors_overlap;
+          CollideResult& same = emptied(answers[k]);
+          same.mode = found->mode;
+          same.relation = found->relation;
+          same.interiors_overlap = found->interiors_overlap;
         }
         misses = 0;
         continue;

@@ -132,7 +132,7 @@ std::optional<LrbRep> faces_if_unproven(const LrbRep& rep, std::vector<std::stri
 
 }  // namespace
 
-MadeBody make_body(LrbRep rep, bool turn) {
+MadeBody make_body(LrbRep rep, bool turn, unsigned threads) {
   std::vector<std::string> notes;
   std::uint32_t turned = 0;
   if (std::optional<LrbRep> faces = faces_if_unproven(rep, notes)) rep = std::move(*faces);
@@ -141,8 +141,8 @@ MadeBody make_body(LrbRep rep, bool turn) {
     CheckedMesh mesh = check(rep.real_mesh());
     turned = turn_outward(mesh, notes);
     if (turned > 0)
-      rep = LrbRep::without_regions(LrbRep::without_regions(mesh.mesh(), true, rep.self_intersecting()),
-                                    rep.dropped_fans());
+      rep = LrbRep::without_regions(
+          LrbRep::without_regions(mesh.mesh(), true, rep.self_intersecting(), threads), rep.dropped_fans());
   }
   return {std::move(rep), std::move(notes), 0, turned};
 }
@@ -198,7 +198,7 @@ MadeBody make_body(Mesh mesh, const BodyOptions& options) {
 MadeBody make_body_of_file(const std::string& path, const BodyOptions& options, std::string_view if_joined) {
   // Opened once, and told by its content, not by its name.
   InputFile file(path);
-  if (looks_like_lrb(file.start())) return make_body(load_lrb(file), options.turn);
+  if (looks_like_lrb(file.start())) return make_body(load_lrb(file), options.turn, options.build.threads);
   Mesh mesh = read_mesh(read_file(file), path);
   std::string note = options.join ? join_corners_of_mesh(mesh) : "";
   MadeBody made = make_body(std::move(mesh), options);

@@ -24,9 +24,9 @@ struct ResolutionOptions {
 std::vector<std::uint32_t> resolution_sizes(const Mesh& mesh, const ResolutionOptions& options);
 
 /// Returns the body at these sizes, the finest one first, in triangles. The coarser ones are wrappers of the
-/// LRB-rep of the finest (wrapper_of_faces()): they enclose it, are closed and do not intersect themselves;
-/// holes may be filled. Ends before a size without a wrapper of at least three quarters of it: voids keep
-/// their faces. Deterministic. Throws InputError for a mesh that no LRB-rep can be built from.
+/// LRB-rep of the finest (wrapper_of_faces()): they enclose it, are closed and do not intersect themselves
+/// unless it does; holes may be filled. Ends before a size without a wrapper of at least three quarters of
+/// it: voids keep their faces. Deterministic. Throws InputError for a mesh that no LRB-rep can be built from.
 std::vector<Mesh> resolutions(const Mesh& mesh, const ResolutionOptions& options);
 
 /// Replaces each triangle by four and smooths the surface: Loop's scheme ("Smooth Subdivision Surfaces Based

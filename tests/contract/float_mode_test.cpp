@@ -15,6 +15,7 @@
 #include <lrbscope/mesh_repair.hpp>
 #include <lrbscope/self_intersections.hpp>
 #include <lrbscope/validate.hpp>
+#include <lrbscope/workspace.hpp>
 #include <lrbscope/world_box.hpp>
 
 namespace lrb::float_modes {
@@ -52,6 +53,15 @@ void check_queries(const LrbRep& a, const Pose& at, const LrbRep& b, const Pose&
     CoherentDistance distances(a, b);
     const auto first = content(query.collide(at, to));
     return std::tuple(first, content(query.collide(at, to)), content(distances.distance(at, to)));
+  });
+  std::vector<Pose> motion;
+  for (int k = 0; k < 16; ++k) motion.push_back({to.r, to.t + 0.1 * k * way});
+  check_modes([&] {
+    CollideAnswers answers;
+    Batch(1).collide(a, at, b, motion, {.mode = Mode::any_pair}, answers);
+    std::vector<decltype(content(*answers[0]))> out;
+    for (const auto& answer : answers) out.push_back(content(answer.value()));
+    return out;
   });
   const std::array<Vector3d, 2> points = {0.1 * way, way};
   check_modes([&] {

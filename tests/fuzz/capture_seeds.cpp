@@ -31,6 +31,7 @@ std::string recorded(std::uint32_t volume, const std::uint32_t* ids) {
       LRBCAP_END(LRBCAP_INTERSECTING, 1);
       if (row == 0) continue;
       LRBCAP_BEGIN(LRBCAP_ANY, row, nullptr, row, nullptr);
+      LRBCAP_NODE(0, 0, 1, LRBCAP_NO_AXIS);
       LRBCAP_ENTER(2, LRBCAP_TOP);
       LRBCAP_NODE(0, 0, 1, LRBCAP_NO_AXIS);
       LRBCAP_ENTER(3, 0);

@@ -519,6 +519,10 @@ TEST_CASE("a tree of instances is one with the moved trees and meshes of its bod
   contains(refusal(with(good, "TREE", 248 + 8, 0.5, 1)),
            {"instance 0: expected a rotation, a translation and a scale"});
   contains(refusal(with(good, "TREE", 248 + 24, HUGE_VAL, 1)), {"instance 0: expected a rotation"});
+  contains(refusal(with(good, "TREE", 72, 77u)), {"instance 0: a leaf has triangle 77, its mesh has 4"});
+  Bytes huge = good;  // a box of the body that a scale makes infinite
+  for (const std::size_t axis : {0, 5, 10}) huge = with(huge, "TREE", 248 + 8 * axis, 1e10, 1);
+  contains(refusal(with(huge, "TREE", 88 + 24, 1e300)), {"node 0 of tree 1: expected a volume", "finite"});
   contains(refusal(record([] { a_row(a_row(a_tree())); })),
            {"instance 0: expected the tree of a mesh, found tree 2"});
   contains(refusal(record([] { a_row(a_tree_with_ids()); })),

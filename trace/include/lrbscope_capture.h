@@ -595,7 +595,7 @@ uint32_t lrbcap_mesh(const char* name, uint32_t n_vertices, const double* xyz, u
 }
 
 uint32_t lrbcap_add_tree(const lrbcap_tree* tree) {
-  return lrbcap_instances(NULL, tree, 0, NULL, NULL);
+  return lrbcap_instances(NULL, tree, 0xffffffffu, NULL, NULL); /* of a mesh */
 }
 
 uint32_t lrbcap_instances(const char* name, const lrbcap_tree* tree, uint32_t n_instances, const uint32_t* bodies,
@@ -609,7 +609,10 @@ uint32_t lrbcap_instances(const char* name, const lrbcap_tree* tree, uint32_t n_
   const void* parts[11];
   uint64_t sizes[11];
   if (lrbcap_writes() == LRBCAP_WRITES_NOTHING) return 0;
-  if (!name && n_instances) name = "";
+  if (n_instances == 0xffffffffu)
+    n_instances = 0;
+  else if (!name)
+    name = "";
   if (n == 0 || volume == 0 || volume > LRBCAP_KDOP || (floats && !tree->float_volumes)) {
     lrbcap_warn("a tree without nodes, or without volumes of a known kind, is not recorded", "LRBCAP_TREE");
     return 0;

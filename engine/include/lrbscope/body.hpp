@@ -140,7 +140,7 @@ MadeBody make_body_of_faces(CheckedMesh mesh, bool turn = true, unsigned threads
 
 /// Proves the cells of an LRB-rep; if that fails, takes its real faces without regions, and adds a note.
 /// Without regions, reorients inward-oriented components, if `turn`.
-MadeBody make_body(LrbRep rep, bool turn = true);
+MadeBody make_body(LrbRep rep, bool turn = true, unsigned threads = 1);
 
 /// Checks a mesh and calls make_body() or make_body_of_faces(), as `options.regions` says.
 MadeBody make_body(Mesh mesh, const BodyOptions& options);

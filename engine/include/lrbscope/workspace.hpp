@@ -52,8 +52,9 @@ class Batch {
   unsigned threads() const;
 
   /// Run collide() for each pose of B, or for each pair, with any request. Writes to `answers`, whose memory
-  /// is reused. In Mode::any_pair, poses in the order of a motion are fastest: while B, both bodies closed,
-  /// is apart, one test answers for up to 64 of them. Their answers have no opened regions and no counters.
+  /// is reused. In Mode::any_pair, poses in the order of a motion are fastest for closed 3D bodies: while B
+  /// does not meet A, one test answers for up to 64 of them. Their answers have no opened regions and no
+  /// counters.
   void collide(const LrbRep& a, const Pose& pose_a, const LrbRep& b, std::span<const Pose> poses_b,
                const CollideRequest& request, CollideAnswers& answers);
   void collide(std::span<const PosedPair> pairs, const CollideRequest& request, CollideAnswers& answers);

@@ -73,8 +73,8 @@ class InputFile {
   std::optional<std::uint64_t> size() const { return size_; }
   /// Reads the next bytes, at most `most`. Returns their number; fewer: the end of the file.
   std::size_t read(char* to, std::size_t most);
-  /// Returns the first bytes, at most 64, which tell the format. The next read() still begins with them. Must
-  /// be called before any read().
+  /// Returns the first bytes, at most 64, which tell the format. read() returns them again. Must be called
+  /// before any read().
   std::string_view start();
 
  private:

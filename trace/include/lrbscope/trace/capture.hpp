@@ -68,8 +68,8 @@ struct Tree {
   std::vector<std::uint32_t> first_triangle, triangle;  ///< triangles of leaf n, in the same form
   std::vector<double> volumes;                          ///< numbers() for each node, finite
   std::vector<Eigen::Vector3d> directions;              ///< of a k-DOP
-  std::vector<std::uint32_t> ids;  ///< the engine's own number of each node; empty: equal to ours
-  std::vector<Instance> instances;
+  std::vector<std::uint32_t> ids;   ///< the engine's own number of each node; empty: equal to ours
+  std::vector<Instance> instances;  ///< of a tree of instances, else empty
 
   std::size_t size() const { return first_child.size() - 1; }
   std::span<const std::uint32_t> children(std::uint32_t node) const {
