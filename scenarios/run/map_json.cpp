@@ -12,16 +12,15 @@
 namespace lrb::run {
 namespace {
 
-/// The cells of all steps: a, b are the simplices of a pair that was tested, else nodes.
+/// The cells of the page's steps: a, b are the simplices of a pair that was tested, else nodes.
 class Cells {
  public:
-  void add(const frames::RecordedRun& p, std::size_t step) {
-    constexpr std::size_t kMax = 2'000'000;  // some 20 bytes each on the page
+  /// Adds those of a step; none if there would be more than `most`.
+  void add(const frames::RecordedRun& p, std::size_t step, std::size_t most) {
     const std::optional<frames::ProofMap> map = frames::proof_map(p, step);
-    const bool fits = map && event_.size() + map->cells.size() <= kMax;
     std::vector<std::array<std::uint32_t, 4>> sorted;  // event, argument, a, b
     std::map<std::array<std::uint32_t, 2>, trace::EventId> visit;
-    for (const frames::MapCell& cell : fits ? map->cells : std::vector<frames::MapCell>{}) {
+    for (const frames::MapCell& cell : map ? map->cells : std::vector<frames::MapCell>{}) {
       const auto argument = static_cast<std::uint32_t>(cell.argument);
       if (!cell.is_upon()) {
         visit[cell.node] = cell.event;
@@ -34,6 +33,7 @@ class Cells {
         sorted.push_back({visit.at(cell.node), frames::kArguments, test.a, test.b});
       sorted.push_back({cell.event, argument, test.a, test.b});
     }
+    if (event_.size() + sorted.size() > most) sorted.clear();
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const auto& x, const auto& y) { return x.front() < y.front(); });
     for (const auto& [event, argument, a, b] : sorted) {
@@ -41,7 +41,7 @@ class Cells {
       a_.push_back(a), b_.push_back(b);
     }
     first_.push_back(static_cast<std::uint32_t>(event_.size()));
-    for (std::size_t i = 0; i < 2; ++i) walked_.push_back(fits ? map->walked[i] : 0);
+    for (std::size_t i = 0; i < 2; ++i) walked_.push_back(map ? map->walked[i] : 0);
   }
 
   nlohmann::json json() const {
@@ -56,7 +56,8 @@ class Cells {
 
 }  // namespace
 
-nlohmann::json map_json(const frames::RecordedRun& p) {
+nlohmann::json map_json(const frames::RecordedRun& p, const std::vector<std::uint32_t>& steps,
+                        const SceneLimits& limits) {
   using nlohmann::json;
   const trace::TraceHeader& header = p.trace->header;
   const bool ours = header.engine.empty();
@@ -79,8 +80,9 @@ nlohmann::json map_json(const frames::RecordedRun& p) {
                      {"leaf", report::packed(axis.leaf)},
                      {"rank", report::packed(axis.rank)}});
   }
+  constexpr std::size_t kCellsPerEvent = 4;  // of the limits: some 20 bytes each on the page
   Cells cells;
-  for (std::size_t step = 0; step < p.trace->steps.size(); ++step) cells.add(p, step);
+  for (const std::uint32_t step : steps) cells.add(p, step, kCellsPerEvent * limits.events);
   for (std::size_t i = 0; i < frames::kArguments; ++i) {
     const frames::ArgumentLook& look = frames::look_of(static_cast<frames::Argument>(i));
     const std::string name =

@@ -35,10 +35,6 @@ void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& 
 /// the regions behind them.
 std::vector<std::uint32_t> shown_pseudo_faces(const LrbRep& rep, Side side, const trace::Trace& trace);
 
-/// Returns the trees of a run's traversals, for the page's proof map (proof_map.js); null without pairs of
-/// nodes.
-nlohmann::json map_json(const frames::RecordedRun& p);
-
 /// Returns the colours of a page's 3D view.
 nlohmann::json scene_colours();
 
@@ -51,6 +47,11 @@ struct SceneLimits {
   std::size_t boxes = 4'096;  ///< of tree nodes, for each body
   ExplainLimits explained = {};
 };
+
+/// Returns the trees of a run's traversals and the cells of the page's steps, for its proof map
+/// (proof_map.js); null without pairs of nodes.
+nlohmann::json map_json(const frames::RecordedRun& p, const std::vector<std::uint32_t>& steps,
+                        const SceneLimits& limits);
 
 /// Sources of further data for the page's reader.
 struct SceneSource {

@@ -315,13 +315,19 @@
     const stored = ["kind", "side", "meet", "a", "b", "cause", "boundary", "work"],
       names = [...stored, "depthA", "depthB", "outcome"];
     const whole = Object.fromEntries(names.map((name) => [name, events[name]])),
-      { count, stepNumbers } = events,
-      kept = indices().filter((i) => i % 3 === 0 || events.kind[i] === events.STEP),
-      firstOfStep = Uint32Array.from(events.firstOfStep, (id) => kept.indexOf(id));
+      { count, firstOfStep: [, ...later] } = events, // the first step is not on the page
+      kept = indices().filter((i) => i >= later[0] && (i % 3 === 0 || events.kind[i] === events.STEP)),
+      firstOfStep = Uint32Array.from(later, (id) => kept.indexOf(id)),
+      stepNumbers = events.stepNumbers.slice(1);
     const thin = { ids: Uint32Array.from(kept), count: kept.length, stepNumbers, firstOfStep };
     for (const name of names) thin[name] = Uint32Array.from(kept, (i) => whole[name][i]);
     events.replace(thin);
     table.refilter();
+    tabs.show("Proof map");
+    selection.goTo(kept.length - 1);
+    await frame();
+    run.map.draw();
+    check(run.map.cells.event[0] >= later.at(-1), "the map is that of the step with this number");
     const foreign = trace();
     foreign.metadata.bodies[0].hash = "0";
     for (const wrong of [{}, foreign]) {

@@ -17,7 +17,8 @@ const WAITING = OPEN + 1, // a pair of simplices before its test
 const axisOf = ({ low, high, leaf, rank }) =>
   ({ low: unpack(low), high: unpack(high), leaf: unpack(leaf), rank: unpack(rank), size: unpack(high)[0] });
 
-/** The cells of a step's last traversal, by event, as map_json.cpp found them: there may be a million. */
+/** The cells of the last traversal of a step, by event, as map_json.cpp found them: there may be a million.
+    `step`: its index among the steps that were on the page at first; -1: none of them. */
 class MapCells {
   constructor({ trees, cells }, step) {
     const part = (name) => cells[name].subarray(cells.first[step], cells.first[step + 1]);
@@ -28,6 +29,7 @@ class MapCells {
     this.ofBodies = walked.every((w) => w === 0);
     this.axes = walked.map((w, side) => axisOf(trees.find((t) => t.side === side && t.walked === w)));
     this.pairs = this.axes[0].size * this.axes[1].size;
+    this.nearest = Math.min(1, 40 / Math.max(...this.axes.map((x) => x.size)));
     this.hits = [];
     this.shade = new Uint8Array(this.count);
     // The ranges of A's and B's simplices; and those around each block of cells.
@@ -77,14 +79,16 @@ export class ProofMap {
         listeners: [] });
     for (const [name, packed] of Object.entries(scene.map.cells)) scene.map.cells[name] = unpack(packed);
     const label = "Proof map: all pairs of faces, by the test that decided them",
-      whole = textButton("whole", () => this.zoom([0, 0], [0, 0], 1), "Show all pairs; the wheel enlarges"),
-      deep = element("input", { type: "range", max: 100, value: 0, style: "accent-color: var(--accent)" });
-    deep.oninput = () => this.approach(deep.value / 100);
+      whole = textButton("whole", () => this.zoom([0, 0], [0, 0], 1), "Show all pairs; the wheel enlarges");
+    this.stepOf = new Map([...events.stepNumbers].map((number, step) => [number, step]));
+    this.deep = element("input", { type: "range", max: 100, style: "accent-color: var(--accent)" });
+    this.deep.oninput = () => this.approach(this.deep.value / 100);
     this.canvas = element("canvas",
         { style: "flex:none;cursor:crosshair", role: "img", "aria-label": label });
     this.words = element("p", { class: "note", style: "max-width:60ch" });
     this.legend = element("table");
-    const zoom = element("label", { class: "note" }, "towards the contact ", deep),
+    this.target = element("span");
+    const zoom = element("label", { class: "note" }, this.target, this.deep),
       side = element("div", {}, this.legend, element("p", { class: "parts" }, whole, zoom), this.words);
     this.box = element("div", { style: "display:flex;flex-wrap:wrap;gap:16px" }, this.canvas, side);
     byId("scene").append(element("div", { class: "tab", "data-tab": "Proof map" }, this.box));
@@ -114,12 +118,11 @@ export class ProofMap {
   }
   /** Shows a part around a contact: from the whole, 0, to some forty simplices, 1, by equal factors. */
   approach(share) {
-    const { axes, hits, low, count } = this.cells || {};
+    const { axes, hits, low, count, nearest } = this.cells || {};
     if (!count) return;
     const hit = hits.length ? hits[hits.length >> 1] : count - 1,
-      least = Math.max(...axes.map((x) => x.size)),
       point = [1, 0].map((side) => (low[side][hit] + 0.5) / axes[side].size);
-    this.zoom(point, point, Math.min(1, (40 / least) ** share));
+    this.zoom(point, point, nearest ** share);
   }
   tell(what) {
     for (const listener of this.listeners) listener(what);
@@ -131,16 +134,20 @@ export class ProofMap {
       most = Math.min(room ? room.clientHeight - 32 : 400, 0.55 * this.box.clientWidth),
       size = Math.round(Math.max(240, most)),
       pixels = Math.round(size * Math.min(2, window.devicePixelRatio || 1)),
-      step = this.events.step(this.selection.event), key = `${step} ${this.events.count} ${pixels}`;
+      step = this.stepOf.get(this.events.stepNumber(this.selection.event)) ?? -1,
+      key = `${step} ${this.events.count} ${pixels}`;
     if (this.key !== key) {
       this.cells = new MapCells(this.scene.map, step);
       Object.assign(this, { key, painted: null, counted: null, pointed: -1 });
     }
     this.canvas.hidden = this.legend.hidden = !this.cells.count;
     if (!this.cells.count) {
-      this.words.textContent = "This step has no traversal, or its map is too large for a page.";
+      this.words.textContent = "This step has no traversal, or the page has no map of it.";
       return this.tell({ map: null });
     }
+    const { hits, nearest } = this.cells;
+    this.target.textContent = hits.length ? "towards the contact " : "enlarge ";
+    this.deep.value = nearest < 1 ? 100 * Math.log(this.window[2]) / Math.log(nearest) : 0;
     if (!this.painted) {
       this.canvas.width = this.canvas.height = pixels;
       this.canvas.style.width = this.canvas.style.height = `${size}px`;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/pictures/marks.hpp"
+#include "scenarios/frames/proof_map.hpp"
 #include "scenarios/record/moments.hpp"
 #include "scenarios/record/recorded_run.hpp"
 #include "scenarios/report/assets.hpp"
@@ -159,6 +160,27 @@ TEST_CASE("page data of a run names omissions and where to find them") {
   CHECK(scene["why"]["pairs"]["count"] == 5);
   CHECK(scene["why"]["steps"].size() == 1);
   CHECK(scene["why"]["cut"].get<std::string>().starts_with("This page explains 5 of the "));
+}
+
+TEST_CASE("a page has the proof maps of its own steps") {
+  const record::Recording r = rocks_that_meet(WrapperMode::regularised, EventLevel::nodes);
+  const frames::RecordedRun p = run_of(r);
+  run::SceneLimits limits;
+  limits.events = changes(r.trace) / 2;
+  std::set<std::size_t> kept;
+  for (const trace::EventId id : record::thin_events(r.trace, limits.events).kept)
+    kept.insert(r.trace.step_of(id));
+  REQUIRE(kept.size() < r.trace.steps.size());
+  std::vector<std::uint32_t> first{0};
+  for (const std::size_t step : kept) {
+    std::size_t cells = first.back();
+    if (const auto map = frames::proof_map(p, step))  // a pair that is tested waits for it
+      for (const frames::MapCell& cell : map->cells) cells += cell.is_upon() ? 2 : 1;
+    first.push_back(cells > 4 * limits.events ? first.back() : static_cast<std::uint32_t>(cells));
+  }
+  CHECK(first.back() > 0);
+  const json scene = json::parse(run::scene_json(p, {"trace.json", ""}, limits));
+  CHECK(scene["map"]["cells"]["first"] == report::packed(first));
 }
 
 TEST_CASE("page data of large bodies lacks pseudo faces that no wrapper shows") {
