@@ -131,6 +131,7 @@ class MapMaker {
         tests_[key_of(axis_[0].leaf[e.a], axis_[1].leaf[e.b])][key_of(e.a, e.b)] = i;
     }
     visits_.contains(0) ? divide(0, 0) : add(0, 0, begin, Argument::open);
+    map_.strays = visits_.size() - map_.visits + tests_.size();
     std::stable_sort(map_.cells.begin(), map_.cells.end(), [](const MapCell& x, const MapCell& y) {
       return (x.is_upon() ? x.argument : Argument::child_boxes) <
              (y.is_upon() ? y.argument : Argument::child_boxes);
@@ -167,11 +168,12 @@ class MapMaker {
     if (pair.end.step == NodeStep::whole) return add(a, b, visit, Argument::node_boxes);
     if (!ours() && pair.work.met == 0) return add(a, b, visit, Argument::child_boxes);
     if (tree_[0].is_leaf(a) && tree_[1].is_leaf(b)) return divide_leaves(a, b, visit);
-    const auto below = [&](std::size_t side, const std::uint32_t& node, NodeStep stays) {
-      return pair.end.step == stays || tree_[side].is_leaf(node) ? Nodes(&node, 1)
-                                                                 : tree_[side].children(node);
+    // Visits of other trees may stay although only this node has children.
+    const auto below = [&](std::size_t side, const std::uint32_t& node, NodeStep stays, std::uint32_t other) {
+      const bool stay = pair.end.step == stays && !tree_[1 - side].is_leaf(other);
+      return stay || tree_[side].is_leaf(node) ? Nodes(&node, 1) : tree_[side].children(node);
     };
-    const Nodes of_a = below(0, a, NodeStep::descend_b), of_b = below(1, b, NodeStep::descend_a);
+    const Nodes of_a = below(0, a, NodeStep::descend_b, b), of_b = below(1, b, NodeStep::descend_a, a);
     struct Rest {
       const std::uint32_t *a, *b;
       double gap = 0;
@@ -213,6 +215,7 @@ class MapMaker {
       ++count(argument_of(e)), --count(rest);
       ++(e.kind == EventKind::plane_test ? by_planes : tested);
     }
+    tests_.erase(key_of(a, b));
     if (!ours()) return;
     // Below EventLevel::all, only the number of pairs that planes reject is known.
     const trace::NodeWork work = events_[visit].work();

@@ -70,6 +70,7 @@ struct ProofMap {
   std::vector<MapCell> cells;             ///< as painted, contacts last; those upon no others tile the square
   std::array<std::uint64_t, kArguments> pairs{};  ///< by argument
   std::uint64_t visits = 0;                       ///< pairs of nodes that contribute
+  std::uint64_t strays = 0;  ///< visits and leaves' tests to which no visit led: those of other trees
 };
 
 /// Returns the map of the last traversal of a step. nullopt: the run has none with pairs of nodes, or an

@@ -31,6 +31,7 @@ ProofMap checked_map(const frames::RecordedRun& recorded, std::span<const Simple
   REQUIRE(map);
   const std::size_t columns = map->size[1], all = map->size[0] * columns;
   CHECK(std::reduce(map->pairs.begin(), map->pairs.end()) == all);
+  CHECK(map->strays == 0);
   std::vector<Argument> grid(all);
   std::vector<std::uint8_t> times(all);
   bool once = true;
@@ -96,6 +97,17 @@ TEST_CASE("the cells of a proof map tile the square of all pairs, for every kind
         }
   }
   CHECK(not_needed > 0);  // queries for one pair ended early
+}
+
+TEST_CASE("visits and tests of another tree of the same bodies are strays") {
+  Mesh sphere = shapes::icosphere(2);
+  const LrbRep a = LrbRep::without_regions(sphere, true, false);
+  std::vector<VertexId>& corners = sphere.face_vertices;  // other faces have the same numbers
+  std::rotate(corners.begin(), corners.begin() + 300, corners.end());
+  const LrbRep b = LrbRep::without_regions(sphere, true, false);
+  const trace::Trace trace = recorded(a, a, Pose::translation({1.5, 0.25, 0.125}), {}, EventLevel::all);
+  CHECK(frames::proof_map(run_of(a, a, trace), 0)->strays == 0);
+  CHECK(frames::proof_map(run_of(b, b, trace), 0)->strays > 0);
 }
 
 TEST_CASE("the map of another engine's query: each pair is rejected, tested, or not reported") {
