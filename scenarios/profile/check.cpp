@@ -91,15 +91,18 @@ void report(const QueryVerdict& v, const capture::Query& query, CapturedBodies& 
   if (v.answer == Judgement::undecidable) out.undecidable.push_back(head + v.remark);
   if (v.wrong.empty()) return;
   const auto trees = bodies.trees_of(query).value();
+  const auto line = [&](const WrongPair& w) {
+    return head + sentence(w, bodies.tree(trees[0]), bodies.tree(trees[1]));
+  };
+  // Those beyond the error bound come first.
   if (const WrongPair& w = v.wrong.front(); !out.first_wrong && !w.undecidable &&
                                             query.probe.shape == capture::ProbeShape::none &&
-                                            trees[0] != trees[1])
+                                            query.kind != capture::QueryKind::self)
     out.first_wrong = {{bodies.mesh_of(trees[0]), bodies.mesh_of(trees[1])},
                        query.poses,
-                       {SimplexId(w.triangles.a), SimplexId(w.triangles.b)}};
-  for (const WrongPair& w : v.wrong)
-    (w.undecidable ? out.undecidable : out.wrong)
-        .push_back(head + sentence(w, bodies.tree(trees[0]), bodies.tree(trees[1])));
+                       {SimplexId(w.triangles.a), SimplexId(w.triangles.b)},
+                       line(w)};
+  for (const WrongPair& w : v.wrong) (w.undecidable ? out.undecidable : out.wrong).push_back(line(w));
 }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
@@ -388,7 +391,7 @@ std::vector<std::string> add_checks(report::Document& page, std::span<const Chec
     if (c.first_wrong)
       draw(
           "wrong_", c, [&] { return draw_wrong(*c.first_wrong); }, "Wrong answer of " + c.engine,
-          c.wrong.front());
+          c.first_wrong->sentence);
   if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
   page.table(verdict_table(checks)).table(price_table(checks)).table(advice_table(checks));
   for (const Check& c : checks)

@@ -57,6 +57,7 @@ struct ShownPair {
   std::array<capture::Mesh, 2> meshes;
   std::array<Pose, 2> poses;
   SimplexPair pair;
+  std::string sentence;  ///< about it
 };
 
 struct Check {
@@ -66,7 +67,7 @@ struct Check {
   std::map<capture::QueryKind, CheckSums> kinds;  ///< of a sample, scaled to all queries
   std::vector<WasteMap> waste;                    ///< of the two trees with most waste
   std::vector<std::string> wrong;                 ///< a line for each wrong pair or answer that was kept
-  std::optional<ShownPair> first_wrong;           ///< of two bodies; that of the first line about a pair
+  std::optional<ShownPair> first_wrong;           ///< beyond the error bound, of two bodies
   std::vector<std::string> undecidable;           ///< the same, for those within the error bound
 
   /// A sentence if most reported pairs are wrong, but right after the reversal of a PoseError.
