@@ -279,9 +279,11 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
       true);
   doc.key_figures();
   if (faults > 0) {
-    report::Table table{"Faults", {"kind", "found"}};
+    report::Table table{"Faults", {"kind", "number", "found"}};
     for (const FoundFault& fault : report.faults.first) {
-      table.rows.push_back({io::in_words(name_of(fault.kind)), text_of(fault, tree, mesh)});
+      table.rows.push_back({io::in_words(name_of(fault.kind)),
+                            group_digits(report.faults.totals[static_cast<std::size_t>(fault.kind)]),
+                            text_of(fault, tree, mesh)});
       table.targets.push_back(target_of(tree, fault.node));
     }
     if (faults > table.rows.size())

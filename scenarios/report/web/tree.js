@@ -94,6 +94,9 @@ class TreeView extends BodiesCanvas {
   }
 }
 
+/** Returns the id of the node that the address names, as "5 of instance 2"; null: none. */
+const requested = () => new URLSearchParams(location.hash.slice(1)).get("node");
+
 class TreePage {
   constructor(json) {
     this.json = json;
@@ -109,8 +112,7 @@ class TreePage {
       byId("no-view").hidden = false;
     }
     this.connect();
-    const requested = this.nodes.indexOf.get(location.hash.replace(/^#node=/, ""));
-    this.select(requested === undefined ? this.first() : requested);
+    this.select(this.nodes.indexOf.get(requested()) ?? this.first());
     if (this.view) this.view.frameAll(this.telling());
   }
 
@@ -229,7 +231,7 @@ class TreePage {
     for (const row of document.querySelectorAll("tr[data-to^=node]"))
       linkRow(row, follow(row.dataset.to.slice(5)));
     byId("node").onchange = () => this.selectId(byId("node").value);
-    window.addEventListener("hashchange", () => this.selectId(location.hash.replace(/^#node=/, "")));
+    window.addEventListener("hashchange", () => this.selectId(requested()));
     if (!this.view) return;
     byId("fit-body").onclick = () => this.view.frameAll();
     byId("fit-node").onclick = () => this.view.frameNode();
