@@ -258,6 +258,12 @@
     check(map.text(map.pointed).startsWith("Event "), "and says what decided a place", map.text(map.pointed));
     map.go([0.5, 0.5]);
     equal(events.id(selection.event), map.cells.event[map.pointed], "a click goes there");
+    map.approach(0.5);
+    map.draw();
+    equal(map.deep.value, "50", "the slider is where it leads to this part");
+    map.box.querySelector("button").click();
+    map.draw();
+    equal(map.deep.value, "0", "also at the whole");
   }
 
   /** A row of a table of each kind selects what it is about, and is marked. */

@@ -67,6 +67,13 @@
     byId("node").onchange();
     check(words("node-state").startsWith("no such node"), "an unknown node is refused", words("node-state"));
     equal(treePage.node, 0, "and the selection stays");
+    nodes.indexOf.set((nodes.ids[1] = "5 of instance 2"), 1);
+    treePage.select(1);
+    const { hash } = location;
+    treePage.select(0);
+    history.replaceState(null, "", hash);
+    window.dispatchEvent(new Event("hashchange"));
+    equal(treePage.node, 1, `the address of a node of an instance leads to it: ${hash}`);
   }
 
   function clicks() {
