@@ -1,6 +1,6 @@
 /// planted_engine A B POSES: a program of another engine for the tests of `command:PROGRAM`. Its trees are a
 /// root and a leaf for each triangle. If the centres of B and A are less than 0.5 apart it tests all pairs of
-/// leaves, otherwise only the roots. $PLANTED makes it fail, or the tree of A faulty.
+/// leaves, otherwise only the roots. $PLANTED makes it fail, the tree of A faulty, or a pair wrong.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -31,7 +31,7 @@ Body read(const char* path, const std::string& planted) {
   return {n, describe(mesh, path, LRBCAP_AABB, nodes, boxes)};
 }
 
-void answer(const Body& a, const Body& b, const Pose& pose) {
+void answer(const Body& a, const Body& b, const Pose& pose, bool wrong_pair) {
   static const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   LRBCAP_BEGIN(LRBCAP_ALL_PAIRS, a.tree, identity, b.tree, pose.data());
   // Both bodies of the test are centred at 0.
@@ -42,6 +42,7 @@ void answer(const Body& a, const Body& b, const Pose& pose) {
   LRBCAP_PHASE(leaves);
   for (std::uint32_t f = 0; near && f < a.triangles; ++f)
     for (std::uint32_t g = 0; g < b.triangles; ++g) LRBCAP_NODE(f + 1, g + 1, false, LRBCAP_NO_AXIS);
+  if (wrong_pair && !near) LRBCAP_PRIM(0, 0, true);
   LRBCAP_END(LRBCAP_SEPARATE, 0);
 }
 
@@ -66,7 +67,7 @@ int main(int argc, char** argv) {
   const Body a = read(argv[1], planted), b = read(argv[2], "");
   for (Pose pose : read_poses(argv[3])) {
     if (planted == "shift") pose[3] += 1;
-    answer(a, b, pose);
+    answer(a, b, pose, planted == "pair");
     if (planted == "short") break;
   }
   LRBCAP_CLOSE();
