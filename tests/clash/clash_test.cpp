@@ -177,6 +177,8 @@ TEST_CASE("clash: enclosed, equal, flush") {
   // A plate within the other body: at most its own volume.
   const double top = 0.5 + 1e-11;
   check_holds(ask(a, shapes::box({0.25, 0.25, 0.5}, {0.75, 0.75, top})).volume, 0.25 * (top - 0.5), 5e-12);
+  // At most that of the box of the overlap.
+  check_holds(ask(finer(a), finer(shapes::box({1 - 0x1p-40, 0, 0}, {2, 1, 1}))).volume, 0x1p-40, 9e-12);
   // Shifted along an edge: no face crosses another.
   const ClashResult shifted = ask(a, shapes::translated(a, {0.5, 0, 0}));
   CHECK(shifted.kind == ClashKind::protrudes);

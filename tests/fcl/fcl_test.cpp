@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/support/float_modes.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/fcl.hpp>
@@ -162,6 +163,10 @@ TEST_CASE("contacts have points in both meshes, and the normal and depth of the 
     CHECK(lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(3), result) == result.numContacts());
     ::fcl::CollisionResultd few;
     CHECK(lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(3), few) == 3);
+    ::fcl::CollisionResultd upward;  // by an interval arithmetic
+    test::in_mode(0, [&] { lrb::fcl::collide(&o1, &o2, ::fcl::CollisionRequestd(1000, true), upward); });
+    for (std::size_t k = 0; k < result.numContacts(); ++k)
+      CHECK(upward.getContact(k).pos == result.getContact(k).pos);
   }
   CHECK(lrb::fcl::known_bodies().of(inward.get(), lrb::fcl::arrays_of(*inward)) ==
         lrb::fcl::known_bodies().of(inward.get(), lrb::fcl::arrays_of(*inward)));
@@ -180,6 +185,11 @@ TEST_CASE("FCL's names work without qualification; other shapes and moving objec
   const std::size_t found = collide(mesh.get(), Transform3d(Transform3d::Identity()), mesh.get(),
                                     o2.getTransform(), CollisionRequestd(1000), result);
   CHECK(found == result.numContacts());
+  const auto vacant = model_of<OBBRSSd>(shapes::box());
+  vacant->cost_density = 0;  // not occupied
+  const CollisionObjectd o3(vacant);
+  CollisionResultd none;
+  CHECK(collide(&o2, &o3, CollisionRequestd(), none) == 0);
   DistanceResultd nearest;
   CollisionObjectd far(box);
   far.setTranslation({5, 0, 0});
@@ -211,11 +221,14 @@ TEST_CASE("a changed mesh, or another one at its address, is not served from the
   model->endReplaceModel();
   CHECK(meets());
   CHECK(lrb::fcl::known_bodies().size() == 2);
+  std::vector<std::shared_ptr<::fcl::BVHModel<::fcl::OBBRSSd>>> kept;  // so that all addresses differ
   for (int i = 0; i < 300; ++i) {
-    model = model_of<::fcl::OBBRSSd>(shapes::box({0, 0, 0}, {i % 2 == 0 ? 1.0 : 2.5, 1, 1}));
+    kept.push_back(model = model_of<::fcl::OBBRSSd>(shapes::box({0, 0, 0}, {i % 2 == 0 ? 1.0 : 2.5, 1, 1})));
     CHECK(meets() == (i % 2 != 0));
   }
-  CHECK(lrb::fcl::known_bodies().size() <= 256);
+  CHECK(lrb::fcl::known_bodies().size() == 256);
+  CHECK(lrb::fcl::known_bodies().of(model.get(), lrb::fcl::arrays_of(*model)) ==  // kept: the last one used
+        lrb::fcl::known_bodies().of(model.get(), lrb::fcl::arrays_of(*model)));
 }
 
 TEST_CASE("threads query the same meshes concurrently") {

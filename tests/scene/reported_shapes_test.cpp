@@ -156,6 +156,13 @@ TEST_CASE("volume and depth of an overlap are as precise as the overlap is large
   for (const double inside : {kEdge / 2, kDeep, 1.0})
     check(block, 2e4, box({1e4 - inside, 3, 5}, {1e4 - inside + kEdge, 3 + kEdge, 5 + kEdge}), inside,
           std::min(inside, kEdge) * kEdge * kEdge);
+  // Corners are rounded in the frame of both.
+  for (const double y : {1 / 3.0, 100 / 7.0}) {
+    const double x = 1e4 - 1e-3, wide = y + kEdge - y;
+    const LrbRep beam = closed(box({x, y, y}, {1e4 + 1e3 / 3, y + kEdge, y + kEdge}));
+    const auto volume = clash(closed(block), Pose{}, beam, Pose{}).volume;
+    check_interval(volume->lower, volume->upper, (1e4 - x) * wide * wide, 0.01);
+  }
   check(box({-100, -100, -0.5}, {100, 100, 0}), 200, box({3, 5, -kDeep}, {3.25, 5.5, 2}), kDeep,
         0.125 * kDeep);
   // No more than the smaller body's volume; from 0 where it would be rounded up to the least double.

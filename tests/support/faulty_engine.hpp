@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <random>
 #include <set>
@@ -240,6 +241,29 @@ inline capture::Mesh sheet_mesh(std::uint32_t n) {
       out.triangles.push_back({w, w + 1, v + 1});
     }
   return out;
+}
+
+/// Returns two triangles across z at two heights, from an edge at x to 1 on the x axis.
+inline capture::Mesh mesh_across_z(const Eigen::Vector2d& edge, const Eigen::Vector2d& height) {
+  capture::Mesh out;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    for (const double y : {-1, 1, 0}) out.vertices.emplace_back(y == 0 ? 1 : edge[i], y, height[i]);
+    out.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return out;
+}
+
+inline capture::Probe ray_along_z(double x = 0) {
+  return {capture::ProbeShape::ray, {x, x, 0, 0, 0, 1, 0, std::numeric_limits<double>::infinity()}};
+}
+
+/// Returns a captured query of a mesh with a probe, near which all volumes are.
+inline capture::Capture capture_of(const capture::Mesh& mesh, const capture::Probe& probe,
+                                   capture::QueryKind kind, const std::set<NumberPair>& lies = {}) {
+  FaultyEngine engine;
+  std::mt19937_64 random(1);
+  engine.ask(engine.grow(engine.add(mesh), random), {}, probe, {.kind = kind, .reach = 9, .lies = lies});
+  return engine.capture;
 }
 
 /// Returns a mesh of one triangle.

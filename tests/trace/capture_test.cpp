@@ -563,14 +563,16 @@ TEST_CASE("captures with invalid events are rejected") {
            {"event 2", "tree 2 (B)", "found id 2"});
   contains(refusal(reported([&] { LRBCAP_PRIM(0, 4, 1); })),
            {"event 1: expected a triangle of B below 4, found 4"});
-  // The root of B has the id 30, and its children 10 and 20. Here that of A is another one.
+  // B has the ids 30, 10 and 20. Here each root has one child, which has the other.
   const auto without_root = [&](std::uint32_t a, std::uint32_t b) {
-    return with(reported([&] { LRBCAP_PRIM(0, 1, 1), LRBCAP_NODE(a, b, 1, 255); }), "TREE", 36, 0x200000001u);
+    const Bytes out = reported([&] { LRBCAP_PRIM(0, 1, 1), LRBCAP_NODE(a, b, 1, 255); });
+    return with(with(out, "TREE", 36, 0x200000001u), "TREE", 48, 0x200000001u, 1);
   };
   CHECK(read(without_root(0, 10)).queries[0].complete());
   CHECK(read(without_root(1, 30)).queries[0].complete());
   contains(refusal(without_root(2, 30)),
            {"event 2: expected the roots or their children in the first test of nodes, found node 2 of A"});
+  contains(refusal(without_root(0, 20)), {"found node 20 of B"});
   CHECK(read(reported([&] { LRBCAP_NODE(1, 10, 1, 255); }, LRBCAP_SELF)).queries[0].complete());
   contains(refusal(reported([&] { LRBCAP_NODES(0, 30, 2, 3, 255); })), {"event 1", "found 3 of 2"});
   contains(refusal(reported([&] { LRBCAP_NODES(0, 30, 0, 0, 255); })), {"event 1", "at least one test"});
