@@ -289,7 +289,7 @@ void require_closed(const spec::Scenario& s, const LrbRep& rep) {
   if (rep.closed()) return;
   throw InputError("scenario " + s.name + ": body a, " + printable_name(source_of(s.bodies[0])) +
                    ", is open, so it has no wrapper to refine or to construct; close it (lrbscope inspect "
-                   "lists its open edges), or show a collision");
+                   "lists its open edges, lrbscope close fills holes), or show a collision");
 }
 
 /// Returns the transitions from a lid through the regions to a real face: "face 7 -> region 3 -> face 2".
