@@ -329,9 +329,8 @@ void draw_findings(const pictures::FaultyMesh& faulty, const InspectOptions& o, 
 void report_regions(const LrbRep& rep, const InspectOptions& o, const pictures::Look& look,
                     const std::string& picture, Json& j) {
   if (rep.region_count() == 0)
-    throw InputError(
-        rep.name() +
-        ": no regions to list, because the mesh is open or an LRB-rep cannot be built; `lrbscope build` says why");
+    throw InputError(rep.name() +
+                     ": no regions to list: an LRB-rep cannot be built; `lrbscope build` says why");
   const std::vector<bodies::RegionFigures> regions = bodies::region_figures(rep, o.sort, o.threads);
   j["total_waste"] = bodies::total_waste(regions);
   j["region_figures"] = regions_json(regions);
