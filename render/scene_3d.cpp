@@ -291,10 +291,10 @@ class Scene3dBuilder {
 
   /// Draws a triangle whose corners are in one line, as a ray is, or in one point.
   void add_degenerate(FaceId f, Rgba colour) {
-    std::vector<Vector3d> x;
-    for (const VertexId v : rep_.face(f)) x.push_back(rep_.vertices()[v]);
-    if (x.size() != 3 || !(x[1] - x[0]).cross(x[2] - x[0]).isZero(0)) return;
-    x = c_.corners(f);
+    const auto v = rep_.face(f);
+    const auto side = [&](std::size_t i) { return Vector3d(rep_.vertices()[v[i]] - rep_.vertices()[v[0]]); };
+    if (v.size() != 3 || !side(1).cross(side(2)).isZero(0)) return;
+    const std::vector<Vector3d> x = c_.corners(f);
     if (x[0] == x[1] && x[1] == x[2])
       c_.out.list.points.push_back({.x = x[0], .colour = colour, .radius = 4 * c_.options.scale});
     else

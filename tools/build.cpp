@@ -75,7 +75,7 @@ int run_build(const BuildCommandOptions& o, const Globals& globals) {
   j["notes"] = notes;  // repairs made to the mesh, and weaknesses of the result
   ValidateReport report;
   // Levels are made here, perhaps at the same time.
-  const ValidateOptions validating{.levels = false, .threads = o.build.threads};
+  const ValidateOptions validating{.threads = o.build.threads, .levels = false};
   Workers workers(o.build.threads);
   workers.both(
       [&] {

@@ -87,7 +87,7 @@ class Ours : public OurMethod {
   Workspace workspace_;
 };
 
-/// Returns the poses of a motion that ends at B's: at each B comes nearer to A by 0.1 % of A's size, and
+/// Returns the poses of a motion that ends at B's: at each B comes nearer to A by 0.1 % of A's unit, and
 /// turns by 0.001 radians. Reads no vertices, which would displace the trees from the caches.
 template <class Posed>
 std::vector<Pose> motion_to(const Posed& a, const Posed& b, int count) {
@@ -116,7 +116,7 @@ class OursCoherent : public OurMethod {
   Answer ask(const Posed& a, const Posed& b, Mode mode) override {
     CoherentQuery coherent(a.body.rep, b.body.rep, request_for(mode));
     const std::vector<Pose> poses = motion_to(a, b, 9);
-    for (const Pose& pose : std::span(poses).first(8)) coherent.collide(a.pose, pose);
+    for (const Pose& pose : std::span(poses).first(poses.size() - 1)) coherent.collide(a.pose, pose);
     const Stopwatch watch;
     const CollideResult& result = coherent.collide(a.pose, b.pose);
     const double microseconds = watch.microseconds();
@@ -135,7 +135,7 @@ class OursMotion : public OurMethod {
     const std::vector<Pose> poses = motion_to(a, b, 64);
     const Stopwatch watch;
     batch_.collide(a.body.rep, a.pose, b.body.rep, poses, request_for(Mode::any_pair), answers_);
-    return answer_from(*answers_.back(), watch.microseconds() / 64);
+    return answer_from(answers_.back().value(), watch.microseconds() / 64);
   }
 
  private:

@@ -91,7 +91,7 @@ bool OverlapProof::evaluate(const Vector3d& x, const Vector3d& v, const Common& 
   out.shift = v;
   // B is translated by v: it contains x if the original B contains x - v.
   out.of_b = x - v;
-  // A clearance changes by at most the way of the point, up to rounding: less than 64 kRoomMargin in all.
+  // An estimate from the way of the point: where it is wrong at() returns 0, which is no wrong clearance.
   const double enough = least.room() * (1 + kClearlyMore) - 64 * kRoomMargin;
   out.clear_a = a_.at(out.x, enough - least.clear_b - (out.of_b - least.of_b).norm());
   out.clear_b = b_.at(out.of_b, enough - out.clear_a);

@@ -111,26 +111,27 @@ constexpr MeshFault kOfWelds[] = {MeshFault::repeated_corner,    MeshFault::zero
                    " apart would spoil it: " + what + "; choose a smaller distance");
 }
 
-/// Returns in words a fault that a welded mesh has at other faces, edges or vertices than the mesh; empty if
-/// there is none.
-std::string added_fault(const Mesh& mesh, const Mesh& welded, MeshFault fault) {
-  MeshFinding before = examine(mesh, kMaxId).report[fault];
-  const MeshFinding after = examine(welded, kMaxId).report[fault];
+/// Returns in words the first fault that a welded mesh has elsewhere than the mesh, or an empty string.
+std::string added_fault(const Mesh& mesh, const Mesh& welded) {
+  const MeshReport before_all = examine(mesh, kMaxId).report, after_all = examine(welded, kMaxId).report;
   // Vertices that were merged have other numbers in the welded mesh.
   std::vector<VertexId> became(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.face_vertices.size(); ++i)
     if (mesh.face_vertices[i] < became.size()) became[mesh.face_vertices[i]] = welded.face_vertices[i];
-  const bool is_edge = fault == MeshFault::non_manifold_edge;
-  for (auto& [first, second] : before.first) {
-    if (is_edge || fault == MeshFault::non_manifold_vertex) first = became[first].value();
-    if (is_edge || fault == MeshFault::repeated_corner) second = became[second].value();
-    if (is_edge && first > second) std::swap(first, second);
+  for (const MeshFault fault : kOfWelds) {
+    MeshFinding before = before_all[fault], after = after_all[fault];
+    const bool is_edge = fault == MeshFault::non_manifold_edge;
+    for (auto& [first, second] : before.first) {
+      if (is_edge || fault == MeshFault::non_manifold_vertex) first = became[first].value();
+      if (is_edge || fault == MeshFault::repeated_corner) second = became[second].value();
+      if (is_edge && first > second) std::swap(first, second);
+    }
+    std::sort(before.first.begin(), before.first.end());
+    if (!std::includes(before.first.begin(), before.first.end(), after.first.begin(), after.first.end()))
+      return io::in_words(name_of(fault)) + " (" + std::to_string(after.count) + " in place of " +
+             std::to_string(before.count) + (after.count > before.count ? ")" : " elsewhere)");
   }
-  std::sort(before.first.begin(), before.first.end());
-  if (std::includes(before.first.begin(), before.first.end(), after.first.begin(), after.first.end()))
-    return {};
-  return io::in_words(name_of(fault)) + " (" + std::to_string(after.count) + " in place of " +
-         std::to_string(before.count) + (after.count > before.count ? ")" : " elsewhere)");
+  return {};
 }
 
 }  // namespace
@@ -180,10 +181,9 @@ CheckedMesh weld_corners(const CheckedMesh& mesh, double distance, WeldedCorners
   // 2. Merge corners with equal coordinates, and prove that no face, edge or vertex became worse.
   join_corners(out);
   CheckedMesh welded = check(std::move(out));
-  for (const MeshFault fault : kOfWelds)
-    if (welded.report()[fault].count > 0)
-      if (const std::string added = added_fault(mesh.mesh(), welded.mesh(), fault); !added.empty())
-        reject_weld(mesh.mesh(), distance, added);
+  if (std::ranges::any_of(kOfWelds, [&](MeshFault fault) { return welded.report()[fault].count > 0; }))
+    if (const std::string added = added_fault(mesh.mesh(), welded.mesh()); !added.empty())
+      reject_weld(mesh.mesh(), distance, added);
   Workers workers(0);
   const std::vector<FaceId> before = mesh.self_intersecting_faces(workers);
   for (const FaceId f : welded.self_intersecting_faces(workers))

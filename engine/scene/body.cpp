@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <utility>
 
@@ -69,11 +68,11 @@ bool is_lrb_file(const std::string& path) {
   std::error_code ignored;
   // Only regular files: bytes read from a pipe are lost, and opening a named pipe would block.
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  constexpr std::size_t kEnough = 64;  // bytes: more than any magic
-  std::ifstream in(path, std::ios::binary);
-  std::string start(kEnough, '\0');
-  in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  return looks_like_lrb(std::string_view(start).substr(0, static_cast<std::size_t>(in.gcount())));
+  try {
+    return looks_like_lrb(InputFile(path).start());
+  } catch (const InputError&) {  // who reads it says why
+    return false;
+  }
 }
 
 std::string join_corners_of_mesh(Mesh& mesh) {

@@ -327,9 +327,7 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
   for (const TrianglePair& pair : goals)
     for (std::uint32_t i = walk.deepest_above(pair); i != kNone && !needed[i]; i = walk.parent(i))
       needed[i] = 1;
-  // Parents come first, so that their owners are known.
-  std::vector<std::uint32_t> owner(events.size(), kNone);  // the pair of proof at or above a visit
-  std::vector<char> attached(events.size(), 0), wasted(events.size(), 0);
+  std::vector<char> attached(events.size(), 0);
   // With a distance: at this visit, or above it, the volumes are no closer. Without: they are disjoint, and
   // the engine went on beneath. Unused if one pair is enough: then all waste is of order.
   std::vector<char> ends(events.size(), 0);
@@ -354,7 +352,6 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
       continue;
     }
     const bool below_needed = up == kNone || needed[up];
-    owner[i] = below_needed ? first : owner[up];
     const bool ended_above = !below_needed && ends[up];
     if (distance)
       ends[i] = ended_above ||
@@ -367,7 +364,6 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
       ++out.proof;
       continue;
     }
-    wasted[i] = 1;
     // A visit of wide nodes follows a comparison of their own volumes.
     const bool ended = ended_above || (walk.wide() && ends[i]);
     const bool by_order = distance && (repeated || ended);
@@ -384,8 +380,8 @@ void PriceBook::price_visits(const QueryWalk& walk, std::span<const TrianglePair
   // Tests of triangles beneath pairs of nodes that are not needed.
   for (std::size_t i = 0; i < events.size(); ++i) {
     const std::uint32_t up = walk.parent(i);
-    if (events[i].kind != EventKind::triangles || up == kNone || !attached[up] || owner[up] == kNone)
-      continue;
+    if (events[i].kind != EventKind::triangles || up == kNone || !attached[up]) continue;
+    if (needed[up] && walk.first_visit(up) == up) continue;
     ++out.triangles_by_volumes;
     if (ends[up]) ++(distance ? out.triangles_by_order : out.triangles_by_test);
   }

@@ -82,10 +82,11 @@ void worsen(Judgement& outcome, Judgement by) {
 }  // namespace
 
 Precision precision_of(const capture::Capture& capture) {
-  for (const capture::Tree& tree : capture.trees)
+  for (const capture::Tree& tree : capture.trees) {
+    if (!tree.instances.empty()) continue;  // the reader moved its volumes, in double
     for (const double x : tree.volumes)
-      if (tree.instances.empty() && static_cast<double>(static_cast<float>(x)) != x)
-        return Precision::float64;
+      if (static_cast<double>(static_cast<float>(x)) != x) return Precision::float64;
+  }
   return capture.trees.empty() ? Precision::float64 : Precision::float32;
 }
 

@@ -17,10 +17,10 @@ class Cells {
  public:
   /// Adds those of a step; none if there would be more than `most`.
   void add(const frames::RecordedRun& p, std::size_t step, std::size_t most) {
-    const std::optional<frames::ProofMap> map = frames::proof_map(p, step);
+    const frames::ProofMap map = frames::proof_map(p, step).value_or(frames::ProofMap());
     std::vector<std::array<std::uint32_t, 4>> sorted;  // event, argument, a, b
     std::map<std::array<std::uint32_t, 2>, trace::EventId> visit;
-    for (const frames::MapCell& cell : map ? map->cells : std::vector<frames::MapCell>{}) {
+    for (const frames::MapCell& cell : map.cells) {
       const auto argument = static_cast<std::uint32_t>(cell.argument);
       if (!cell.is_upon()) {
         visit[cell.node] = cell.event;
@@ -41,7 +41,7 @@ class Cells {
       a_.push_back(a), b_.push_back(b);
     }
     first_.push_back(static_cast<std::uint32_t>(event_.size()));
-    for (std::size_t i = 0; i < 2; ++i) walked_.push_back(map ? map->walked[i] : 0);
+    walked_.insert(walked_.end(), map.walked.begin(), map.walked.end());
   }
 
   nlohmann::json json() const {

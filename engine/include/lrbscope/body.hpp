@@ -68,7 +68,7 @@ class Body {
   static Body from(std::shared_ptr<const LrbRep> rep);
 
   /// Reads a mesh file as read_mesh() does, or an .lrb file; detected by content. Of the options of a build,
-  /// an .lrb file uses `turn` alone.
+  /// an .lrb file uses `turn` and the threads alone.
   static Expected<Body> load(const std::string& path, const BodyOptions& options = default_body_options());
 
   const LrbRep& rep() const { return *impl_->rep; }
@@ -156,6 +156,7 @@ std::string note_unproven(const LrbRep& rep);
 /// Returns a note on polygons that are not what their outlines say, or an empty string if there are none:
 /// LrbRep::folded_faces(), LrbRep::dropped_fans().
 std::string note_polygons(const LrbRep& rep);
+
 /// Reorients inward-oriented components and returns their number. Adds a note if there were any.
 std::uint32_t turn_outward(CheckedMesh& mesh, std::vector<std::string>& notes);
 

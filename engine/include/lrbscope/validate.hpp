@@ -15,10 +15,10 @@ struct ValidateOptions {
   bool embedding = true;  ///< test all pairs of faces of the complex exactly
   /// Number of random wrapper states to check for closedness, volume and enclosure.
   std::uint32_t wrapper_states = 100;
-  bool levels = true;  ///< check stored levels of detail, if there are any
   std::uint64_t seed = 1;
   std::uint32_t max_messages = 20;
   unsigned threads = 1;  ///< 0: number of hardware threads. The report does not depend on it
+  bool levels = true;    ///< check stored levels of detail, if there are any
 };
 
 struct ValidateReport {
