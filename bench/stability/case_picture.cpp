@@ -9,10 +9,10 @@
 #include <numbers>
 
 #include <Eigen/Geometry>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "bench/methods/triangles.hpp"
 #include "bench/stability/case_meshes.hpp"
+#include "bench/stability/rational_oracles.hpp"
 #include "bench/stability/stability_report.hpp"
 #include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
@@ -113,17 +113,17 @@ double diagonal(const AlignedBox3d& box) {
   return box.isEmpty() ? 0 : (box.max() / 4 - box.min() / 4).stableNorm() * 4;
 }
 
-/// Maps a box of the world to the cube [-1, 1]^3: its centre to the origin, its longest side to 2. With 100
-/// digits, because bodies may be of size 1e-120, at 1e16, or 1e60 times larger than the box.
+/// Maps a box of the world to the cube [-1, 1]^3: its centre to the origin, its longest side to 2. Exactly,
+/// because bodies may be of size 1e-120, at 1e16, or 1e60 times larger than the box.
 class PictureFrame {
  public:
   explicit PictureFrame(const AlignedBox3d& box) {
-    Wide radius = 0, largest = std::numeric_limits<double>::min();
+    Rational radius = 0, largest = std::numeric_limits<double>::min();
     for (int k = 0; k < 3; ++k) {
-      const Wide low = box.min()[k], high = box.max()[k];
+      const Rational low = box.min()[k], high = box.max()[k];
       centre_[static_cast<std::size_t>(k)] = (low + high) / 2;
-      radius = std::max<Wide>(radius, (high - low) / 2);
-      largest = std::max<Wide>(largest, std::max<Wide>(abs(low), abs(high)));
+      radius = std::max<Rational>(radius, (high - low) / 2);
+      largest = std::max<Rational>(largest, std::max<Rational>(abs(low), abs(high)));
     }
     scale_ = 1 / (radius > 0 ? radius : largest);  // bodies that have collapsed to a point are drawn as one
   }
@@ -131,44 +131,44 @@ class PictureFrame {
   /// Returns the part of a segment or polygon in [-reach, reach]^3, or no corners if it is empty (I.
   /// Sutherland, G. Hodgman, "Reentrant Polygon Clipping", 1974).
   Corners cut(const Corners& world, double reach = std::numeric_limits<double>::infinity()) const {
-    std::vector<WidePoint> wide;
-    for (const Vector3d& x : world)
-      wide.push_back(
-          {(x[0] - centre_[0]) * scale_, (x[1] - centre_[1]) * scale_, (x[2] - centre_[2]) * scale_});
-    Corners out = rounded(wide);
+    oracle::RationalPoints points;
+    for (const Vector3d& x : world) {
+      std::array<Rational, 3>& p = points.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) p[k] = (Rational(x[static_cast<int>(k)]) - centre_[k]) * scale_;
+    }
+    Corners out = rounded(points);
     if (std::all_of(out.begin(), out.end(),
                     [&](const Vector3d& x) { return x.cwiseAbs().maxCoeff() <= reach; }))
       return out;
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (const int sign : {-1, 1}) {
-        std::vector<WidePoint> kept;
-        for (std::size_t i = 0, n = wide.size(); i < n; ++i) {
-          const WidePoint &p = wide[i], &q = wide[(i + 1) % n];
-          const Wide dp = sign * p[axis] - reach, dq = sign * q[axis] - reach;
+        oracle::RationalPoints kept;
+        for (std::size_t i = 0, n = points.size(); i < n; ++i) {
+          const std::array<Rational, 3>&p = points[i], &q = points[(i + 1) % n];
+          const Rational dp = sign * p[axis] - reach, dq = sign * q[axis] - reach;
           if (dp <= 0) kept.push_back(p);
           if (!(dp < 0 ? dq > 0 : dp > 0 && dq < 0) || (n == 2 && i == 1))
             continue;  // a segment has one side
-          WidePoint& cut = kept.emplace_back();
+          std::array<Rational, 3>& cut = kept.emplace_back();
           for (std::size_t k = 0; k < 3; ++k) cut[k] = p[k] + dp / (dp - dq) * (q[k] - p[k]);
         }
-        wide = std::move(kept);
+        points = std::move(kept);
       }
-    return rounded(wide);
+    return rounded(points);
   }
 
  private:
-  using Wide = boost::multiprecision::cpp_bin_float_100;
-  using WidePoint = std::array<Wide, 3>;
+  using Rational = oracle::Rational;
 
-  static Corners rounded(const std::vector<WidePoint>& points) {
+  static Corners rounded(const oracle::RationalPoints& points) {
     Corners out;
-    for (const WidePoint& x : points)
-      out.emplace_back(static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2]));
+    for (const std::array<Rational, 3>& x : points)
+      out.emplace_back(x[0].convert_to<double>(), x[1].convert_to<double>(), x[2].convert_to<double>());
     return out;
   }
 
-  WidePoint centre_;
-  Wide scale_;
+  std::array<Rational, 3> centre_;
+  Rational scale_;
 };
 
 render::Rgba body_colour(std::size_t side) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <sstream>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <sys/utsname.h>
 
 #include "bench/methods/triangles.hpp"
@@ -77,11 +77,11 @@ Json pair_proof(const cases::Case& c, const SimplexPair& pair) {
   out["direction"] = point_json(direction);
   out["largest_of_a"] = oracle::dot(direction, closest.on_f).str();
   out["least_of_b"] = oracle::dot(direction, closest.on_g).str();
-  // The square may be less than the least double.
-  using Wide = boost::multiprecision::cpp_bin_float_100;
-  const Wide distance_sq = Wide(boost::multiprecision::numerator(closest.distance_sq)) /
-                           Wide(boost::multiprecision::denominator(closest.distance_sq));
-  out["distance"] = io::number_text(sqrt(distance_sq).convert_to<double>(), 3);
+  // The square may be less than the least double, so its root is that of the square times 4^shift.
+  oracle::Rational square = closest.distance_sq;
+  int shift = 0;
+  for (; square < 1; ++shift) square *= 4;
+  out["distance"] = io::number_text(std::ldexp(std::sqrt(square.convert_to<double>()), -shift), 3);
   return out;
 }
 
