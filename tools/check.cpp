@@ -25,6 +25,7 @@ struct CheckOptions {
   std::vector<std::string> inputs;
   std::string queries, folder;
   std::optional<profile::Precision> precision;
+  std::string up;  ///< of pictures
   bool split = false, json = false;
 };
 
@@ -91,22 +92,27 @@ std::string json_lines(const profile::Check& c) {
   return out + one_line(std::move(last));
 }
 
-/// Returns the first lines of a list, and how many are left out.
-std::string first_lines(const std::vector<std::string>& lines) {
-  constexpr std::size_t kShown = 10;
+/// Returns the number of errors, and the first ones of each cause, which is named if there are more.
+std::string lines_of(const std::vector<profile::Cause>& causes, const std::string& what) {
+  constexpr std::size_t kShown = 3;
+  std::size_t all = 0;
   std::string out;
-  for (std::size_t i = 0; i < std::min(lines.size(), kShown); ++i) out += "  " + lines[i] + "\n";
-  if (lines.size() > kShown) out += "  ... and " + std::to_string(lines.size() - kShown) + " more\n";
-  return out;
+  for (const auto& [words, lines] : causes) {
+    all += lines.size();
+    if (lines.size() > kShown) out += "  " + std::to_string(lines.size()) + " " + words + ", such as:\n";
+    for (std::size_t i = 0; i < std::min(lines.size(), kShown); ++i) out += "  " + lines[i] + "\n";
+  }
+  return std::to_string(all) + " " + what + "\n" + out;
 }
 
 std::string text_of(const std::vector<profile::Check>& checks) {
   std::string out;
   for (const profile::Check& c : checks)
-    for (const auto& [head, lines] :
+    for (const auto& [head, causes] :
          {std::pair{"wrong", &c.wrong}, {"undecidable in floats", &c.undecidable}})
-      if (!lines->empty())
-        out += c.engine + ": " + std::to_string(lines->size()) + " " + head + "\n" + first_lines(*lines);
+      if (!causes->empty())
+        out += c.engine + ": " +
+               lines_of(*causes, std::string(head) + (c.sample.empty() ? "" : ", of the recorded queries"));
   out += report::in_columns(profile::verdict_table(checks), 2) + "\n" +
          report::in_columns(profile::price_table(checks), 2) + "\n";
   for (const profile::Check& c : checks) {
@@ -117,18 +123,19 @@ std::string text_of(const std::vector<profile::Check>& checks) {
   return out;
 }
 
-void write_page(const std::vector<profile::Check>& checks, const std::string& path, const Globals& globals) {
+void write_page(const std::vector<profile::Check>& checks, const std::string& path, const std::string& up,
+                const Globals& globals) {
   const report::Folder folder(path);
   report::Document page("Answers and visits of " + std::string(checks.size() == 1 ? "an engine" : "engines"),
                         "An exact query checks each answer. Prices of visits: needed, proof, or waste.");
   const bool wrong =
       std::any_of(checks.begin(), checks.end(), [](const profile::Check& c) { return c.is_wrong(); });
   page.verdict(wrong ? "wrong answers" : "no wrong answers", !wrong).command(globals.command_line);
-  note(globals, profile::add_checks(page, checks));
+  note(globals, profile::add_checks(page, checks, view_with(up).up));
   page.write(folder);
 }
 
-int run_check(const CheckOptions& o, const Globals& globals) {
+int run_check(CheckOptions o, const Globals& globals) {
   const QueryRange range = parse_queries(o.queries);
   profile::CheckSettings settings{o.precision, std::nullopt};
   if (o.split) settings.split = true;
@@ -138,6 +145,7 @@ int run_check(const CheckOptions& o, const Globals& globals) {
     if (capture.queries.empty())
       throw InputError(printable_name(path) + ": expected queries, found none" +
                        (o.queries.empty() ? "" : " with these numbers") + "; record some, or choose others");
+    if (!capture.meshes.empty()) resolve_up(o.up, profile::captured_body(capture.meshes[0]).rep, globals);
     checks.push_back(profile::check(capture, settings, progress_report(globals.quiet)));
   }
   if (o.json)
@@ -149,7 +157,7 @@ int run_check(const CheckOptions& o, const Globals& globals) {
     if (captures[checks[i].engine] > 1) checks[i].engine = printable_name(o.inputs[i]);
   if (!o.json) print(text_of(checks));
   if (!o.folder.empty()) {
-    write_page(checks, o.folder, globals);
+    write_page(checks, o.folder, o.up, globals);
     if (!o.json) print(o.folder + "/index.html\n");
   }
   const bool wrong =
@@ -178,6 +186,7 @@ Command add_check(App& root, const Globals& globals) {
                     std::to_string(profile::kMaxVisitsToSplit) + " visits, which takes long");
   app->add_flag("--json", o->json, "Print JSON, a line for each query and one for the sums");
   app->add_option("-o,--output", o->folder, "DIR", "Also write a page to this folder");
+  add_up_option(*app, o->up);
   return {app, [o, &globals] { return run_check(*o, globals); }};
 }
 

@@ -28,8 +28,17 @@ bool is_closed(const Hole& hole) {
   return hole.state <= HoleState::closed_as_ring;
 }
 
-/// Returns the state of a hole as text.
-std::string state_text(const Hole& hole) {
+/// Returns the T-junction whose slit a hole is; empty: it has none.
+std::string junction_text(const Hole& hole, const MeshReport& report) {
+  for (const auto& [vertex, face] : report[MeshFault::t_junction].first)
+    if (std::ranges::count(hole.loop.vertices, VertexId(vertex)) > 0)
+      return ": a T-junction of vertex " + std::to_string(vertex) + " with face " + std::to_string(face) +
+             "; make it a corner of the face, or merge it with a vertex close to it first (--weld LENGTH)";
+  return {};
+}
+
+/// Returns the state of a hole as text. `report`: of the mesh with the hole.
+std::string state_text(const Hole& hole, const MeshReport& report) {
   if (hole.of_sheet && !is_closed(hole))
     return "not closed: its surface is a sheet, which does not bound a solid";
   switch (hole.state) {
@@ -42,7 +51,7 @@ std::string state_text(const Hole& hole) {
       return "not closed: the boundary is not a simple loop (it runs into non-manifold edges or inconsistently "
              "oriented faces); fix those first";
     case HoleState::no_area:
-      return "not closed: the boundary lies on one line";
+      return "not closed: the boundary is a slit along one line" + junction_text(hole, report);
     case HoleState::meets_surface:
       return "not closed: the fill would intersect face " + std::to_string(hole.obstacle);
     case HoleState::meets_lid:
@@ -52,11 +61,12 @@ std::string state_text(const Hole& hole) {
   }
 }
 
-Json hole_json(const Hole& hole) {
+Json hole_json(const Hole& hole, const MeshReport& report) {
   Json vertices = Json::array();
   for (const VertexId v : hole.loop.vertices) vertices.push_back(v.value());
-  Json j = {{"closed", is_closed(hole)},  {"what", state_text(hole)},   {"edges", hole.loop.edges()},
-            {"length", hole.loop.length}, {"planar", hole.loop.planar}, {"vertices", std::move(vertices)}};
+  Json j = {{"closed", is_closed(hole)},  {"what", state_text(hole, report)},
+            {"edges", hole.loop.edges()}, {"length", hole.loop.length},
+            {"planar", hole.loop.planar}, {"vertices", std::move(vertices)}};
   if (is_closed(hole)) {
     j["first_face"] = hole.first_face;
     j["faces"] = hole.faces;
@@ -64,7 +74,8 @@ Json hole_json(const Hole& hole) {
   return j;
 }
 
-std::string as_text(const ClosedHoles& result, std::size_t closed, const MeshReport& after) {
+std::string as_text(const ClosedHoles& result, std::size_t closed, const MeshReport& before,
+                    const MeshReport& after) {
   std::ostringstream out;
   out << closed << " of " << result.holes.size() << (result.holes.size() == 1 ? " hole" : " holes")
       << " closed, " << result.new_faces << " faces and " << result.new_vertices << " vertices added\n";
@@ -73,7 +84,7 @@ std::string as_text(const ClosedHoles& result, std::size_t closed, const MeshRep
     const Hole& hole = result.holes[i];
     out << "  " << i << ": " << hole.loop.edges() << " edges, length "
         << for_people(hole.loop.length, kDigits) << ", " << (hole.loop.planar ? "flat" : "not flat") << ": "
-        << state_text(hole) << "\n";
+        << state_text(hole, before) << "\n";
   }
   out << "buildable: "
       << (after.when_turned().buildable() ? "yes" : "no (lrbscope inspect lists the reasons)") << "\n";
@@ -106,7 +117,7 @@ int run_close(const CloseOptions& o, const Globals& globals) {
       static_cast<std::size_t>(std::count_if(result.holes.begin(), result.holes.end(), is_closed));
   if (o.json) {
     Json holes = Json::array();
-    for (const Hole& hole : result.holes) holes.push_back(hole_json(hole));
+    for (const Hole& hole : result.holes) holes.push_back(hole_json(hole, mesh.report()));
     print(one_line({{"file", o.out},
                     {"closed", closed},
                     {"left", result.holes.size() - closed},
@@ -116,7 +127,7 @@ int run_close(const CloseOptions& o, const Globals& globals) {
                     {"notes", notes},
                     {"holes", std::move(holes)}}));
   } else {
-    print(as_text(result, closed, after));
+    print(as_text(result, closed, mesh.report(), after));
   }
   note(globals, {"wrote " + o.out});
   return closed == result.holes.size() ? kOk : kMismatch;

@@ -50,14 +50,9 @@ spec::Motion approach_from(const Eigen::Vector3d& direction, const LrbRep& a, co
 /// --from is not chosen. Returns a note if it is not z, else an empty text.
 std::string choose_up(CameraOptions& camera, const std::vector<bodies::LoadedBody>& bodies,
                       const Globals& globals) {
-  if (bodies[0].rep.dim() == 2) {
-    if (camera.up == "auto") camera.up.clear();
-    return {};
-  }
-  if (!camera.up.empty()) {
-    resolve_up(camera, bodies[0].rep, globals);
-    return {};
-  }
+  const bool is_given = !camera.up.empty();
+  resolve_up(camera.up, bodies[0].rep, globals);
+  if (is_given || bodies[0].rep.dim() == 2) return {};
   for (const bodies::LoadedBody& body : bodies) {
     const std::optional<int> guess = pictures::likely_up(body.rep);
     if (!guess) continue;
@@ -211,7 +206,7 @@ Command add_collide(App& root, const Globals& globals) {
   app->add_flag("--gzip", meshes.gzip, "Compress the trace: trace.json.gz");
   add_events_option(*app, meshes.events);
   add_clock_option(*app, meshes.clock);
-  add_picture_options(*app, o->picture, UpOption::auto_by_default);
+  add_picture_options(*app, o->picture, true);
   add_animation_option(*app, o->picture);
   app->add_flag("--json", o->json, "Print the summary as JSON instead of the page's path");
   add_join_option(*app, meshes.corners);

@@ -45,8 +45,10 @@ std::string page_of(const std::string& run) {
 
 int run_compare(const CompareOptions& o, const Globals& globals) {
   const std::array<record::Recording, 2> recordings = {record::open_run(o.first), record::open_run(o.second)};
-  const std::array<spec::Scenario, 2> scenarios = {scenario_of(recordings[0], o.up),
-                                                   scenario_of(recordings[1], o.up)};
+  std::string up = o.up;
+  resolve_up(up, recordings[0].bodies[0].rep, globals);
+  const std::array<spec::Scenario, 2> scenarios = {scenario_of(recordings[0], up),
+                                                   scenario_of(recordings[1], up)};
   const compare::Runs runs{{&recordings[0], &recordings[1]},
                            names_of(o.first, o.second),
                            {&scenarios[0], &scenarios[1]},

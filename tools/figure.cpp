@@ -186,7 +186,7 @@ pictures::FrameSpec frame_spec(const FigureOptions& o, const Source& source, con
   if (source.up_applied)
     picture.camera.up.clear();
   else
-    resolve_up(picture.camera, source.recording.bodies[0].rep, globals);
+    resolve_up(picture.camera.up, source.recording.bodies[0].rep, globals);
   if (o.try_views) {
     frames.views = views_to_try(picture.camera.up, source.recording.bodies[0].rep);
     picture.camera.up.clear();
@@ -379,7 +379,7 @@ Command add_figure(App& root, const Globals& globals) {
          "--towards", o->towards, "X,Y,Z",
          "Refine the wrapper only towards the face nearest to this point of the world; several: one panel each")
       ->allow_extra_args(false);
-  add_camera_options(*app, o->picture.camera, UpOption::axis_or_auto);
+  add_camera_options(*app, o->picture.camera);
   add_orbit_option(*app, o->picture.camera);
   add_colour_options(*app, o->picture);
   return {app, [o, &globals] { return run_figure(*o, globals); }};

@@ -72,6 +72,9 @@ struct NamedGolden {
 /// Finds a golden by its own name, or by its source: the name of a shipped scenario, or a file.
 NamedGolden find_golden(const GoldenOptions& o, const std::string& word) {
   if (golden::has_golden(o.goldens, word)) return {word, std::nullopt};
+  if (word.find_first_of("./") == std::string::npos)
+    throw InputError(word + ": no golden of this name in " + printable_name(o.goldens) +
+                     io::suggestion(word, golden::golden_names(o.goldens)));
   golden::Source source = golden::open_source(word);
   const std::string name = golden::name_of(source);
   if (!golden::has_golden(o.goldens, name))

@@ -7,6 +7,7 @@
 
 #include "scenarios/compare/side_by_side.hpp"
 #include "scenarios/profile/captured_run.hpp"
+#include "scenarios/record/engine_run.hpp"
 #include "scenarios/report/document.hpp"
 #include "tools/options.hpp"
 #include "tools/terminal.hpp"
@@ -26,26 +27,30 @@ struct ImportOptions {
 struct Imported {
   std::string folder;  ///< relative to the page that lists all runs; empty: this is the only run
   std::string name;
-  profile::CapturedTotals totals;
+  record::EngineTotals totals;
 };
 
 Imported import_pair(const ImportOptions& o, const Globals& globals, const capture::Capture& c,
-                     const profile::TreePair& pair, const std::string& folder) {
+                     const profile::TreePair& pair, const std::string& folder, record::EngineTotals& all) {
   const record::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> bodies = profile::captured_bodies(c, pair);
   note(globals, bodies[0].notes);
   if (c.trees[pair.trees[0]].mesh != c.trees[pair.trees[1]].mesh) note(globals, bodies[1].notes);
   spec::Scenario scenario = profile::captured_scenario(c, pair, bodies, o.file);
-  apply(o.picture, scenario.frames);
+  PictureOptions picture = o.picture;
+  resolve_up(picture.camera.up, bodies[0].rep, globals);
+  apply(picture, scenario.frames);
   scenario.keeps_trace = o.trace;
   if (o.trace) scenario.event_cap = 5'000'000;  // a trace of about a gigabyte
   scenario.gzip = true;  // an engine's events are many; viewers read compressed traces as well
   profile::CapturedRunSettings settings = profile::captured_settings(scenario, c, pair, o.file);
   settings.check = !o.no_check;
-  const record::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, progress);
+  record::Recording recording = profile::captured_run(c, pair, std::move(bodies), settings, progress);
+  choose_views(picture.camera, scenario, recording);
   const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
   note(globals, outcome.notes);
-  return {{}, scenario.name, profile::totals_of(recording)};
+  all.add(recording);
+  return {{}, scenario.name, record::totals_of(recording)};
 }
 
 std::string without_tree_words(std::uint64_t n) {
@@ -56,31 +61,29 @@ std::string without_tree_words(std::uint64_t n) {
 
 /// Writes the page that lists the runs of several pairs of trees.
 void write_list(const std::string& folder, const Globals& globals, const capture::Capture& c,
-                const std::string& file, const std::vector<Imported>& runs, const std::string& left_out) {
+                const std::string& file, const std::vector<Imported>& runs, const std::string& left_out,
+                const record::EngineTotals& all) {
   using render::group_digits;
   const report::Folder locked(folder);
   report::Document doc(printable_name(std::filesystem::path(file).filename().string()),
                        "Recorded in " + c.engine + ". A run for each pair of trees with queries." +
                            (left_out.empty() ? "" : " " + left_out + "."));
-  profile::CapturedTotals all;
   report::Table table{"Pairs of trees",
                       {"run", "bodies", "queries", "events", "right", "missed", "false", "wrong verdicts"}};
   for (const Imported& run : runs) {
-    const profile::CapturedTotals& t = run.totals;
-    all += t;
-    table.rows.push_back({run.folder, run.name, group_digits(t.queries), group_digits(t.events),
-                          t.checked ? group_digits(t.right) : "", t.checked ? group_digits(t.missed) : "",
-                          t.checked ? group_digits(t.false_pairs) : "",
-                          t.checked ? group_digits(t.wrong_verdicts) : ""});
-    doc.link({run.folder + "/index.html", profile::words(t), run.name});
+    const record::EngineTotals& t = run.totals;
+    table.rows.push_back(
+        {run.folder, run.name, group_digits(t.queries), group_digits(t.node_pairs + t.face_tests),
+         t.checked ? group_digits(t.right) : "", t.checked ? group_digits(t.missed) : "",
+         t.checked ? group_digits(t.false_pairs) : "", t.checked ? group_digits(t.wrong_verdicts) : ""});
+    doc.link({run.folder + "/index.html", t.words(), run.name});
   }
   table.note = "Right, missed and false: pairs of triangles, compared with exact answers.";
-  const bool is_wrong = all.missed + all.false_pairs + all.wrong_verdicts + all.wrong_distances > 0;
-  doc.verdict(!all.checked ? "answers not checked"
-              : is_wrong   ? "wrong answers"
-                           : "no wrong answer",
-              !is_wrong);
-  doc.command(globals.command_line).text({"All", profile::words(all)}).table(table).write(locked);
+  doc.verdict(!all.checked            ? "answers not checked"
+              : all.wrong_queries > 0 ? "wrong answers"
+                                      : "no wrong answer",
+              all.wrong_queries == 0);
+  doc.command(globals.command_line).text({"All", all.words()}).table(table).write(locked);
 }
 
 int run_import(const ImportOptions& o, const Globals& globals) {
@@ -115,21 +118,23 @@ int run_import(const ImportOptions& o, const Globals& globals) {
     left_out += (left_out.empty() ? "" : ". ") + words;
   }
   note(globals, notes);
-  profile::CapturedTotals totals;
+  record::EngineTotals totals;
   if (found.pairs.size() == 1) {
-    totals = import_pair(o, globals, c, found.pairs[0], folder).totals;
+    import_pair(o, globals, c, found.pairs[0], folder, totals);
   } else {
     compare::reject_folder_of_run(folder);
     std::vector<Imported> runs;
     for (std::size_t i = 0; i < found.pairs.size(); ++i) {
       const std::string part = "pair_" + std::to_string(i + 1);
-      runs.push_back(import_pair(o, globals, c, found.pairs[i], folder + "/" + part));
+      runs.push_back(import_pair(o, globals, c, found.pairs[i], folder + "/" + part, totals));
       runs.back().folder = part;
-      totals += runs.back().totals;
     }
-    write_list(folder, globals, c, o.file, runs, left_out);
+    write_list(folder, globals, c, o.file, runs, left_out, totals);
   }
-  print(c.engine + ": " + profile::words(totals) + "\n" + folder + "/index.html\n");
+  print(c.engine + (c.every > 1 ? ", one of " + std::to_string(c.every) + " queries" : "") + ": " +
+        totals.words() + "; " + render::counted(totals.node_pairs + totals.face_tests, "event", "events") +
+        "\n" + folder + "/index.html\n");
+  if (totals.wrong_queries > 0) note(globals, {shell_line({"check", o.file}) + " names the cause of each"});
   return kOk;
 }
 
@@ -165,7 +170,8 @@ void write_query_page(capture::Capture capture, const std::string& source, const
   if (found.pairs.empty()) throw InputError(source + ": " + without_tree_words(found.without_tree));
   ImportOptions options;
   options.file = source;
-  import_pair(options, globals, capture, found.pairs[0], folder);
+  record::EngineTotals totals;
+  import_pair(options, globals, capture, found.pairs[0], folder, totals);
 }
 
 Command add_import(App& root, const Globals& globals) {

@@ -103,11 +103,9 @@ std::string trials_text(const Json& trials) {
 
 /// Returns the caption of a region's picture.
 std::string region_caption(const bodies::RegionFigures& r) {
-  const auto plural = [](std::uint32_t n, const char* what) {
-    return render::group_digits(n) + " " + what + (n == 1 ? "" : "s");
-  };
   return "region " + std::to_string(r.region) + ", layer " + std::to_string(r.layer) + ": " +
-         plural(r.lids, "lid") + " over " + plural(r.floor, "face") + ", deviation " +
+         render::counted(r.lids, "lid", "lids") + " over " + render::counted(r.floor, "face", "faces") +
+         ", deviation " +
          (std::isfinite(r.thickness) ? for_people(r.thickness, kRegionDigits) : "unbounded") + "; parent " +
          (is_region(r.parent) ? std::to_string(r.parent) : "outside") + ", waste " +
          for_people(r.waste, kRegionDigits);
@@ -153,8 +151,8 @@ pictures::Look sheet_look(const InspectOptions& o, int width, int height) {
 }
 
 /// Prints a JSON line for each pair of faces that intersect.
-int list_self_intersections(const InspectOptions& o, const Globals& globals) {
-  const pictures::Look look = sheet_look(o, pictures::kAnswerWidth, pictures::kAnswerHeight);
+int list_self_intersections(InspectOptions o, const Globals& globals) {
+  sheet_look(o, pictures::kAnswerWidth, pictures::kAnswerHeight);  // throws before the body is loaded
   std::vector<std::string> notes;
   SelfIntersections found;
   std::optional<LrbRep> body;  // to be drawn
@@ -166,6 +164,8 @@ int list_self_intersections(const InspectOptions& o, const Globals& globals) {
     found = self_intersections(mesh);
     if (!o.drawing.empty()) body.emplace(bodies::faces_of_mesh(mesh.mesh()).rep);
   }
+  if (body) resolve_up(o.pictures.camera.up, *body, globals);
+  const pictures::Look look = sheet_look(o, pictures::kAnswerWidth, pictures::kAnswerHeight);
   if (!o.drawing.empty()) frames::check_views(look.views, body->dim());
   note(globals, notes);
   std::string lines;
@@ -381,10 +381,10 @@ std::string as_text(const Json& j) {
   return out.str();
 }
 
-int run_inspect(const InspectOptions& o, const Globals& globals) {
+int run_inspect(InspectOptions o, const Globals& globals) {
   if (o.self_intersections) return list_self_intersections(o, globals);
   if (o.levels) return list_levels(o, globals);
-  pictures::Look look = sheet_look(o, pictures::kBodySheetWidth, pictures::kBodySheetHeight);
+  sheet_look(o, pictures::kBodySheetWidth, pictures::kBodySheetHeight);  // throws before the body is loaded
   Json j;
   std::unique_ptr<LrbRep> rep;
   std::vector<std::string> notes;
@@ -415,6 +415,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
       failed = true;
     }
     if (!o.drawing.empty()) {
+      if (o.pictures.camera.up == "auto")
+        resolve_up(o.pictures.camera.up, bodies::faces_of_mesh(mesh.mesh()).rep, globals);
       constexpr std::uint64_t kMaxDrawn = 100'000;  // of more pairs, the first are drawn
       const std::uint64_t crossing = shown[MeshFault::self_intersection].count;
       const bool cross = crossing > 0 && crossing <= kMaxDrawn;
@@ -428,6 +430,8 @@ int run_inspect(const InspectOptions& o, const Globals& globals) {
       rep = std::make_unique<LrbRep>(
           bodies::body_of_mesh(std::move(mesh), with_progress({}, globals.quiet)).rep);
   }
+  if (rep) resolve_up(o.pictures.camera.up, *rep, globals);
+  pictures::Look look = sheet_look(o, pictures::kBodySheetWidth, pictures::kBodySheetHeight);
   bool valid = true;
   if (o.validate) {
     ValidateOptions validating;

@@ -13,6 +13,8 @@
 namespace lrb::tools {
 namespace {
 
+constexpr const char* kAutoUp = "auto";
+
 /// Returns the option that sets a field of a request: "--max-tests" for max_tests.
 template <class Value>
 std::string option_of(Value CollideRequest::*member) {
@@ -155,7 +157,7 @@ void add_style_option(App& app, PictureOptions& options, const std::string& usua
       "print: black on white, thin lines, distinguishable in greyscale; dark: for slides [" + usual + "]");
 }
 
-void add_picture_options(App& app, PictureOptions& options, UpOption up) {
+void add_picture_options(App& app, PictureOptions& options, bool auto_up) {
   add_size_options(app, options);
   app.add_flag("--transparent", options.transparent, "Transparent background");
   app.add_flag_callback(
@@ -170,7 +172,7 @@ void add_picture_options(App& app, PictureOptions& options, UpOption up) {
   app.add_option("--every", options.every, "N", "Draw only every N-th of the frames selected by --frames")
       ->in_range(1, 1000000000);
   app.add_option("--most", options.most, "N", "Maximum number of frames, evenly spaced")->in_range(1, 10000);
-  add_camera_options(app, options.camera, up);
+  add_camera_options(app, options.camera, auto_up);
   add_orbit_option(app, options.camera);
   add_colour_options(app, options);
 }
@@ -216,7 +218,7 @@ void apply(const PictureOptions& options, pictures::FrameSpec& spec) {
   apply(options.camera, spec.views);
 }
 
-void add_camera_options(App& app, CameraOptions& options, UpOption up) {
+void add_camera_options(App& app, CameraOptions& options, bool auto_up) {
   app.add_option("--from", options.from, "X,Y,Z", "Direction from the bodies to the camera, in file axes");
   app.add_option("--look-at", options.look_at, "X,Y,Z",
                  "Point to centre the picture on [centre of the bodies]");
@@ -226,7 +228,7 @@ void add_camera_options(App& app, CameraOptions& options, UpOption up) {
          [&options](const std::string& word) { options.orthographic = word == "orthographic"; },
          "perspective|orthographic", "Camera projection")
       ->one_of({"perspective", "orthographic"});
-  add_up_option(app, options.up, up);
+  add_up_option(app, options.up, auto_up);
 }
 
 void add_orbit_option(App& app, CameraOptions& options) {
@@ -243,7 +245,7 @@ void apply(const CameraOptions& options, std::vector<pictures::FrameSpec::View>&
   for (pictures::FrameSpec::View& view : views) {
     view.directed = !options.from.empty() || !options.up.empty() || options.orthographic.has_value() ||
                     options.orbit.has_value();
-    if (!options.up.empty()) {
+    if (!options.up.empty() && options.up != kAutoUp) {
       const int axis = options.up[0] - 'x';
       const render::ViewDirection turned = turned_up({view.from, view.up}, axis);
       const render::ViewDirection fixed = turned_up({view.eye, view.target}, axis);
@@ -269,17 +271,12 @@ void apply(const CameraOptions& options, std::vector<pictures::FrameSpec::View>&
   }
 }
 
-void add_up_option(App& app, std::string& up, UpOption values) {
-  std::vector<std::string> axes = {"x", "y", "z"};
-  const bool automatic = values != UpOption::axis;
-  if (automatic) axes.emplace_back("auto");
+void add_up_option(App& app, std::string& up, bool auto_up) {
   app.add_option(
-         "--up", up, automatic ? "x|y|z|auto" : "x|y|z",
-         std::string("Axis that points up in the pictures") +
-             (automatic ? "; auto: the one on which the body is most stable" : "") +
-             (values == UpOption::auto_by_default ? " [auto, by body A; z for 2D and bodies that fall over]"
-                                                  : " [z]"))
-      ->one_of(axes);
+         "--up", up, "x|y|z|auto",
+         std::string("Axis that points up in the pictures; auto: the one on which body A is most stable ") +
+             (auto_up ? "[auto; z for 2D and bodies that fall over]" : "[z]"))
+      ->one_of({"x", "y", "z", kAutoUp});
 }
 
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis) {
@@ -306,12 +303,17 @@ std::uint32_t all_cores() {
   return std::max(1U, std::thread::hardware_concurrency());
 }
 
-void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals) {
-  if (camera.up != "auto") return;
+render::ViewDirection view_with(const std::string& up) {
+  return up.empty() ? render::ViewDirection() : turned_up({}, up[0] - 'x');
+}
+
+void resolve_up(std::string& up, const LrbRep& rep, const Globals& globals) {
+  if (up != kAutoUp) return;
+  if (rep.dim() == 2) return up.clear();
   const std::optional<int> guess = pictures::likely_up(rep);
   note(globals, {guess ? std::string("--up auto: the body is most stable with --up ") + "xyz"[*guess]
                        : "--up auto: the body would fall over whichever axis is up; z is up"});
-  camera.up = {"xyz"[guess.value_or(2)]};
+  up = {"xyz"[guess.value_or(2)]};
 }
 
 void choose_views(const CameraOptions& given, spec::Scenario& scenario, record::Recording& recording) {

@@ -78,13 +78,13 @@ struct CameraOptions {
   std::optional<double> zoom;
   std::optional<bool> orthographic;
 };
-/// The values and the default of --up: an axis, z by default; or also `auto`, which may be the default.
-enum class UpOption : std::uint8_t { axis, axis_or_auto, auto_by_default };
-void add_camera_options(App& app, CameraOptions& options, UpOption up = UpOption::axis);
+/// `auto_up`: the default of --up is auto, else z.
+void add_camera_options(App& app, CameraOptions& options, bool auto_up = false);
 /// Adds --orbit, for pictures of several frame states.
 void add_orbit_option(App& app, CameraOptions& options);
-/// Applies the options to all views. --up rotates existing views; --from and --look-at are given in the axes
-/// of the bodies' files, and are not rotated. Throws InputError for an invalid camera.
+/// Applies the options to all views. --up rotates existing views, unless it is still auto (resolve_up());
+/// --from and --look-at are given in the axes of the bodies' files, and are not rotated. Throws InputError
+/// for an invalid camera.
 void apply(const CameraOptions& options, std::vector<pictures::FrameSpec::View>& views);
 
 /// The camera options, and --size, --dpi, --style, --no-title, --no-legend, --transparent, --format,
@@ -103,7 +103,7 @@ struct PictureOptions {
   std::optional<pictures::FrameSpec::ColourPer> colour_per;
   std::optional<std::uint32_t> node_boxes;
 };
-void add_picture_options(App& app, PictureOptions& options, UpOption up = UpOption::axis);
+void add_picture_options(App& app, PictureOptions& options, bool auto_up = false);
 /// Adds --size, --dpi and --style alone.
 void add_size_options(App& app, PictureOptions& options);
 /// Adds --style alone; `usual` is its default.
@@ -119,10 +119,13 @@ void add_animation_option(App& app, PictureOptions& options);
 /// Encodes the frames in a folder as an animation, if one was requested.
 void animate_frames(const PictureOptions& options, const std::string& folder);
 
-/// Adds --up.
-void add_up_option(App& app, std::string& up, UpOption values = UpOption::axis);
-/// Replaces --up auto by the axis on which the body is most stable, or z, and notes it.
-void resolve_up(CameraOptions& camera, const LrbRep& rep, const Globals& globals);
+/// Adds --up, of all commands that draw.
+void add_up_option(App& app, std::string& up, bool auto_up = false);
+/// Replaces --up auto by the axis on which the body is most stable, or z, and notes it. Of a 2D body, by
+/// nothing.
+void resolve_up(std::string& up, const LrbRep& rep, const Globals& globals);
+/// Returns the default view, rotated by a resolved --up.
+render::ViewDirection view_with(const std::string& up);
 /// Returns a view rotated so that an axis (0, 1, 2) points up instead of z.
 render::ViewDirection turned_up(const render::ViewDirection& view, int axis);
 

@@ -29,10 +29,13 @@ std::string line_of(std::size_t point, const PointDistance& d) {
 }
 
 int run_points(const PointsOptions& o, const Globals& globals) {
-  const pictures::Look look = look_of(o.draw);
+  DrawOptions draw = o.draw;
+  look_of(draw);  // throws before the body is loaded
   const std::vector<Eigen::Vector3d> points = io::read_points(o.points);
   const bodies::LoadedBody body = bodies::load_faces(o.body, o.corners);
   note(globals, body.notes);
+  resolve_up(draw.look.camera.up, body.rep, globals);
+  const pictures::Look look = look_of(draw);
   if (body.rep.tree().empty()) throw InputError(o.body + ": expected a body with faces, found none");
   if (!body.rep.closed() && o.request.side)
     note(globals, {"the body is not closed: it has no inside, and distances have no sign"});

@@ -150,9 +150,11 @@ template <class Q>
 int answer_each(Q& q, const Globals& globals) {
   typename Q::Lines list(q.poses);
   if constexpr (requires { q.check(); }) q.check();
-  const pictures::Look look = look_of(q.draw);
+  look_of(q.draw);  // throws before the bodies are loaded
   const auto both = q.load(globals);
   const LrbRep &a = both[0].rep, &b = both[1].rep;
+  resolve_up(q.draw.look.camera.up, a, globals);
+  const pictures::Look look = look_of(q.draw);
   if constexpr (requires { q.check(a); }) q.check(a);
   for (const bodies::LoadedBody& body : both) note(globals, body.notes);
   list.check(a, b);

@@ -119,6 +119,7 @@ int run_render(const RenderOptions& given, const Globals& globals) {
   const record::Recording recording = record::open_run(trace::load_trace(o.trace), o.trace, o.bodies);
   const trace::Trace& trace = recording.trace;
   const std::vector<bodies::LoadedBody>& bodies = recording.bodies;
+  resolve_up(o.picture.camera.up, bodies[0].rep, globals);
   const frames::RecordedRun p = run::recorded_run_of(trace.header.scenario, {}, recording);
   const std::string folder = output_folder(o);
   pictures::FrameSpec spec = frame_spec(o, show_of(trace, bodies.size()), trace.header.pictures);

@@ -102,7 +102,10 @@ struct RunCommandOptions {
 int run_run(const RunCommandOptions& o, const Globals& globals) {
   spec::Scenario scenario = spec::open_scenario(o.scenario);
   for (const spec::BodySpec& body : scenario.bodies) protect_input(body.file);
-  apply(o.picture, scenario.frames);
+  PictureOptions picture = o.picture;
+  if (picture.camera.up == "auto")
+    resolve_up(picture.camera.up, record::make_body(scenario.bodies[0]).rep, globals);
+  apply(picture, scenario.frames);
   if (o.recursion) scenario.request.recursion = *o.recursion;
   if (o.events) scenario.events = *o.events;
   if (o.clock) scenario.clock = *o.clock;

@@ -10,6 +10,7 @@
 
 #include "scenarios/bodies/loaded_body.hpp"
 #include "scenarios/compare/side_by_side.hpp"
+#include "scenarios/profile/captured_run.hpp"
 #include "scenarios/profile/tree_page.hpp"
 #include "scenarios/profile/tree_report.hpp"
 #include "scenarios/report/document.hpp"
@@ -29,7 +30,7 @@ using Json = nlohmann::ordered_json;
 
 struct TreeCommandOptions {
   bodies::Corners corners = bodies::Corners::joined;
-  std::string file, folder;
+  std::string file, folder, up;
   std::optional<std::uint32_t> tree;
   profile::TreeOptions report;
   bool json = false;
@@ -287,8 +288,9 @@ Json tree_json(const Trees& all, const capture::Tree& tree, const profile::TreeR
 // Pages.
 
 /// Writes a page for each tree: of the one with most faults to the folder itself, of others to tree_N in it.
-void write_pages(const std::string& folder, const Trees& all, const std::vector<profile::TreeReport>& reports,
-                 const std::string& command) {
+void write_pages(const Trees& all, const std::vector<profile::TreeReport>& reports,
+                 const TreeCommandOptions& o, const Globals& globals) {
+  const std::string& folder = o.folder;
   compare::reject_folder_of_run(folder);
   const std::size_t count = all.trees.size();
   std::size_t first = 0;
@@ -317,8 +319,10 @@ void write_pages(const std::string& folder, const Trees& all, const std::vector<
       table.targets[page].clear();
     }
     const capture::Tree& tree = all.trees[page];
+    std::string up = o.up;
+    if (!up.empty()) resolve_up(up, profile::captured_body(all.meshes[tree.mesh]).rep, globals);
     profile::write_tree_page(folder + below(page), tree, all.meshes[tree.mesh], reports[page], all.engine,
-                             command, table);
+                             globals.command_line, table, view_with(up));
   }
 }
 
@@ -346,7 +350,7 @@ int run_tree(const TreeCommandOptions& o, const Globals& globals) {
   }
   j["faults"] = faults;
   if (!o.folder.empty()) {
-    write_pages(o.folder, all, reports, globals.command_line);
+    write_pages(all, reports, o, globals);
     j["page"] = o.folder + "/index.html";
     text += o.folder + "/index.html\n";
   }
@@ -375,6 +379,7 @@ Command add_tree(App& root, const Globals& globals) {
   app->add_flag("--json", o->json, "Print one JSON object");
   app->add_option("-o,--output", o->folder, "DIR",
                   "Also write a page, with charts and a 3D view of the nodes");
+  add_up_option(*app, o->up);
   add_join_option(*app, o->corners);
   return {app, [o, &globals] { return run_tree(*o, globals); }};
 }

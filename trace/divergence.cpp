@@ -77,10 +77,13 @@ class Comparison {
  public:
   bool differs() const { return found_.has_value(); }
   std::optional<Divergence> result() && { return std::move(found_); }
-  void at(std::optional<EventId> event, std::optional<std::size_t> step) { event_ = event, step_ = step; }
+  void at(std::optional<EventId> event, std::optional<std::size_t> step, std::uint32_t number = 0) {
+    event_ = event, step_ = step, number_ = number;
+  }
 
   void found(std::string what, std::string expected, std::string actual) {
-    if (!found_) found_ = Divergence{event_, step_, std::move(what), std::move(expected), std::move(actual)};
+    if (!found_)
+      found_ = Divergence{event_, step_, number_, std::move(what), std::move(expected), std::move(actual)};
   }
   template <class T>
   void same(const std::string& what, const T& expected, const T& actual) {
@@ -91,6 +94,7 @@ class Comparison {
   std::optional<Divergence> found_;
   std::optional<EventId> event_;
   std::optional<std::size_t> step_;
+  std::uint32_t number_ = 0;
 };
 
 void compare_bodies(Comparison& c, const TraceHeader& x, const TraceHeader& y) {
@@ -113,23 +117,34 @@ std::optional<EngineReport> without_times(std::optional<EngineReport> report) {
   return report;
 }
 
+/// Adds the fields in which two records differ.
+template <class Record>
+void add_differences(const Record& x, const Record& y, bool is_counter, std::vector<FieldDifference>& out) {
+  for_each_field<Record>([&](const auto& field) {
+    const auto &expected = x.*field.member, &actual = y.*field.member;
+    const auto add = [&](const auto& p, const auto& q) {
+      if (p != q) out.push_back({std::string(field.name), to_text(p), to_text(q), is_counter});
+    };
+    if constexpr (std::is_same_v<decltype(expected), const std::optional<EngineReport>&>) {
+      add(without_times(expected), without_times(actual));
+    } else if constexpr (std::is_same_v<decltype(expected), const Counters&>) {
+      add_differences(expected, actual, true, out);
+    } else {
+      add(expected, actual);
+      if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>)
+        if (field.form == Form::hash && expected != actual)
+          out.back().expected = to_hex(expected), out.back().actual = to_hex(actual);
+    }
+  });
+}
+
 /// Compares the fields of two records; `before` is the prefix of their names.
 template <class Record>
 void compare_fields(Comparison& c, const Record& x, const Record& y, const std::string& before) {
-  for_each_field<Record>([&](const auto& field) {
-    const auto &expected = x.*field.member, &actual = y.*field.member;
-    if constexpr (std::is_same_v<decltype(expected), const std::optional<EngineReport>&>) {
-      c.same(before + std::string(field.name), without_times(expected), without_times(actual));
-    } else if constexpr (std::is_same_v<decltype(expected), const Counters&>) {
-      compare_fields(c, expected, actual, "counter ");
-    } else if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>) {
-      if (field.form == Form::hash && expected != actual)
-        return c.found(before + std::string(field.name), to_hex(expected), to_hex(actual));
-      c.same(before + std::string(field.name), expected, actual);
-    } else {
-      c.same(before + std::string(field.name), expected, actual);
-    }
-  });
+  std::vector<FieldDifference> all;
+  add_differences(x, y, false, all);
+  if (!all.empty())
+    c.found((all[0].is_counter ? "counter " : before) + all[0].name, all[0].expected, all[0].actual);
 }
 
 /// The fields of an event as texts.
@@ -188,7 +203,7 @@ void compare_step_events(Comparison& c, const Trace& x, const Trace& y, std::siz
     const auto of_x = x.vertices_of(p[i]), of_y = y.vertices_of(q[i]);
     const bool same_vertices = std::equal(of_x.begin(), of_x.end(), of_y.begin(), of_y.end());
     if (p[i] == q[i] && same_vertices) continue;
-    c.at(first + static_cast<EventId>(i), step);
+    c.at(first + static_cast<EventId>(i), step, x.steps[step].index);
     compare_events(c, p[i], q[i]);
     if (!same_vertices) c.found("vertices", to_text(of_x), to_text(of_y));
     return;
@@ -196,7 +211,7 @@ void compare_step_events(Comparison& c, const Trace& x, const Trace& y, std::siz
   if (p.size() == q.size()) return;
   // One run has more events: the first extra one is the difference.
   const std::size_t i = std::min(p.size(), q.size());
-  c.at(first + static_cast<EventId>(i), step);
+  c.at(first + static_cast<EventId>(i), step, x.steps[step].index);
   const std::string end = "the end of the step";
   c.found("event", i < p.size() ? describe(p[i]) : end, i < q.size() ? describe(q[i]) : end);
 }
@@ -204,14 +219,14 @@ void compare_step_events(Comparison& c, const Trace& x, const Trace& y, std::siz
 void compare_steps(Comparison& c, const Trace& x, const Trace& y) {
   for (std::size_t i = 0; i < std::min(x.steps.size(), y.steps.size()) && !c.differs(); ++i) {
     const Step &p = x.steps[i], &q = y.steps[i];
-    c.at(std::nullopt, i);
+    c.at(std::nullopt, i, p.index);
     c.same("index of the step", std::uint64_t{p.index}, std::uint64_t{q.index});
     // Poses are inputs: if they differ, different events are a consequence.
     if (!equal(p.pose_a, q.pose_a)) c.found("pose of A", to_text(p.pose_a), to_text(q.pose_a));
     if (!equal(p.pose_b, q.pose_b)) c.found("pose of B", to_text(p.pose_b), to_text(q.pose_b));
     if (!c.differs()) compare_step_events(c, x, y, i);
     // Events come before results, because they usually explain them.
-    c.at(std::nullopt, i);
+    c.at(std::nullopt, i, p.index);
     compare_results(c, p, q);
   }
   c.at(std::nullopt, std::nullopt);
@@ -228,11 +243,16 @@ std::string describe(const Event& e) {
 }
 
 std::string Divergence::message() const {
-  std::string out =
-      event  ? "event " + std::to_string(*event) + " (step " + std::to_string(step.value_or(0)) + ")"
-      : step ? "step " + std::to_string(*step)
-             : std::string("run");
+  std::string out = event  ? "event " + std::to_string(*event) + " (step " + std::to_string(number) + ")"
+                    : step ? "step " + std::to_string(number)
+                           : std::string("run");
   return out + ": " + what + ": expected " + expected + ", found " + actual;
+}
+
+std::vector<FieldDifference> differing_fields(const StepResult& expected, const StepResult& actual) {
+  std::vector<FieldDifference> out;
+  add_differences(expected, actual, false, out);
+  return out;
 }
 
 std::optional<Divergence> first_divergence(const Trace& expected, const Trace& actual) {

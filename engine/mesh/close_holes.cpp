@@ -34,6 +34,15 @@ Edge edge_of(VertexId v, VertexId w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
+/// Returns true if a triangle is no higher than a millionth of its longest edge, as between the vertices of a
+/// T-junction that rounding has moved off the edge.
+bool is_slit(const std::array<Eigen::Vector3d, 3>& x) {
+  constexpr double kThin = 1e-6;
+  double longest = 0;
+  for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, norm3(x[(i + 1) % 3] - x[i]));
+  return !(norm3((x[1] - x[0]).cross(x[2] - x[0])) > kThin * longest * longest);
+}
+
 /// A fill in progress: the holes that it fills, its candidates, and the current one.
 struct Attempt {
   std::vector<std::size_t> holes;  ///< the first one encloses the others
@@ -157,7 +166,8 @@ class HoleCloser {
       // Skip candidates that do not exist or whose inner edges are no longer free. Every round advances each
       // attempt, so the loop terminates.
       for (Attempt& a : attempts)
-        while (a.fill_choice < a.ways.size() && !(a.ways[a.fill_choice] && edges_are_free(a.lid())))
+        while (a.fill_choice < a.ways.size() &&
+               !(a.ways[a.fill_choice] && edges_are_free(a.lid()) && has_area(a)))
           ++a.fill_choice;
       std::erase_if(attempts, [](const Attempt& a) { return a.fill_choice == a.ways.size(); });
       if (!attempts.empty()) try_round(attempts);
@@ -180,6 +190,17 @@ class HoleCloser {
   bool edges_are_free(const HoleFill& lid) const {
     const Edges inner = inner_edges(lid);
     return std::none_of(inner.begin(), inner.end(), [&](const Edge& e) { return edges_.contains(e); });
+  }
+
+  /// Returns true if every triangle of the current candidate has area; else its hole says so.
+  bool has_area(const Attempt& a) {
+    const auto x = [&](VertexId v) { return v == kCentroid ? *a.lid().centroid : mesh_.vertices[v]; };
+    const bool flat = std::ranges::any_of(a.lid().triangles, [&](const auto& t) {
+      return is_slit({x(t[0]), x(t[1]), x(t[2])});
+    });
+    HoleState& state = out_.holes[a.holes[0]].state;
+    if (flat && state == HoleState::meets_itself) state = HoleState::no_area;
+    return !flat;
   }
 
   /// The intersections of one candidate: with itself, with a face of the mesh, with other candidates.

@@ -359,7 +359,7 @@ Look screen_of(int width, int height) {
 
 /// Returns a direction that shows the fronts of both faces. For faces with opposite normals it shows A's
 /// front and B's back.
-ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
+ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b, const Vector3d& up) {
   constexpr double kOpposite = 0.5;  // of unit normals' sum
   const Vector3d of_a = (a[1] - a[0]).cross(a[2] - a[0]).stableNormalized(),
                  of_b = (b[1] - b[0]).cross(b[2] - b[0]).stableNormalized();
@@ -368,7 +368,8 @@ ViewDirection onto_both(const std::vector<Vector3d>& a, const std::vector<Vector
   out.from = sum.norm() > kOpposite ? sum : Vector3d(of_a - of_b);
   constexpr double kSteep = 0.95;
   if (out.from.isZero()) return {};  // both are needles without a normal
-  if (std::abs(out.from.normalized().z()) > kSteep) out.up = {0, 1, 0};
+  const bool is_steep = std::abs(out.from.normalized().dot(up)) > kSteep;
+  out.up = is_steep ? Vector3d(up.y(), up.z(), up.x()) : up;
   return out;
 }
 
@@ -422,7 +423,7 @@ void add_key_of_boxes(std::vector<LegendItem>& key, int dim) {
 
 }  // namespace
 
-Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wrong) {
+Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wrong, const Vector3d& up) {
   const bool apart = pair.meet == exact::Meet::disjoint, in_3d = bodies.dim() == 3;
   const std::vector<Vector3d> of_a = corners_of(bodies.a, bodies.pose_a, pair.pair.a),
                               of_b = corners_of(bodies.b, bodies.pose_b, pair.pair.b);
@@ -473,7 +474,7 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wr
     overlay.key.push_back({Mark::translucent, palette::kGreen, "separating plane"});
 
   FitOptions fit;
-  if (in_3d) fit.view = apart && across.norm() > 0 ? view_beside(across) : onto_both(of_a, of_b);
+  if (in_3d) fit.view = apart && across.norm() > 0 ? view_beside(across, up) : onto_both(of_a, of_b, up);
   const auto camera = [&](double width, double height) {
     return in_3d ? fit_contact(both, bounds(bodies.points()), width, height, fit, boxes ? 1.2 : 2.5, 0.001)
                  : fit_top(both, width, height, 0.3);

@@ -50,7 +50,8 @@ render::Image picture_of(const SelfIntersections& found, const LrbRep& body, con
 /// Draws two faces and the bodies around them: their intersection, or the segment between their closest
 /// points and a separating plane perpendicular to it. `wrong`: another engine got the pair wrong; then the
 /// picture is low.
-render::Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wrong = false);
+render::Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wrong = false,
+                         const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 
 /// Draws both bodies with the separating plane or boxes, and a close-up along the plane.
 render::Image picture_of(const WalkExplanation& walk, const PosedBodies& bodies);

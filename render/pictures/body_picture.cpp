@@ -185,10 +185,6 @@ Image region_sheet(const LrbRep& rep, std::span<const double> values, const std:
 
 namespace {
 
-std::string number_and(std::size_t n, const char* what) {
-  return group_digits(n) + " " + what + (n == 1 ? "" : "s");
-}
-
 /// Returns the numbers of the first few regions of a set.
 std::string list_of(const std::set<std::uint32_t>& regions) {
   constexpr std::size_t kMax = 6;
@@ -211,8 +207,8 @@ std::string words_of_one(const LrbRep& rep, RegionId r, const std::string& owner
     if (is_region(rep.inner_cell(f))) inside.insert(rep.inner_cell(f));
   }
   std::string out = "region " + std::to_string(r) + owner + ": layer " + std::to_string(rep.layer(r)) + ", " +
-                    number_and(rep.lids(r).size(), "lid") + " over " +
-                    number_and(rep.floor(r).size(), "face");
+                    counted(rep.lids(r).size(), "lid", "lids") + " over " +
+                    counted(rep.floor(r).size(), "face", "faces");
   if (real > 0) out += ", " + group_digits(real) + " of them real";
   out += "; parent " + (is_region(rep.parent(r)) ? std::to_string(rep.parent(r)) : "the outside");
   if (!outside.empty()) out += "; also under " + list_of(outside);
@@ -232,9 +228,9 @@ std::string region_text(const LrbRep& rep, std::span<const RegionId> regions, co
     layers.insert(rep.layer(r));
     numbers.insert(r);
   }
-  return number_and(regions.size(), "region") + owner + " (" + list_of(numbers) + "): layer" +
-         (layers.size() == 1 ? " " : "s ") + list_of(layers) + ", " + number_and(lids, "lid") + " over " +
-         number_and(floor, "face");
+  return counted(regions.size(), "region", "regions") + owner + " (" + list_of(numbers) + "): layer" +
+         (layers.size() == 1 ? " " : "s ") + list_of(layers) + ", " + counted(lids, "lid", "lids") +
+         " over " + counted(floor, "face", "faces");
 }
 
 // Findings.

@@ -39,9 +39,6 @@ struct LevelFigures {
 /// Default tolerances, as shares of the longest side of the body's box.
 inline constexpr double kLevelShares[] = {0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};
 
-/// Returns the longest side of the box of the real faces; mesh units.
-double largest_side(const LrbRep& rep);
-
 /// Returns the wrapper at a tolerance (mesh units); it refers to `rep`.
 Wrapper wrapper_at(const LrbRep& rep, double tolerance, unsigned threads);
 

@@ -5,6 +5,7 @@
 #include "render/pictures/marks.hpp"
 #include "render/pictures/panel.hpp"
 #include "scenarios/frames/frame_state.hpp"
+#include "scenarios/record/engine_run.hpp"
 #include <lrbscope/render/style.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -160,25 +161,10 @@ std::string FrameState::open_text() const {
                 : "undefined, because B is open";
 }
 
-namespace {
-
-/// Returns the axis of a test of another engine: see capture::Event::axis.
-std::string engine_axis_words(std::uint32_t axis) {
-  constexpr std::uint32_t kEdges = 6, kEnd = 15, kDirections = 32;
-  if (axis < kEdges) return std::string(name_of(static_cast<BoxAxis>(axis)));
-  if (axis < kEnd)
-    return "edges " + std::to_string((axis - kEdges) / 3 + 1) + " of A and " +
-           std::to_string((axis - kEdges) % 3 + 1) + " of B";
-  return axis < kDirections ? "axis " + std::to_string(axis)
-                            : "direction " + std::to_string(axis - kDirections);
-}
-
-}  // namespace
-
 std::string FrameState::node_pair_text(const trace::Event& e) {
   const auto [a, b, work, end, pairs_above, engine_axis] = e.node_pair();
   std::string out = "nodes " + std::to_string(a) + " of A and " + std::to_string(b) + " of B: ";
-  if (work.met == 0 && engine_axis > 0) return out + "disjoint along " + engine_axis_words(engine_axis - 1U);
+  if (work.met == 0 && engine_axis > 0) return out + "disjoint along " + record::axis_words(engine_axis - 1U);
   if (work.met == 0)
     return out + (end.apart                     ? "disjoint along " + std::string(name_of(end.axis))
                   : end.step == NodeStep::whole ? "disjoint across an edge of each"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <numbers>
 #include <span>
@@ -10,6 +9,8 @@
 
 #include "render/flip.hpp"
 #include "render/gl.hpp"
+#include "render/page_palette.hpp"
+#include "scenarios/record/engine_run.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/image.hpp>
@@ -79,31 +80,35 @@ std::string pose_cause(const trace::Trace& x, const trace::Trace& y) {
   return {};
 }
 
-}  // namespace
-
+/// Returns one line for each changed input of the run: the scenario's keys, a body's mesh, how its LRB-rep
+/// was built, the request, a pose, the version of lrbscope.
 std::vector<std::string> find_causes(const Golden& golden, const GoldenRun& run) {
   const trace::TraceHeader &x = golden.trace.header, &y = run.recording.trace.header;
   std::vector<std::string> out;
+  bool is_mesh_changed = false;
   if (!golden.facts.scenario.empty() && !run.text.empty()) {
     const std::string keys = scenario_difference(golden.facts.scenario, compact_json(run.text));
     if (!keys.empty()) out.push_back("the scenario changed: " + keys);
-  } else if (x.scenario_hash != run.scenario.hash) {
-    out.emplace_back(golden.spec.is_capture()
-                         ? "the bodies or the poses of the capture changed since it was approved"
-                         : "the scenario file changed since it was approved");
+  } else if (x.scenario_hash != run.scenario.hash && !golden.spec.is_capture()) {
+    out.emplace_back("the scenario file changed since it was approved");
   }
   for (std::size_t i = 0; i < std::min(x.bodies.size(), y.bodies.size()); ++i)
-    if (x.bodies[i].hash != y.bodies[i].hash)
+    if (x.bodies[i].hash != y.bodies[i].hash) {
       out.push_back(body_cause(golden, run, i, x.bodies[i], y.bodies[i]));
+      is_mesh_changed = true;
+    }
   if (const std::string words = request_cause(x.request, y.request); !words.empty()) out.push_back(words);
-  if (const std::string words = pose_cause(golden.trace, run.recording.trace); !words.empty())
+  // The poses of an approach follow from the meshes.
+  const bool follows = is_mesh_changed && !golden.spec.is_capture() &&
+                       run.scenario.motion.kind == spec::Motion::Kind::approach;
+  if (const std::string words = pose_cause(golden.trace, run.recording.trace); !words.empty() && !follows)
     out.push_back(words);
+  if (out.empty() && golden.spec.is_capture() && x.scenario_hash != run.scenario.hash)
+    out.emplace_back("the bodies or the poses of the capture changed since it was approved");
   if (x.lrbscope != y.lrbscope)
     out.push_back("approved with lrbscope " + x.lrbscope + ", run with " + y.lrbscope);
   return out;
 }
-
-namespace {
 
 using Events = std::span<const trace::Event>;
 
@@ -135,8 +140,8 @@ std::string several(const char* what, std::size_t count, trace::EventId first, c
          " first: " + trace::describe(event);
 }
 
-}  // namespace
-
+/// Describes a divergence by the events that follow it in its step: swapped, lost, added or replaced. Returns
+/// one line; empty if the divergence is not at an event.
 std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
                      const trace::Divergence& divergence) {
   if (!divergence.event || !divergence.step) return {};
@@ -162,20 +167,18 @@ std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
   return "expected " + trace::describe(x[i]) + "; found " + trace::describe(y[i]) + contacts;
 }
 
-namespace {
-
 std::string size_text(const render::Image& image) {
   return std::to_string(image.width()) + "x" + std::to_string(image.height());
 }
 
-std::string hex_colour(std::uint32_t rgb) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%06x", static_cast<unsigned>(rgb));
-  return text;
-}
-
 std::uint32_t packed(render::Rgba c) {
   return static_cast<std::uint32_t>(c.r) << 16 | static_cast<std::uint32_t>(c.g) << 8 | c.b;
+}
+
+/// Returns true if a channel of two colours differs by more than processors and drivers explain.
+bool differ_strongly(render::Rgba x, render::Rgba y) {
+  return std::max({std::abs(x.r - y.r), std::abs(x.g - y.g), std::abs(x.b - y.b)}) >
+         render::ImageTolerance{}.large;
 }
 
 /// The colour change shared by most of the strongly different pixels.
@@ -189,8 +192,10 @@ std::string commonest_change(const render::Image& expected, const render::Image&
   for (const auto& [key, count] : counts)
     if (count > most || (count == most && key < change)) change = key, most = count;
   if (most == 0) return {};
-  return "most often " + hex_colour(static_cast<std::uint32_t>(change >> 32)) + " -> " +
-         hex_colour(static_cast<std::uint32_t>(change)) + " (" + std::to_string(most) +
+  const auto colour = [](std::uint64_t c) {
+    return render::css({std::uint8_t(c >> 16), std::uint8_t(c >> 8), std::uint8_t(c), 255});
+  };
+  return "most often " + colour(change >> 32) + " -> " + colour(change) + " (" + std::to_string(most) +
          (most == 1 ? " pixel)" : " pixels)");
 }
 
@@ -256,11 +261,6 @@ render::Image masked(const render::Image& expected, render::Image actual, const 
 }
 
 }  // namespace
-
-bool differ_strongly(render::Rgba x, render::Rgba y) {
-  return std::max({std::abs(x.r - y.r), std::abs(x.g - y.g), std::abs(x.b - y.b)}) >
-         render::ImageTolerance{}.large;
-}
 
 ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const frames::PaintedFrame& actual,
                          std::size_t frame, const GoldenSpec& spec) {
@@ -353,9 +353,24 @@ bool GoldenVerdict::images_passed() const {
 
 namespace {
 
+/// Describes the answers that changed: of another engine first how many are wrong; pairs before verdicts.
+std::string answer_cause(const GoldenVerdict& v, const GoldenRun& run) {
+  const record::EngineTotals totals = record::totals_of(run.recording);
+  const bool is_wrong = run.recording.trace.has_engine_reports() && totals.wrong_queries > 0;
+  const auto of = [&](const char* what) {
+    return std::ranges::find_if(v.effects, [&](const Effect& e) { return e.what == what; });
+  };
+  auto first = of("pairs");
+  if (first == v.effects.end()) first = of("relation");
+  if (first == v.effects.end()) first = v.effects.begin();
+  return (is_wrong ? totals.words() : "the answers changed") + "; step " + std::to_string(first->step) +
+         ": " + first->what + ": expected " + first->expected + ", found " + first->found;
+}
+
 /// Describes what the program does differently if none of its inputs changed.
-std::string program_cause(const GoldenVerdict& v, const Golden& golden) {
+std::string program_cause(const GoldenVerdict& v, const Golden& golden, const GoldenRun& run) {
   const std::string same = "the inputs and the version are as approved";
+  if (v.answers_differ) return answer_cause(v, run) + "; " + same;
   if (v.divergence)
     return same + ", but the program runs differently: " +
            (v.diagnosis.empty() ? v.divergence->message() : v.diagnosis);
@@ -390,7 +405,7 @@ GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run) {
     out.group = out.causes.front();
     return out;
   }
-  out.causes.push_back(program_cause(out, golden));
+  out.causes.push_back(program_cause(out, golden, run));
   // Numbers of steps, events and pixels differ from golden to golden, even if their cause is one.
   for (const char c : out.causes.front())
     if (c < '0' || c > '9') out.group.push_back(c);

@@ -23,9 +23,6 @@ struct ImageVerdict {
   bool has_expected = false, has_actual = false;
 };
 
-/// Returns true if a channel of two colours differs by more than processors and drivers explain.
-bool differ_strongly(render::Rgba x, render::Rgba y);
-
 /// Compares a picture with the approved variants of its frame.
 ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const frames::PaintedFrame& actual,
                          std::size_t frame, const GoldenSpec& spec);
@@ -47,17 +44,5 @@ struct GoldenVerdict {
 };
 
 GoldenVerdict check_golden(const Golden& golden, const GoldenRun& run);
-
-// Finds possible causes of a difference from the approved run: a changed scenario, changed bodies, or
-// neither.
-
-/// Returns one line for each changed input of the run: the scenario's keys, a body's mesh, how its LRB-rep
-/// was built, the request, a pose, the version of lrbscope.
-std::vector<std::string> find_causes(const Golden& golden, const GoldenRun& run);
-
-/// Describes a divergence by the events that follow it in its step: swapped, lost, added or replaced. Returns
-/// one line; empty if the divergence is not at an event.
-std::string diagnose(const trace::Trace& expected, const trace::Trace& actual,
-                     const trace::Divergence& divergence);
 
 }  // namespace lrb::golden

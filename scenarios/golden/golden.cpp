@@ -219,12 +219,8 @@ std::string spec_file(const std::string& goldens, const std::string& name) {
 }
 
 GoldenSpec read_spec(const io::JsonNode& root) {
-  root.object({"scenario", "crowd", "size", "frames", "compare", "tolerance", "ignore", "only", "meshes",
+  root.object({"scenario", "size", "frames", "compare", "tolerance", "ignore", "only", "meshes",
                "contact_lengths", "renderer", "inputs"});
-  if (root.has("crowd"))
-    root.fail_key(
-        "crowd",
-        "goldens of crowds are of 1.x: remove this one, and keep the output of lrbscope crowd --json");
   GoldenSpec spec;
   spec.scenario = root.at("scenario").string();
   const std::vector<io::JsonNode> size = root.at("size").items();

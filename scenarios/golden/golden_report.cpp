@@ -1,6 +1,7 @@
 #include "scenarios/golden/golden_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -21,6 +22,7 @@
 #include <lrbscope/render/image.hpp>
 #include <lrbscope/render/overlay.hpp>
 #include <lrbscope/render/scene.hpp>
+#include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/replay.hpp>
 #include <lrbscope/trace/trace_json.hpp>
 
@@ -34,14 +36,17 @@ const CollideResult* find_result(const GoldenRun& run, std::size_t step) {
 }
 
 /// Returns the step in which the runs begin to differ: the named one or, if they differ as a whole (the
-/// request, the number of steps), that of the first differing event.
+/// request, the number of steps), that of the first differing event; else the last one that both have.
+/// nullopt: one has no steps.
 std::optional<std::size_t> step_of(const trace::Trace& x, const trace::Trace& y, const trace::Divergence& d,
                                    std::optional<trace::EventId>& event) {
-  if (d.step) return d.step;
+  const std::size_t steps = std::min(x.steps.size(), y.steps.size());
+  if (steps == 0) return std::nullopt;
+  if (d.step) return std::min(*d.step, steps - 1);
   const auto [p, q] = std::mismatch(x.events.begin(), x.events.end(), y.events.begin(), y.events.end());
-  if (p == x.events.end() || q == y.events.end()) return std::nullopt;
+  if (p == x.events.end() || q == y.events.end()) return steps - 1;
   event = static_cast<trace::EventId>(p - x.events.begin());
-  return std::min(x.step_of(*event), y.step_of(*event));
+  return std::min({x.step_of(*event), y.step_of(*event), steps - 1});
 }
 
 /// Returns the event of a run to show: the step's end if its step ended before.
@@ -109,8 +114,15 @@ bool same_bodies(const trace::Trace& x, const trace::Trace& y) {
                     y.header.bodies.end(), same);
 }
 
-}  // namespace
+/// The two runs where they begin to differ.
+struct DivergencePictures {
+  render::Image expected, actual;  ///< empty if there is nothing to draw
+  std::string expected_caption, actual_caption;
+  std::string note;  ///< why there is nothing to draw, or which step is shown
+};
 
+/// Draws both runs at the first differing event, or at the end of its step; as a whole and in a close-up,
+/// through the same cameras.
 DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
                                    const trace::Divergence& divergence) {
   DivergencePictures out;
@@ -121,10 +133,13 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
   }
   std::optional<trace::EventId> event = divergence.event;
   const std::optional<std::size_t> step = step_of(expected, actual, divergence, event);
-  if (!step || *step >= expected.steps.size() || *step >= actual.steps.size()) {
-    out.note = "One run goes on where the other one ends: there is no event to draw on both sides.";
+  if (!step) {
+    out.note = "One of the runs has no step, so there is nothing to draw.";
     return out;
   }
+  if (expected.steps.size() != actual.steps.size() && !divergence.step)
+    out.note = "The pictures are of step " + std::to_string(actual.steps[*step].index) +
+               ", the last that both runs have.";
   const SideShown sides[2] = {{expected, event_to_show(expected, *step, event)},
                               {actual, event_to_show(actual, *step, event)}};
   const std::vector<const LrbRep*> reps = recorded_run_of(run).reps;
@@ -150,7 +165,6 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
 }
 
 namespace fs = std::filesystem;
-namespace {
 
 constexpr const char* kKinds[] = {"expected", "actual", "difference"};
 constexpr const char* kTitle = "Golden images and traces";
@@ -160,38 +174,65 @@ report::PngBytes png_of(const render::Image& image) {
   return image.empty() ? report::PngBytes() : render::encode_png(image);
 }
 
-/// Returns the part that differs strongly of both pictures, side by side; else `actual`. Small.
-render::Image thumbnail(const render::Image& expected, const render::Image& actual) {
-  constexpr int kThumbnail = 320, kMargin = 6, kGap = 6;  // pixels
-  const bool alike = expected.width() == actual.width() && expected.height() == actual.height();
-  const int width = alike ? actual.width() : 0, height = actual.height();
-  int left = width, top = height, right = -1, bottom = -1;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      if (differ_strongly(expected.at(x, y), actual.at(x, y))) {
-        left = std::min(left, x), right = std::max(right, x);
-        top = std::min(top, y), bottom = std::max(bottom, y);
+/// Returns the square in which two pictures differ most; nullopt: they do not differ, or in size.
+std::optional<render::PixelRect> place_of(const render::Image& expected, const render::Image& actual) {
+  constexpr int kMostAcross = 24, kSide = 3;  // cells: of the picture at most, and of the square
+  if (actual.empty() || expected.rect() != actual.rect()) return std::nullopt;
+  render::Image mean = render::difference_image(expected, actual);
+  int cell = 1;
+  for (; mean.width() > kMostAcross; cell *= 2) mean = report::halved(mean);
+  std::optional<render::PixelRect> out;
+  const auto start = [&](int at, int end) { return std::clamp((at - 1) * cell, 0, end - kSide * cell); };
+  for (int y = 0, most = 0; y < mean.height(); ++y)
+    for (int x = 0; x < mean.width(); ++x)
+      if (const render::Rgba c = mean.at(x, y); c.r + c.g + c.b > most) {
+        most = c.r + c.g + c.b;
+        out = {start(x, actual.width()), start(y, actual.height()), kSide * cell, kSide * cell};
       }
-  const bool differs = right >= 0;
-  left = std::max(0, left - kMargin), right = std::min(width, right + kMargin);
-  top = std::max(0, top - kMargin), bottom = std::min(height, bottom + kMargin);
-  render::Image out =
-      differs ? render::Image(2 * (right - left) + kGap, bottom - top, render::palette::kFaint) : actual;
-  for (int y = top; differs && y < bottom; ++y)
-    for (int x = left; x < right; ++x) {
-      out.at(x - left, y - top) = expected.at(x, y);
-      out.at(right - left + kGap + x - left, y - top) = actual.at(x, y);
+  return out;
+}
+
+/// Draws a circle around a square.
+void circle(render::Image& image, const render::PixelRect& square) {
+  const double radius = 0.6 * square.width, cx = square.x + square.width / 2.0,
+               cy = square.y + square.height / 2.0;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      const double off = std::abs(std::hypot(x - cx, y - cy) - radius);
+      if (off < 3) image.at(x, y) = off < 1.5 ? render::palette::kWrong : render::kWhite;
     }
-  while (out.width() >= 2 * kThumbnail) out = report::halved(out);
+}
+
+/// Returns the picture with a circle around what differs most, and that close up, as approved and as found.
+/// Small.
+render::Image thumbnail(const render::Image& expected, const render::Image& actual) {
+  constexpr int kThumbnail = 320, kGap = 6;  // pixels
+  const std::optional<render::PixelRect> place = place_of(expected, actual);
+  render::Image whole = actual;
+  if (place) circle(whole, *place);
+  while (whole.width() >= 2 * kThumbnail) whole = report::halved(whole);
+  if (!place) return whole;
+  const int height = whole.height(), wide = height + kGap;
+  render::Image out(whole.width() + 2 * wide, height, render::palette::kFaint);
+  out.paste(whole, 0, 0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < height; ++x) {
+      const int u = place->x + x * place->width / height, v = place->y + y * place->height / height;
+      out.at(whole.width() + kGap + x, y) = expected.at(u, v);
+      out.at(whole.width() + kGap + wide + x, y) = actual.at(u, v);
+    }
   return out;
 }
 
 void add_comparison(GoldenResult& result, report::Comparison comparison, const render::Image& expected,
-                    const render::Image& actual) {
-  const render::Image difference =
+                    const render::Image& actual, bool is_best = false) {
+  render::Image difference =
       expected.empty() || actual.empty() ? render::Image() : render::difference_image(expected, actual);
+  if (const auto place = place_of(expected, actual); place && !comparison.passed && !difference.empty())
+    circle(difference, *place);
   comparison.pngs = {png_of(expected), png_of(actual), png_of(difference)};
-  if (!comparison.passed && !actual.empty() && result.thumbnail.empty())
+  // A picture of the run, or its proof map, rather than of the first difference, which may only be a number.
+  if (!comparison.passed && !actual.empty() && (result.thumbnail.empty() || is_best))
     result.thumbnail = png_of(thumbnail(expected, actual));
   result.comparisons.push_back(std::move(comparison));
 }
@@ -235,14 +276,17 @@ void add_maps(GoldenResult& result, const Golden& golden, const GoldenRun& run) 
       result,
       {result.name + "-maps",
        result.name + ": proof maps of step " + std::to_string(traces[0]->steps[*step].index), text},
-      squares[0], squares[1]);
+      squares[0], squares[1], true);
 }
 
 void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run, const ImageVerdict& v) {
   const std::string frame = fs::path(golden_image_file(v.frame)).stem().string();
   add_comparison(result, {result.name + "-" + frame, result.name + ": " + v.file, v.text, v.passed},
                  v.has_expected ? golden.frames[v.frame][v.variant].png.image : render::Image(),
-                 v.has_actual ? run.frames[v.frame].image : render::Image());
+                 v.has_actual ? run.frames[v.frame].image : render::Image(),
+                 std::ranges::none_of(result.comparisons, [](const report::Comparison& c) {
+                   return c.id.find("-frame_") != std::string::npos && !c.passed;
+                 }));
 }
 
 /// Returns "3 of 3 equal", "2 of 3 differ".
@@ -450,9 +494,7 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
 
 std::string result_text(const GoldenResult& r) {
   const GoldenVerdict& v = r.verdict;
-  if (!v.rejection.empty())
-    return "FAIL  " + r.name + ": " + v.rejection + "\n      approve it after fixing that: " + r.approve +
-           "\n";
+  if (!v.rejection.empty()) return "FAIL  " + r.name + ": " + v.rejection + "\n";
   const bool more_work = !v.more_work.empty() && !v.divergence;
   std::string head = v.answers_differ                  ? "answers " + answers_text(r)
                      : v.divergence                    ? "events or counters differ"

@@ -8,7 +8,6 @@
 #include "scenarios/golden/golden.hpp"
 #include "scenarios/golden/golden_run.hpp"
 #include "scenarios/report/document.hpp"
-#include <lrbscope/trace/divergence.hpp>
 
 namespace lrb::golden {
 
@@ -62,16 +61,5 @@ std::string markdown(const std::vector<GoldenResult>& results, const std::string
 
 /// Returns a line for each cause that several failures have, with their names.
 std::vector<std::string> equal_causes(const std::vector<GoldenResult>& results);
-
-/// The two runs where they begin to differ: at the first differing event, or at the end of its step; as a
-/// whole and in a close-up, through the same cameras.
-struct DivergencePictures {
-  render::Image expected, actual;  ///< empty if there is nothing to draw
-  std::string expected_caption, actual_caption;
-  std::string note;  ///< why there is nothing to draw
-};
-
-DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
-                                   const trace::Divergence& divergence);
 
 }  // namespace lrb::golden

@@ -22,74 +22,6 @@
 #include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::golden {
-namespace {
-
-std::string to_text(std::uint64_t value) {
-  return std::to_string(value);
-}
-std::string to_text(double value) {
-  return io::number_text(value);
-}
-std::string to_text(bool value) {
-  return value ? "yes" : "no";
-}
-std::string to_text(const std::optional<Separation>& s) {
-  return s ? "proven by wrappers of " + std::to_string(s->face_count[0]) + " and " +
-                 std::to_string(s->face_count[1]) + " faces"
-           : "none";
-}
-template <class Measured>
-std::string to_text(const std::optional<Measured>& m) {
-  return m ? trace::to_text(*m) : "none";
-}
-std::string to_text(const std::vector<std::uint32_t>& values) {
-  std::string out;
-  for (const std::uint32_t value : values) out.append(out.empty() ? "" : ", ").append(std::to_string(value));
-  return out;
-}
-template <class Enum>
-requires std::is_enum_v<Enum> std::string to_text(Enum value) {
-  return std::string(name_of(value));
-}
-
-/// Sets texts of two different values: with as many digits as differ.
-template <class T>
-void set_texts(const T& expected, const T& found, Effect& e) {
-  e.expected = to_text(expected);
-  e.found = to_text(found);
-  if constexpr (std::is_same_v<T, double>)
-    for (int digits = 8; e.expected == e.found && digits <= 17; ++digits) {
-      e.expected = io::number_text(expected, digits);
-      e.found = io::number_text(found, digits);
-    }
-}
-
-/// Compares the fields of two records and the fields of their counters.
-template <class Record>
-void compare(const Record& x, const Record& y, Effect like, std::vector<Effect>& out) {
-  std::vector<Effect> counters;
-  for_each_field<Record>([&](const auto& field) {
-    const auto &expected = x.*field.member, &found = y.*field.member;
-    if (expected == found) return;
-    if constexpr (std::is_same_v<decltype(expected), const Counters&>) {
-      Effect work = like;
-      work.kind = Effect::Kind::work;
-      compare(expected, found, work, counters);
-    } else {
-      like.what = io::in_words(field.name);
-      set_texts(expected, found, like);
-      if constexpr (std::is_same_v<decltype(expected), const std::uint64_t&>)
-        if (field.form == Form::hash) {
-          like.expected = trace::to_hex(expected);
-          like.found = trace::to_hex(found);
-        }
-      out.push_back(like);
-    }
-  });
-  out.insert(out.end(), counters.begin(), counters.end());
-}
-
-}  // namespace
 
 std::vector<double> contact_lengths(const record::Recording& recording) {
   std::vector<double> out;
@@ -112,17 +44,23 @@ std::vector<Effect> find_effects(const Golden& golden, const GoldenRun& run) {
     like.step = found[i].index;
     std::vector<Effect> of_step;
     if (expected[i].finished && found[i].finished)
-      compare(expected[i].result, found[i].result, like, of_step);
+      for (const trace::FieldDifference& d : trace::differing_fields(expected[i].result, found[i].result))
+        of_step.push_back({like.step, io::in_words(d.name), d.expected, d.actual,
+                           d.is_counter ? Effect::Kind::work : Effect::Kind::answer});
     if (i < lengths.size() && i < lengths_now.size() && lengths[i] != lengths_now[i]) {
       like.what = "length of contact";
-      set_texts(lengths[i], lengths_now[i], like);
+      // As many digits as differ.
+      for (int digits = 7; like.expected == like.found && digits <= 17; ++digits) {
+        like.expected = io::number_text(lengths[i], digits);
+        like.found = io::number_text(lengths_now[i], digits);
+      }
       like.kind = Effect::Kind::measure;
       of_step.push_back(like);
     }
     out.insert(out.end(), of_step.begin(), of_step.end());
   }
-  if (expected.size() != found.size())
-    out.push_back({static_cast<std::uint32_t>(std::min(expected.size(), found.size())), "number of steps",
+  if (const std::size_t both = std::min(expected.size(), found.size()); expected.size() != found.size())
+    out.push_back({(expected.size() > both ? expected : found)[both].index, "number of steps",
                    std::to_string(expected.size()), std::to_string(found.size()), Effect::Kind::answer});
   std::stable_sort(out.begin(), out.end(), [](const Effect& x, const Effect& y) { return x.kind < y.kind; });
   return out;

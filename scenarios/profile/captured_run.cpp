@@ -382,7 +382,7 @@ std::string captured_words(const capture::Capture& capture, const TreePair& pair
         " of A with a shape: B is drawn as it was described, tests show its first triangle, and the answer is not "
         "checked.");
   if (capture.every > 1)
-    add("One of " + std::to_string(capture.every) + " queries was recorded; sums are of these.");
+    add("One of " + std::to_string(capture.every) + " queries was recorded; all numbers are of these.");
   if (const std::uint64_t n = count([](const auto& q) { return !q.complete(); }); n > 0)
     add("The capture does not contain all events of " + counted(n, "query.", "queries."));
   return out;
@@ -409,6 +409,8 @@ spec::Scenario captured_scenario(const capture::Capture& c, const TreePair& pair
                                  const std::vector<bodies::LoadedBody>& bodies, const std::string& file) {
   spec::Scenario s;
   s.name = mesh_name(c, pair.trees[0]) + "-" + mesh_name(c, pair.trees[1]) + ", " + c.engine;
+  // Every number on the page is of the sample.
+  if (c.every > 1) s.name += ", a sample: one of " + std::to_string(c.every) + " queries";
   const capture::Query &first = c.queries[pair.queries.front()], &last = c.queries[pair.queries.back()];
   s.purpose = "Recorded in " + c.engine + ": " + counted(pair.queries.size(), "query", "queries") + " of " +
               printable_name(std::filesystem::path(file).filename().string()) + ", number " +
@@ -448,52 +450,6 @@ CapturedRunSettings captured_settings(const spec::Scenario& scenario, const capt
   for (std::size_t side = 0; side < 2; ++side)
     out.sources[side] = file + ", " + mesh_name(c, pair.trees[side]);
   out.event_cap = scenario.event_cap;
-  return out;
-}
-
-CapturedTotals& CapturedTotals::operator+=(const CapturedTotals& o) {
-  queries += o.queries, events += o.events;
-  right += o.right, missed += o.missed, false_pairs += o.false_pairs;
-  right_verdicts += o.right_verdicts, wrong_verdicts += o.wrong_verdicts;
-  right_distances += o.right_distances, wrong_distances += o.wrong_distances;
-  has_pairs = has_pairs || o.has_pairs;
-  checked = checked || o.checked;
-  return *this;
-}
-
-CapturedTotals totals_of(const record::Recording& run) {
-  CapturedTotals out;
-  out.queries = run.trace.steps.size();
-  out.checked = !run.results.empty();
-  for (std::size_t i = 0; i < run.trace.steps.size(); ++i) {
-    const trace::StepResult& answer = run.trace.steps[i].result;
-    out.events += answer.counters.node_pairs + answer.counters.face_tests;
-    out.has_pairs = out.has_pairs || !answer.engine || answer.engine->complete;
-    if (!out.checked) continue;
-    const record::AnswerScore score = record::score_of(answer, run.wrong[i], run.results[i]);
-    out.right += score.right;
-    out.missed += score.missed;
-    out.false_pairs += score.false_pairs;
-    out.right_verdicts += score.verdict == true;
-    out.wrong_verdicts += score.verdict == false;
-    if (i >= run.distances.size() || !run.distances[i]) continue;
-    ++(run.distances[i]->empty() ? out.right_distances : out.wrong_distances);
-  }
-  return out;
-}
-
-std::string words(const CapturedTotals& t) {
-  std::string out = counted(t.queries, "query", "queries") + ", " + counted(t.events, "event", "events");
-  if (!t.checked) return out + "; answers not checked";
-  if (t.right_verdicts + t.wrong_verdicts > 0)
-    out += "; verdicts: " + group_digits(t.right_verdicts) + " right, " + group_digits(t.wrong_verdicts) +
-           " wrong";
-  if (t.right_distances + t.wrong_distances > 0)
-    out += "; distances: " + group_digits(t.right_distances) + " right, " + group_digits(t.wrong_distances) +
-           " wrong";
-  if (t.has_pairs)
-    out += "; pairs: " + group_digits(t.right) + " right, " + group_digits(t.missed) + " missed, " +
-           group_digits(t.false_pairs) + " false";
   return out;
 }
 

@@ -87,18 +87,4 @@ std::vector<bodies::LoadedBody> captured_bodies(const capture::Capture& capture,
 CapturedRunSettings captured_settings(const spec::Scenario& scenario, const capture::Capture& capture,
                                       const TreePair& pair, const std::string& file);
 
-/// Totals of a run, for one line of text.
-struct CapturedTotals {
-  std::uint64_t queries = 0, events = 0;  ///< events: tests of volumes and of triangles
-  std::uint64_t right = 0, missed = 0, false_pairs = 0;
-  std::uint64_t right_verdicts = 0, wrong_verdicts = 0, right_distances = 0, wrong_distances = 0;
-  bool has_pairs = false;  ///< the tests of some query were captured
-  bool checked = false;
-
-  CapturedTotals& operator+=(const CapturedTotals& o);
-};
-CapturedTotals totals_of(const record::Recording& run);
-/// Returns "40 queries, 12 345 events; verdicts: 40 right, 0 wrong; pairs: 702 right, 0 missed, 0 false".
-std::string words(const CapturedTotals& totals);
-
 }  // namespace lrb::profile

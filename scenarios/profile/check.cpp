@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -24,7 +25,7 @@ using render::group_digits;
 constexpr double kRange = 1000;
 
 pictures::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::ScaleBar& scale,
-                         bool from_behind) {
+                         bool from_behind, const Eigen::Vector3d& up) {
   pictures::Panel panel;
   panel.list.edge_styles[0] = {render::with_alpha(render::kWhite, 110), 0.8F};
   for (FaceId f = 0; f < rep.real_face_count(); ++f) {
@@ -35,8 +36,8 @@ pictures::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::S
     panel.list.add_polygon(pictures::corners_of(rep, f), t);
   }
   render::FitOptions fit;
-  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), from = pictures::broadside(pictures::box_of(rep), up);
-  fit.view = {from_behind ? Eigen::Vector3d(-from.x(), -from.y(), from.z()) : from, up};
+  const Eigen::Vector3d from = pictures::broadside(pictures::box_of(rep), up);
+  fit.view = {from_behind ? Eigen::Vector3d(2 * from.dot(up) * up - from) : from, up};
   panel.camera = pictures::fit_points(pictures::real_corners(rep), rep.dim(), fit);
   const std::string name = std::filesystem::path(map.mesh.name).filename().string();
   panel.title = (name.empty() ? "mesh" : name) + (from_behind ? ", from behind" : "");
@@ -46,7 +47,7 @@ pictures::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::S
 
 /// Draws each mesh from two opposite sides, with its triangles coloured by their waste on one logarithmic
 /// scale. Throws EnvironmentError if this machine cannot render.
-render::Image draw_waste(std::span<const WasteMap> maps) {
+render::Image draw_waste(std::span<const WasteMap> maps, const Eigen::Vector3d& up) {
   double most = 0;
   for (const WasteMap& map : maps)
     most = std::max(most, *std::max_element(map.waste.begin(), map.waste.end()));
@@ -55,7 +56,7 @@ render::Image draw_waste(std::span<const WasteMap> maps) {
   for (const WasteMap& map : maps) {
     const bodies::LoadedBody body = captured_body(map.mesh);
     for (const bool from_behind : {false, true})
-      panels.push_back(panel_of(body.rep, map, scale, from_behind));
+      panels.push_back(panel_of(body.rep, map, scale, from_behind, up));
   }
   constexpr int kSheetWidth = 1160, kHeight = 300;  // one row, so that all sides of both engines are compared
   pictures::Look look;
@@ -68,11 +69,11 @@ render::Image draw_waste(std::span<const WasteMap> maps) {
   return pictures::with_overlay(pictures::draw_sheet(panels, look, options), overlay);
 }
 
-render::Image draw_wrong(const ShownPair& wrong) {
+render::Image draw_wrong(const ShownPair& wrong, const Eigen::Vector3d& up) {
   const bodies::LoadedBody a = captured_body(wrong.meshes[0]), b = captured_body(wrong.meshes[1]);
   const pictures::PosedBodies posed{a.rep, wrong.poses[0], b.rep, wrong.poses[1]};
-  return pictures::picture_of(explain_pair(a.rep, posed.pose_a, b.rep, posed.pose_b, wrong.pair), posed,
-                              true);
+  return pictures::picture_of(explain_pair(a.rep, posed.pose_a, b.rep, posed.pose_b, wrong.pair), posed, true,
+                              up);
 }
 
 std::uint64_t visits_in(const capture::Capture& capture) {
@@ -84,11 +85,18 @@ std::uint64_t visits_in(const capture::Capture& capture) {
   return out;
 }
 
+void add(std::vector<Cause>& causes, const std::string& words, std::string line) {
+  auto at = std::ranges::find(causes, words, &Cause::words);
+  if (at == causes.end()) at = causes.insert(at, {words, {}});
+  at->lines.push_back(std::move(line));
+}
+
 /// Adds the lines about a query.
 void report(const QueryVerdict& v, const capture::Query& query, CapturedBodies& bodies, Check& out) {
   const std::string head = "query " + std::to_string(v.number) + ": ";
-  if (v.answer == Judgement::wrong) out.wrong.push_back(head + v.remark);
-  if (v.answer == Judgement::undecidable) out.undecidable.push_back(head + v.remark);
+  const std::string of_answer = "verdict, number of pairs or distance";
+  if (v.answer == Judgement::wrong) add(out.wrong, of_answer, head + v.remark);
+  if (v.answer == Judgement::undecidable) add(out.undecidable, of_answer, head + v.remark);
   if (v.wrong.empty()) return;
   const auto trees = bodies.trees_of(query).value();
   const auto line = [&](const WrongPair& w) {
@@ -102,7 +110,7 @@ void report(const QueryVerdict& v, const capture::Query& query, CapturedBodies& 
                        query.poses,
                        {SimplexId(w.triangles.a), SimplexId(w.triangles.b)},
                        line(w)};
-  for (const WrongPair& w : v.wrong) (w.undecidable ? out.undecidable : out.wrong).push_back(line(w));
+  for (const WrongPair& w : v.wrong) add(w.undecidable ? out.undecidable : out.wrong, cause_of(w), line(w));
 }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
@@ -130,13 +138,14 @@ report::Table advice_table(std::span<const Check> checks) {
 }
 
 report::Table wrong_table(std::span<const Check> checks) {
-  constexpr std::size_t kMaxRows = 50;
-  report::Table t{"Wrong and undecidable answers", {"engine", "verdict", "explanation"}};
+  report::Table t{"Wrong and undecidable answers by cause",
+                  {"engine", "verdict", "cause", "number", "the first one"}};
   for (const Check& c : checks)
-    for (const auto& [word, lines] : {std::pair{"wrong", &c.wrong}, {"undecidable", &c.undecidable}})
-      for (const std::string& line : *lines)
-        if (t.rows.size() < kMaxRows) t.rows.push_back({c.engine, word, line});
-  if (t.rows.size() == kMaxRows) t.note = "The first " + std::to_string(kMaxRows) + ".";
+    for (const auto& [word, causes] : {std::pair{"wrong", &c.wrong}, {"undecidable", &c.undecidable}})
+      for (const Cause& cause : *causes)
+        t.rows.push_back({c.engine, word, cause.words, group_digits(cause.lines.size()), cause.lines[0]});
+  if (std::ranges::any_of(checks, [](const Check& c) { return !c.sample.empty(); }))
+    t.note = "Of a sample, numbers in this table are of the recorded queries.";
   return t;
 }
 
@@ -322,6 +331,8 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
   }
   for (auto& [kind, sums] : out.kinds) sums *= capture.every;
   if (capture.every > 1) out.sample = sentence_of_sample(out, capture.every);
+  for (std::vector<Cause>* causes : {&out.wrong, &out.undecidable})
+    std::ranges::stable_sort(*causes, std::greater(), [](const Cause& c) { return c.lines.size(); });
   out.waste = most_wasted(capture, book);
   out.pose_error = pose_errors.sentence();
   visited.erase(CapturedBodies::kProbe);
@@ -377,7 +388,8 @@ report::Table verdict_table(std::span<const Check> checks) {
   return t;
 }
 
-std::vector<std::string> add_checks(report::Document& page, std::span<const Check> checks) {
+std::vector<std::string> add_checks(report::Document& page, std::span<const Check> checks,
+                                    const Eigen::Vector3d& up) {
   std::vector<std::string> notes;
   const auto draw = [&](const char* kind, const Check& c, const auto& image, const std::string& title,
                         const std::string& caption) {
@@ -390,14 +402,14 @@ std::vector<std::string> add_checks(report::Document& page, std::span<const Chec
   for (const Check& c : checks)
     if (c.first_wrong)
       draw(
-          "wrong_", c, [&] { return draw_wrong(*c.first_wrong); }, "Wrong answer of " + c.engine,
+          "wrong_", c, [&] { return draw_wrong(*c.first_wrong, up); }, "Wrong answer of " + c.engine,
           c.first_wrong->sentence);
   if (const report::Table t = wrong_table(checks); !t.rows.empty()) page.table(t);
   page.table(verdict_table(checks)).table(price_table(checks)).table(advice_table(checks));
   for (const Check& c : checks)
     if (!c.waste.empty())
       draw(
-          "waste_", c, [&] { return draw_waste(c.waste); }, "Where visits are wasted, " + c.engine,
+          "waste_", c, [&] { return draw_waste(c.waste, up); }, "Where visits are wasted, " + c.engine,
           "Wasted visits, by volumes or order, shared evenly by the triangles beneath both nodes.");
   for (const Check& c : checks) page.chart(chart_by_query(c));
   return notes;

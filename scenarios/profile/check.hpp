@@ -60,15 +60,21 @@ struct ShownPair {
   std::string sentence;  ///< about it
 };
 
+/// Errors with the same cause.
+struct Cause {
+  std::string words;
+  std::vector<std::string> lines;  ///< one for each error that was kept
+};
+
 struct Check {
   std::string engine;
   Precision precision = Precision::float64;
   std::vector<CheckedQuery> queries;
   std::map<capture::QueryKind, CheckSums> kinds;  ///< of a sample, scaled to all queries
   std::vector<WasteMap> waste;                    ///< of the two trees with most waste
-  std::vector<std::string> wrong;                 ///< a line for each wrong pair or answer that was kept
+  std::vector<Cause> wrong;                       ///< wrong pairs and answers; the most frequent cause first
   std::optional<ShownPair> first_wrong;           ///< beyond the error bound, of two bodies
-  std::vector<std::string> undecidable;           ///< the same, for those within the error bound
+  std::vector<Cause> undecidable;                 ///< the same, for those within the error bound
 
   /// A sentence if most reported pairs are wrong, but right after the reversal of a PoseError.
   std::string pose_error;
@@ -90,8 +96,9 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
 report::Table price_table(std::span<const Check> checks);
 /// Returns the verdicts by engine and kind of query.
 report::Table verdict_table(std::span<const Check> checks);
-/// Adds verdicts, prices, advice, the charts of prices by query and by depth, and pictures of the waste to a
-/// page. Returns notes on pictures that could not be drawn.
-std::vector<std::string> add_checks(report::Document& page, std::span<const Check> checks);
+/// Adds verdicts, prices, advice, the chart of prices by query, and pictures of the waste to a page. `up`: of
+/// the pictures. Returns notes on pictures that could not be drawn.
+std::vector<std::string> add_checks(report::Document& page, std::span<const Check> checks,
+                                    const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 
 }  // namespace lrb::profile

@@ -472,14 +472,20 @@ std::string advice(const Prices& sum) {
           std::to_string(kLargerLeaves[static_cast<std::size_t>(best - sum.saved_by_leaves.begin())]) +
           " triangles");
   std::stable_sort(gains.begin(), gains.end(), [](const Gain& x, const Gain& y) { return x.rank > y.rank; });
-  const auto share = [&](const Gain& gain) {
-    const double percent = std::ceil(100 * gain.most / static_cast<double>(tests) - 1e-9);
-    return std::to_string(std::max(0L, std::lround(percent))) + " %";
+  const auto percent = [&](double saved) {
+    const double share = std::ceil(100 * saved / static_cast<double>(tests) - 1e-9);
+    return std::to_string(std::max(0L, std::lround(share))) + " %";
+  };
+  // Where the bound is not what it is ranked by, both are said.
+  const auto share = [&](const Gain& gain, const std::string& of) {
+    const bool has_both = percent(gain.most) != percent(gain.rank);
+    return ", at most " + percent(gain.most) + of +
+           (has_both ? ", of which no other change saves " + percent(gain.rank) : "");
   };
   if (!(gains[0].rank > 0)) return "Nothing to gain: every visit was needed.";
-  return "Most to gain: " + gains[0].change + ", at most " + share(gains[0]) + " of " +
-         render::group_digits(tests) + " tests of volumes and triangles; next: " + gains[1].change +
-         ", at most " + share(gains[1]) + ".";
+  return "Most to gain: " + gains[0].change +
+         share(gains[0], " of " + render::group_digits(tests) + " tests of volumes and triangles") +
+         "; next: " + gains[1].change + share(gains[1], "") + ".";
 }
 
 }  // namespace lrb::profile

@@ -142,7 +142,7 @@ class PriceBook {
 /// Returns a sentence that says which change would save most of the tests of volumes and triangles, each
 /// counted as one, and at most what share; and which comes next. Volumes could save the visits of all other
 /// prices too if they fitted perfectly: they are ranked by those that no order saves, without the tests of
-/// triangles that smaller leaves would save.
+/// triangles that smaller leaves would save, and the sentence has both numbers.
 std::string advice(const Prices& sum);
 
 }  // namespace lrb::profile

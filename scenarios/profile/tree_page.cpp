@@ -95,7 +95,7 @@ report::Table node_table(const std::string& title, const std::vector<NodeFigures
 /// body's centre and in units of its size. Faces are in the order of the tree's leaves, so that the faces
 /// below a node are consecutive.
 std::string view_json(const capture::Tree& tree, const capture::Mesh& mesh, const TreeIndex& index,
-                      const TreeFigures& figures) {
+                      const TreeFigures& figures, const render::ViewDirection& view) {
   using Numbers = std::vector<std::uint32_t>;
   using report::packed;
   const Subtrees subtrees(tree, index, mesh.triangles.size());
@@ -155,6 +155,7 @@ std::string view_json(const capture::Tree& tree, const capture::Mesh& mesh, cons
   const nlohmann::json out = {{"dim", flat ? 2 : 3},
                               {"origin", {frame.origin.x(), frame.origin.y(), frame.origin.z()}},
                               {"unit", frame.unit},
+                              {"view", run::view_json(view, false)},
                               {"colours", run::scene_colours()},
                               {"volume", volume_name(tree.volume)},
                               {"epo", figures.epo ? figures.epo->value : 0},
@@ -258,7 +259,7 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
 
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,
                      const TreeReport& report, const std::string& engine, const std::string& command,
-                     const report::Table& trees) {
+                     const report::Table& trees, const render::ViewDirection& view) {
   constexpr std::size_t kMaxFaces = 500'000;  // of a view
   const TreeFigures& f = report.figures;
   const TreeIndex index(tree, mesh.triangles.size());
@@ -270,7 +271,7 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
   doc.verdict(faults == 0 ? "no faults" : counted(faults, "fault", "faults"), faults == 0).command(command);
   add_numbers(doc, report, mesh.triangles.size());
   if (mesh.triangles.size() <= kMaxFaces)
-    doc.tree_view(view_json(tree, mesh, index, f));
+    doc.tree_view(view_json(tree, mesh, index, f, view));
   else
     doc.purpose("No view: it is limited to " + group_digits(kMaxFaces) + " triangles.");
   doc.picture(

@@ -22,6 +22,6 @@ std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const 
 /// the capture with links to their pages; no rows for a single tree.
 void write_tree_page(const report::Folder& folder, const capture::Tree& tree, const capture::Mesh& mesh,
                      const TreeReport& report, const std::string& engine, const std::string& command,
-                     const report::Table& trees);
+                     const report::Table& trees, const render::ViewDirection& view = {});
 
 }  // namespace lrb::profile

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/core/axes.hpp"
+#include "scenarios/record/engine_run.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/distance.hpp>
 #include <lrbscope/pair_distance.hpp>
@@ -466,6 +467,13 @@ void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
                std::to_string(exact) + (posed.has_probe() ? " are hit" : " intersect");
 }
 
+std::string cause_of(const WrongPair& wrong) {
+  const bool sticks_out = std::max(wrong.outside[0], wrong.outside[1]) > wrong.bound;
+  return !wrong.missed ? "false"
+                       : "missed, cause " + io::in_words(name_of(wrong.culprit)) +
+                             (sticks_out ? " from which a triangle sticks out" : "");
+}
+
 std::string sentence(const WrongPair& wrong, const capture::Tree& a, const capture::Tree& b) {
   constexpr int kDigits = 3;
   const auto number = [](double x) { return io::number_text(x, kDigits); };
@@ -487,7 +495,7 @@ std::string sentence(const WrongPair& wrong, const capture::Tree& a, const captu
       break;
     case Culprit::volumes:
       out += nodes() + "were found disjoint";
-      if (wrong.axis != capture::kNoAxis) out += " along axis " + std::to_string(wrong.axis);
+      if (wrong.axis != capture::kNoAxis) out += " along " + record::axis_words(wrong.axis);
       for (std::size_t side = 0; side < 2; ++side)
         if (wrong.outside[side] > wrong.bound)
           out += "; triangle " + names[side] + " sticks out of its node by " + number(wrong.outside[side]);

@@ -161,8 +161,10 @@ class Checker {
 };
 
 /// Returns a sentence about a wrong pair: "missed 3560,3155: nodes 2047 and 3548, which contain them, were
-/// found disjoint along axis 0; triangle 3560 sticks out of its node by 0.0123". Nodes have the engine's
-/// numbers.
+/// found disjoint along axis 1 of A's box; triangle 3560 sticks out of its node by 0.0123". Nodes have the
+/// engine's numbers.
 std::string sentence(const WrongPair& wrong, const capture::Tree& a, const capture::Tree& b);
+/// Returns what wrong pairs have in common: "missed, cause volumes from which a triangle sticks out".
+std::string cause_of(const WrongPair& wrong);
 
 }  // namespace lrb::profile

@@ -5,8 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenarios/record/recorded_run.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/explain.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::record {
 namespace {
@@ -157,6 +159,74 @@ AnswerScore score_of(const trace::StepResult& answer, std::span<const pictures::
       answer.engine->query != EngineQuery::self)
     out.verdict = (answer.engine->verdict == EngineVerdict::intersecting) == !exact.pairs.empty();
   return out;
+}
+
+std::string EngineTotals::words() const {
+  using render::counted, render::group_digits;
+  if (!checked) return counted(queries, "query", "queries") + ", answers not checked";
+  std::string out;
+  const auto add = [&](bool is_said, const std::string& text) {
+    if (is_said) out += (out.empty() ? ": " : ", ") + text;
+  };
+  const auto of = [](std::uint64_t part, std::uint64_t all) {
+    return group_digits(part) + " of " + group_digits(all) + " ";
+  };
+  if (wrong_queries == 0) {
+    add(has_pairs, counted(right, "pair", "pairs"));
+    add(verdicts > 0, counted(verdicts, "verdict", "verdicts"));
+    add(distances > 0, counted(distances, "distance", "distances"));
+    return "no wrong answer in " + counted(queries, "query", "queries") + out;
+  }
+  add(missed > 0, of(missed, right + missed) + "intersecting pairs missed");
+  add(false_pairs > 0, counted(false_pairs, "false pair", "false pairs"));
+  add(wrong_verdicts > 0, of(wrong_verdicts, verdicts) + "verdicts wrong");
+  add(wrong_distances > 0, of(wrong_distances, distances) + "distances wrong");
+  return "wrong answers in " + of(wrong_queries, queries) + "queries" + out;
+}
+
+void EngineTotals::add(const trace::Trace& trace, const std::vector<CollideResult>* results,
+                       const std::vector<std::vector<pictures::WrongPair>>* wrongs,
+                       const std::vector<std::optional<std::string>>* errors) {
+  queries += trace.steps.size();
+  const bool is_checked =
+      results != nullptr && wrongs != nullptr && !results->empty() && wrongs->size() == results->size();
+  checked |= is_checked;
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    const trace::StepResult& r = trace.steps[i].result;
+    has_pairs |= !r.engine || r.engine->complete;
+    intersecting += r.relation == Relation::crossing;
+    node_pairs += r.counters.node_pairs;
+    box_tests += r.counters.box_tests;
+    face_tests += r.counters.face_tests;
+    if (!is_checked) continue;
+    const AnswerScore s = score_of(r, (*wrongs)[i], (*results)[i]);
+    const bool has_distance = errors != nullptr && i < errors->size() && (*errors)[i];
+    const bool is_distance_wrong = has_distance && !(*errors)[i]->empty();
+    right += s.right, missed += s.missed, false_pairs += s.false_pairs;
+    verdicts += s.verdict.has_value(), wrong_verdicts += s.verdict == false;
+    distances += has_distance, wrong_distances += is_distance_wrong;
+    wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false || is_distance_wrong;
+  }
+}
+
+void EngineTotals::add(const Recording& run) {
+  add(run.trace, &run.results, &run.wrong, &run.distances);
+}
+
+EngineTotals totals_of(const Recording& run) {
+  EngineTotals out;
+  out.add(run);
+  return out;
+}
+
+std::string axis_words(std::uint32_t axis) {
+  constexpr std::uint32_t kEdges = 6, kEnd = 15, kDirections = 32;
+  if (axis < kEdges) return std::string(name_of(static_cast<BoxAxis>(axis)));
+  if (axis < kEnd)
+    return "edges " + std::to_string((axis - kEdges) / 3 + 1) + " of A and " +
+           std::to_string((axis - kEdges) % 3 + 1) + " of B";
+  return axis < kDirections ? "axis " + std::to_string(axis)
+                            : "direction " + std::to_string(axis - kDirections);
 }
 
 }  // namespace lrb::record

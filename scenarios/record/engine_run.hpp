@@ -16,6 +16,8 @@
 
 namespace lrb::record {
 
+struct Recording;
+
 /// File in a run's folder with the trees of another engine, because its trace names their nodes by number.
 inline constexpr const char* kTreesFile = "trees.json";
 
@@ -55,5 +57,28 @@ struct AnswerScore {
 /// `wrong`: as returned by wrong_pairs().
 AnswerScore score_of(const trace::StepResult& answer, std::span<const pictures::WrongPair> wrong,
                      const CollideResult& exact);
+
+/// Sums over the queries of an engine's run.
+struct EngineTotals {
+  std::uint64_t queries = 0, intersecting = 0;  ///< intersecting: by the engine's verdict
+  std::uint64_t node_pairs = 0, box_tests = 0, face_tests = 0;
+  std::uint64_t right = 0, missed = 0, false_pairs = 0;
+  std::uint64_t verdicts = 0, wrong_verdicts = 0, distances = 0, wrong_distances = 0;
+  std::uint64_t wrong_queries = 0;  ///< with a wrong pair, verdict or distance
+  bool has_pairs = false;           ///< the tests of some query were captured
+  bool checked = false;
+
+  /// Adds a run. `distances`: as in Recording; null: not known.
+  void add(const trace::Trace& trace, const std::vector<CollideResult>* results,
+           const std::vector<std::vector<pictures::WrongPair>>* wrong,
+           const std::vector<std::optional<std::string>>* distances);
+  void add(const Recording& run);
+  /// Returns "wrong answers in 2 of 40 queries: 30 of 732 intersecting pairs missed".
+  std::string words() const;
+};
+EngineTotals totals_of(const Recording& run);
+
+/// Returns the name of an axis of a test of another engine: see capture::Event::axis.
+std::string axis_words(std::uint32_t axis);
 
 }  // namespace lrb::record

@@ -85,8 +85,7 @@ std::vector<trace::TreeShape> engine_trees(const std::string& trace_path, const 
                     {header.bodies[0].real_simplices, header.bodies[1].real_simplices});
 }
 
-}  // namespace
-
+/// Loads the recorded bodies: those in `given`, or if it is empty the files of these names next to the trace.
 std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
                                             const std::vector<std::string>& given,
                                             const std::vector<std::string>& names) {
@@ -107,6 +106,8 @@ std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
     for (const std::string& path : paths) out.push_back(bodies::load_body(path));
   return out;
 }
+
+}  // namespace
 
 Recording open_run(trace::Trace trace, const std::string& trace_path,
                    const std::vector<std::string>& bodies) {

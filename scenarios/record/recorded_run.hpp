@@ -54,14 +54,9 @@ std::vector<std::string> mismatches(const spec::Scenario& scenario, const Record
 
 // Opens a recorded and written run.
 
-/// Loads the recorded bodies: those in `given`, or if it is empty the files of these names next to the trace.
-std::vector<bodies::LoadedBody> find_bodies(const std::string& trace_path,
-                                            const std::vector<std::string>& given,
-                                            const std::vector<std::string>& names);
-
-/// Returns the run of a trace, with its bodies (see find_bodies()). Recomputes the contact regions of each
-/// step, because a trace contains pairs but not their intersections. Throws InputError if the trace cannot be
-/// a recording of these bodies.
+/// Returns the run of a trace, with its bodies: those in `bodies`, or if it is empty a.lrb and b.lrb next to
+/// the trace. Recomputes the contact regions of each step, because a trace contains pairs but not their
+/// intersections. Throws InputError if the trace cannot be a recording of these bodies.
 Recording open_run(trace::Trace trace, const std::string& trace_path,
                    const std::vector<std::string>& bodies = {});
 

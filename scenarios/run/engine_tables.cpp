@@ -26,71 +26,44 @@ std::optional<std::string> distance_at(const frames::RecordedRun& p, std::size_t
   return p.distances != nullptr && step < p.distances->size() ? (*p.distances)[step] : std::nullopt;
 }
 
-/// Sums over the steps of a run.
-struct EngineTotals {
-  record::AnswerScore pairs;
-  std::uint64_t verdicts = 0, wrong_verdicts = 0, wrong_queries = 0, intersecting = 0;
-  bool has_pairs = false;  ///< all tests of some query were recorded
-  std::uint64_t box_tests = 0, node_pairs = 0, face_tests = 0;
-};
-
-EngineTotals totals_of(const frames::RecordedRun& p) {
-  EngineTotals out;
-  for (std::size_t i = 0; i < p.trace->steps.size(); ++i) {
-    const trace::StepResult& r = p.trace->steps[i].result;
-    out.has_pairs = out.has_pairs || !r.engine || r.engine->complete;
-    out.intersecting += r.relation == Relation::crossing;
-    out.box_tests += r.counters.box_tests;
-    out.node_pairs += r.counters.node_pairs;
-    out.face_tests += r.counters.face_tests;
-    if (!is_checked(p)) continue;
-    const record::AnswerScore s = score_at(p, i);
-    const bool wrong_distance = !distance_at(p, i).value_or("").empty();
-    out.pairs.right += s.right, out.pairs.missed += s.missed, out.pairs.false_pairs += s.false_pairs;
-    out.verdicts += s.verdict.has_value();
-    out.wrong_verdicts += s.verdict == false;
-    out.wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false || wrong_distance;
-  }
+record::EngineTotals totals_of(const frames::RecordedRun& p) {
+  record::EngineTotals out;
+  out.add(*p.trace, p.results, p.wrong, p.distances);
   return out;
 }
 
 }  // namespace
 
 std::string engine_sentence(const frames::RecordedRun& p) {
-  using render::counted, render::group_digits;
-  const EngineTotals t = totals_of(p);
-  const std::uint64_t tests = t.box_tests + t.face_tests;
-  std::string out = "asks " + counted(p.trace->steps.size(), "query", "queries") + ", of which " +
-                    group_digits(t.intersecting) + (t.intersecting == 1 ? " is" : " are") +
-                    " intersecting by its answer, at a cost of " + counted(tests, "test", "tests");
-  if (tests > 0)
-    out += ": " + group_digits(t.box_tests) + " of volumes, " + group_digits(t.face_tests) + " of triangles";
-  return out + ".";
+  return totals_of(p).words() + ".";
 }
 
 void add_engine_answer(report::Document& doc, const frames::RecordedRun& p) {
   using render::counted, render::group_digits;
-  const EngineTotals t = totals_of(p);
-  const std::size_t steps = p.trace->steps.size();
-  if (!is_checked(p))
+  const record::EngineTotals t = totals_of(p);
+  if (!t.checked)
     doc.verdict("answers not checked");
   else if (t.wrong_queries == 0)
     doc.verdict("no wrong answer");
   else
-    doc.verdict("wrong in " + counted(t.wrong_queries, "query", "queries"), false);
-  doc.number({"Queries", group_digits(steps), group_digits(t.intersecting) + " intersecting, by the engine"});
-  if (is_checked(p) && t.verdicts > 0)
-    doc.number({"Right verdicts", group_digits(t.verdicts - t.wrong_verdicts),
-                group_digits(t.wrong_verdicts) + " wrong"});
-  if (is_checked(p) && t.has_pairs)
-    doc.number({"Right pairs", group_digits(t.pairs.right), "of triangles; found by the engine, and exact"})
-        .number({"Missed pairs", group_digits(t.pairs.missed), "intersecting, but not found"})
-        .number({"False pairs", group_digits(t.pairs.false_pairs), "found, but disjoint"});
+    doc.verdict("wrong in " + group_digits(t.wrong_queries) + " of " + counted(t.queries, "query", "queries"),
+                false);
+  doc.number(
+      {"Queries", group_digits(t.queries), group_digits(t.intersecting) + " intersecting, by the engine"});
+  // Errors come first, and right verdicts are no comfort beside them.
+  if (t.checked && t.has_pairs)
+    doc.number({"Missed pairs", group_digits(t.missed),
+                "not found, of " + group_digits(t.right + t.missed) + " that intersect"})
+        .number({"False pairs", group_digits(t.false_pairs), "found, but disjoint"});
+  if (t.verdicts > 0)
+    doc.number({"Wrong verdicts", group_digits(t.wrong_verdicts), "of " + group_digits(t.verdicts)});
+  if (t.distances > 0)
+    doc.number({"Wrong distances", group_digits(t.wrong_distances), "of " + group_digits(t.distances)});
   doc.number({"Tests of volumes", group_digits(t.box_tests),
               t.node_pairs == t.box_tests ? "" : "in " + group_digits(t.node_pairs) + " pairs of nodes"})
       .number({"Tests of triangles", group_digits(t.face_tests),
                "brute force: " + group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
-                                              p.reps[1]->real_simplex_count() * steps)});
+                                              p.reps[1]->real_simplex_count() * t.queries)});
 }
 
 std::vector<report::Chart> engine_charts(const frames::RecordedRun& p) {

@@ -124,7 +124,7 @@ std::string sentence_of(const frames::RecordedRun& p) {
   if (p.reps.size() == 2) {
     const std::string both = body_text(p, 0) + ", " + body_text(p, 1);
     if (p.trace->has_engine_reports())
-      return "For " + both + ", " + p.trace->header.engine + " " + engine_sentence(p);
+      return p.trace->header.engine + ": " + engine_sentence(p) + " " + both + ".";
     std::string out = both, proof;
     const auto& steps = p.trace->steps;
     if (const auto& search = p.trace->header.first_contact; search && search->step)
@@ -395,14 +395,6 @@ report::Link trace_link(const std::string& file) {
   return {file, "all events; opens in ui.perfetto.dev and chrome://tracing"};
 }
 
-void add_frames(report::Document& doc, const frames::DrawnFrames& drawn, const std::string& folder,
-                std::size_t budget) {
-  std::vector<report::Frame> frames;
-  for (const frames::DrawnFrame& f : drawn.frames)
-    frames.push_back({f.file, f.caption, static_cast<double>(f.event), static_cast<double>(f.step)});
-  doc.frames(frames, folder, budget);
-}
-
 report::Document run_page(const frames::RecordedRun& p, const frames::DrawnFrames& drawn,
                           const std::string& folder, const ReportText& text) {
   report::Document doc(text.title, text.purpose);
@@ -428,8 +420,10 @@ report::Document run_page(const frames::RecordedRun& p, const frames::DrawnFrame
   }
   // Frames may be smaller beside the 3D view, which not every browser shows.
   constexpr std::size_t kBesideView = 2'500'000;
-  doc.tab("Frames");
-  add_frames(doc, drawn, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
+  std::vector<report::Frame> frames;
+  for (const frames::DrawnFrame& f : drawn.frames)
+    frames.push_back({f.file, f.caption, static_cast<double>(f.event), static_cast<double>(f.step)});
+  doc.tab("Frames").frames(frames, folder, p.reps[0]->dim() == 3 ? kBesideView : report::kInlineBudget);
   if (drawn.proved != nullptr)
     doc.tab("Proof").picture(frames::kSeparationFile, io::read_text(folder + "/" + frames::kSeparationFile),
                              "Proof of separation at step " + std::to_string(drawn.proved->index),

@@ -21,10 +21,6 @@ struct ReportText {
 /// Returns the link to a trace.
 report::Link trace_link(const std::string& file);
 
-/// Adds frames, whose files are in `folder`. `budget`: see inline_pngs().
-void add_frames(report::Document& doc, const frames::DrawnFrames& drawn, const std::string& folder,
-                std::size_t budget = report::kInlineBudget);
-
 /// Builds the page of a run whose files are in `folder`.
 report::Document run_page(const frames::RecordedRun& recorded, const frames::DrawnFrames& drawn,
                           const std::string& folder, const ReportText& text);

@@ -39,8 +39,7 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     {"Passes", "passes of the builder that made regions"},
     {"Caps", "covers of a patch with fewer faces, which the builder accepted"},
     {"Queries", "queries in this recording"},
-    {"Right verdicts", "queries whose yes or no agrees with the exact answer"},
-    {"Right pairs", "pairs of triangles that the engine found and that intersect"},
+    {"Wrong verdicts", "queries whose yes or no contradicts the exact answer"},
     {"Missed pairs", "pairs of triangles that intersect and that the engine did not find"},
     {"False pairs", "pairs of triangles that the engine found and that are disjoint"},
     // Columns.

@@ -23,11 +23,15 @@
 
 namespace lrb::run {
 
+namespace {
+
+/// Returns the centre of a body in its own frame. A page has vertices and poses relative to it.
 Eigen::Vector3d body_centre(const LrbRep& rep) {
   return rep.vertices().empty() ? Eigen::Vector3d(0, 0, 0)
                                 : Eigen::Vector3d(render::bounds(render::body_points(rep, {})).center());
 }
 
+/// Appends a pose in the page's frame: rows of [R | t], for vertices relative to the body's centre.
 void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& centre,
               const SceneFrame& frame) {
   const Eigen::Vector3d at = (pose.apply(centre) - frame.origin) / frame.unit;
@@ -36,6 +40,8 @@ void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& 
     out.push_back(static_cast<float>(at[row]));
   }
 }
+
+}  // namespace
 
 std::vector<std::uint32_t> shown_pseudo_faces(const LrbRep& rep, Side side, const trace::Trace& trace) {
   std::vector<bool> shown(rep.region_count());
@@ -293,7 +299,9 @@ std::string_view outcome_of(const trace::Event& e) {
 json outcomes_json(const trace::Trace& trace, const std::vector<trace::EventId>& kept) {
   std::vector<std::string_view> words;
   const auto number = [&](trace::EventId id) -> std::uint32_t {
-    const std::string_view word = outcome_of(trace.events[id]);
+    const trace::Event& e = trace.events[id];
+    const bool is_end = e.kind == EventKind::node_pair && e.node_pair().work.met == 0;
+    const std::string_view word = is_end && !trace.header.engine.empty() ? "disjoint" : outcome_of(e);
     if (word.empty()) return kNull;
     const auto at = std::find(words.begin(), words.end(), word);
     if (at == words.end()) words.push_back(word);
@@ -471,12 +479,15 @@ json view_json(const trace::TraceHeader& header) {
   const std::vector<pictures::FrameSpec::View> views =
       spec::read_pictures(header.pictures, header.scenario).views;
   if (views.empty() || views[0].camera == pictures::FrameSpec::Camera::fixed) return nullptr;
-  const auto vector = [](const Eigen::Vector3d& v) { return json({v.x(), v.y(), v.z()}); };
-  return {
-      {"from", vector(views[0].from)}, {"up", vector(views[0].up)}, {"orthographic", views[0].orthographic}};
+  return run::view_json({views[0].from, views[0].up}, views[0].orthographic);
 }
 
 }  // namespace
+
+json view_json(const render::ViewDirection& view, bool orthographic) {
+  const auto vector = [](const Eigen::Vector3d& v) { return json({v.x(), v.y(), v.z()}); };
+  return {{"from", vector(view.from)}, {"up", vector(view.up)}, {"orthographic", orthographic}};
+}
 
 std::string scene_json(const frames::RecordedRun& p, const SceneSource& source, const SceneLimits& limits) {
   const trace::Trace& trace = *p.trace;

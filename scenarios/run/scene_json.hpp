@@ -24,19 +24,15 @@ trace::WorkChart work_of(const trace::Trace& trace);
 /// Returns the parts of the work, in all and by step; null if it is not known.
 nlohmann::json work_json(const trace::Trace& trace, const trace::WorkChart& chart);
 
-/// Returns the centre of a body in its own frame. A page has vertices and poses relative to it.
-Eigen::Vector3d body_centre(const LrbRep& rep);
-
-/// Appends a pose in the page's frame: rows of [R | t], for vertices relative to the body's centre.
-void add_pose(std::vector<float>& out, const Pose& pose, const Eigen::Vector3d& centre,
-              const SceneFrame& frame);
-
 /// Returns the pseudo faces, ascending, that a body's wrapper shows at some event, and the lids and floors of
 /// the regions behind them.
 std::vector<std::uint32_t> shown_pseudo_faces(const LrbRep& rep, Side side, const trace::Trace& trace);
 
 /// Returns the colours of a page's 3D view.
 nlohmann::json scene_colours();
+
+/// Returns the viewpoint at which a page's view starts.
+nlohmann::json view_json(const render::ViewDirection& view, bool orthographic);
 
 /// Size limits of a page, which opens in a second or two at these limits.
 struct SceneLimits {

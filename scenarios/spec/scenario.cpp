@@ -383,6 +383,10 @@ std::string shipped_purpose(const std::string& name, std::string_view ending) {
 }
 
 Scenario open_scenario(const std::string& name_or_path) {
+  if (has_mesh_extension(name_or_path))
+    throw InputError(printable_name(name_or_path) +
+                     ": expected a scenario, found a mesh; for two meshes use lrbscope collide A B, for one "
+                     "lrbscope inspect or lrbscope figure");
   const NamedText scenario = open_named(name_or_path, kScenarioEnding, "scenario");
   return parse_scenario(scenario.text, scenario.file);
 }

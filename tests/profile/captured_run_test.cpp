@@ -106,7 +106,7 @@ TEST_CASE("for bodies of any kind, found pairs are right and the others that mee
         found += e.kind == capture::EventKind::triangles && e.met != 0;
       meeting += step.truth.pairs.size();
     }
-    const profile::CapturedTotals totals = profile::totals_of(recorded(engine.capture));
+    const record::EngineTotals totals = record::totals_of(recorded(engine.capture));
     CHECK(totals.right == found);
     CHECK(totals.right + totals.missed == meeting);
     CHECK(totals.false_pairs == 0);
@@ -245,11 +245,14 @@ TEST_CASE("wrong answers are found pair by pair: those missed, those that are fa
     CHECK(std::count_if(run.wrong[0].begin(), run.wrong[0].end(), [&](const pictures::WrongPair& x) {
             return x.pair == w.pair && x.missed == w.missed;
           }) == 1);
-  const profile::CapturedTotals totals = profile::totals_of(run);
+  const record::EngineTotals totals = record::totals_of(run);
   CHECK(totals.missed == missed);
   CHECK(totals.false_pairs == planted.size() - missed);
   CHECK(totals.right + missed == run.results[0].pairs.size());
-  CHECK(totals.events == engine.capture.queries[0].events.size());
+  CHECK(totals.node_pairs + totals.face_tests == engine.capture.queries[0].events.size());
+  CHECK(totals.words() == "wrong answers in 1 of 1 queries: " + std::to_string(missed) + " of " +
+                              std::to_string(totals.right + missed) + " intersecting pairs missed, " +
+                              std::to_string(totals.false_pairs) + " false pairs");
 }
 
 TEST_CASE("what counts as wrong depends on the kind of query") {
@@ -281,7 +284,7 @@ TEST_CASE("what counts as wrong depends on the kind of query") {
       for (capture::Event& e : q.events)
         if (e.kind == capture::EventKind::triangles) e.met = 0;
     const record::Recording run = recorded(engine.capture);
-    const profile::CapturedTotals totals = profile::totals_of(run);
+    const record::EngineTotals totals = record::totals_of(run);
     CHECK((totals.missed > 0) == c.is_missed);
     CHECK(totals.false_pairs == 0);
     CHECK(totals.wrong_verdicts == c.is_wrong_verdict);
@@ -289,9 +292,9 @@ TEST_CASE("what counts as wrong depends on the kind of query") {
     if (c.kind != QueryKind::distance) continue;
     for (const double value : {0.0, 1.5}) {  // they intersect
       q.value = {value, value};
-      const profile::CapturedTotals valued = profile::totals_of(recorded(engine.capture));
+      const record::EngineTotals valued = record::totals_of(recorded(engine.capture));
       CHECK(valued.wrong_distances == (value > 0));
-      CHECK(valued.right_distances == (value == 0));
+      CHECK(valued.distances == 1);
     }
   }
 }
@@ -302,22 +305,22 @@ TEST_CASE("a query without all its events, or without tests of triangles, is not
   std::erase_if(q.events, [](const capture::Event& e) { return e.kind == capture::EventKind::triangles; });
   FaultyEngine::close(q);
   REQUIRE(q.complete());
-  CHECK(profile::totals_of(recorded(engine.capture)).missed == 0);
-  CHECK(profile::totals_of(recorded(engine.capture)).right_verdicts == 1);
+  CHECK(record::totals_of(recorded(engine.capture)).missed == 0);
+  CHECK(record::totals_of(recorded(engine.capture)).wrong_verdicts == 0);
   q.events.clear();
   q.parts.clear();
   q.events_seen = 1;
   record::Recording run = recorded(engine.capture);
-  CHECK(profile::totals_of(run).missed == 0);
+  CHECK(record::totals_of(run).missed == 0);
   CHECK_FALSE(run.trace.steps[0].result.engine->complete);
   CHECK(
       profile::captured_words(engine.capture, profile::tree_pairs(engine.capture).pairs[0]).find("1 query") !=
       std::string::npos);
-  CHECK(profile::words(profile::totals_of(run)) == "1 query, 0 events; verdicts: 1 right, 0 wrong");
+  CHECK(record::totals_of(run).words() == "no wrong answer in 1 query: 1 verdict");
   q.verdict = capture::Verdict::separate;  // but its verdict is its own
   run = recorded(engine.capture);
-  CHECK(profile::totals_of(run).missed == run.results[0].pairs.size());
-  CHECK(profile::totals_of(run).wrong_verdicts == 1);
+  CHECK(record::totals_of(run).missed == run.results[0].pairs.size());
+  CHECK(record::totals_of(run).wrong_verdicts == 1);
 }
 
 TEST_CASE("a walk over a broken tree is recorded with what holds") {
@@ -378,8 +381,8 @@ TEST_CASE("beyond the limit of events a trace is cut, with a note; answers stay 
   CHECK(run.trace.events.size() == 50);
   REQUIRE(run.notes.size() == 1);
   CHECK(run.notes[0].find("the first 50 of ") != std::string::npos);
-  CHECK(profile::totals_of(run).missed == 0);
-  CHECK(profile::totals_of(run).right == engine.capture.queries[0].pairs);
+  CHECK(record::totals_of(run).missed == 0);
+  CHECK(record::totals_of(run).right == engine.capture.queries[0].pairs);
 }
 
 TEST_CASE("trees of an engine survive a file, which is checked when it is read") {

@@ -270,7 +270,8 @@ TEST_CASE("The advice names the change with most to gain, and the next") {
   p.needed = 100, p.proof = 100, p.volumes = 200, p.order = 400;
   p.triangle_tests = 200;
   CHECK(advice(p) == "Most to gain: another order of descent, at most 40 % of " + render::group_digits(1000) +
-                         " tests of volumes and triangles; next: tighter volumes, at most 60 %.");
+                         " tests of volumes and triangles; next: tighter volumes, at most 60 %, of which no "
+                         "other change saves 20 %.");
   p.crowded_tests = 190;
   p.order = 0, p.volumes = 600;
   CHECK(advice(p).find("Most to gain: tighter volumes, at most 60 %") == 0);

@@ -39,9 +39,9 @@ enum class HoleState : std::uint8_t {
   closed,          ///< filled on its own
   closed_as_ring,  ///< filled together with an enclosing or enclosed hole, by a ring between the two
   not_a_loop,      ///< its boundary is not a closed loop
-  no_area,         ///< all boundary vertices are collinear
-  meets_surface,   ///< every fill that was tried would intersect an existing face
-  meets_lid,       ///< every fill that was tried would intersect the fill of another hole
+  no_area,  ///< a slit: fills would have triangles whose corners are collinear within 1e-6 of their size
+  meets_surface,  ///< every fill that was tried would intersect an existing face
+  meets_lid,      ///< every fill that was tried would intersect the fill of another hole
   meets_itself,  ///< every fill that was tried would intersect itself, or duplicate an edge of existing faces
 };
 

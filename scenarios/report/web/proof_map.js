@@ -116,16 +116,45 @@ export class ProofMap {
     this.painted = null;
     this.redraw();
   }
-  /** Shows a part around a contact: from the whole, 0, to some forty simplices, 1, by equal factors. */
+  /** Shows a part around the first wrong pair, or a contact: from the whole, 0, to some forty simplices, 1, by equal factors. */
   approach(share) {
     const { axes, hits, low, count, nearest } = this.cells || {};
     if (!count) return;
     const hit = hits.length ? hits[hits.length >> 1] : count - 1,
-      point = [1, 0].map((side) => (low[side][hit] + 0.5) / axes[side].size);
+      [wrong] = this.events.wrong[this.events.step(this.selection.event)],
+      place = (side) => (wrong ? axes[side].rank[wrong.simplices[side]] : low[side][hit]),
+      point = [1, 0].map((side) => (place(side) + 0.5) / axes[side].size);
     this.zoom(point, point, nearest ** share);
   }
   tell(what) {
     for (const listener of this.listeners) listener(what);
+  }
+
+  /** Takes the cells of the current event's step. */
+  take() {
+    const step = this.stepOf.get(this.events.stepNumber(this.selection.event)) ?? -1,
+      key = `${step} ${this.events.count}`;
+    if (this.key === key) return;
+    this.cells = new MapCells(this.scene.map, step);
+    Object.assign(this, { key, painted: null, counted: null, pointed: -1 });
+  }
+
+  /** Returns what decided two simplices in the current step: {nodes, event, words}, with an id; null: not
+      known. */
+  decision(simplices) {
+    this.take();
+    const { axes, count, ofBodies } = this.cells, ranks = simplices.map((s, side) => count && axes[side].rank[s]);
+    if (!count || ranks.includes(NONE)) return null;
+    const i = this.find([1, 0].map((side) => (ranks[side] + 0.5) / axes[side].size), Infinity);
+    if (i < 0) return null;
+    const by = this.cells.argument[i], nodes = ofBodies ? this.nodes(i) : [],
+      event = this.cells.event[i], when = `(event ${digits(event)})`,
+      pair = nodes.map((n, side) => `${digits(n)} of ${SIDES[side]}`).join(" and ");
+    const words = by === CONTACT ? `its test of the two triangles found them to intersect ${when}.`
+      : by === OPEN ? "no test of nodes or triangles rejected them: it did not come to them."
+      : isSingle(by) ? `its test of the two triangles called them disjoint ${when}.`
+      : `it found nodes ${pair}, which contain them, disjoint ${when}. ${this.apart(nodes)}`;
+    return { nodes, event, words };
   }
 
   draw() {
@@ -133,20 +162,17 @@ export class ProofMap {
     const room = this.box.closest(".tab-body"),
       most = Math.min(room ? room.clientHeight - 32 : 400, 0.55 * this.box.clientWidth),
       size = Math.round(Math.max(240, most)),
-      pixels = Math.round(size * Math.min(2, window.devicePixelRatio || 1)),
-      step = this.stepOf.get(this.events.stepNumber(this.selection.event)) ?? -1,
-      key = `${step} ${this.events.count} ${pixels}`;
-    if (this.key !== key) {
-      this.cells = new MapCells(this.scene.map, step);
-      Object.assign(this, { key, painted: null, counted: null, pointed: -1 });
-    }
+      pixels = Math.round(size * Math.min(2, window.devicePixelRatio || 1));
+    this.take();
+    if (this.canvas.width !== pixels) this.painted = null;
     this.canvas.hidden = this.legend.hidden = !this.cells.count;
     if (!this.cells.count) {
       this.words.textContent = "This step has no traversal, or the page has no map of it.";
       return this.tell({ map: null });
     }
     const { hits, nearest } = this.cells;
-    this.target.textContent = hits.length ? "towards the contact " : "enlarge ";
+    const [wrong] = this.events.wrong[this.events.step(this.selection.event)];
+    this.target.textContent = wrong ? "towards a wrong pair " : hits.length ? "towards the contact " : "enlarge ";
     this.deep.value = nearest < 1 ? 100 * Math.log(this.window[2]) / Math.log(nearest) : 0;
     if (!this.painted) {
       this.canvas.width = this.canvas.height = pixels;
@@ -321,6 +347,7 @@ export class ProofMap {
   /** Says along which axis the boxes of two nodes are disjoint; empty: not known. */
   apart(nodes) {
     if (!this.view || !this.cells.ofBodies) return "";
+    this.view.place(); // at the current step
     const boxes = this.view.views.map(({ body, group }, side) => {
       const first = 12 * body.boxes.node.indexOf(nodes[side]),
         part = (k) => new THREE.Vector3(...body.boxes.places.subarray(first + k, first + k + 3)),
@@ -330,6 +357,7 @@ export class ProofMap {
     });
     if (boxes.includes(null)) return "";
     const { gap, axis } = separation(boxes);
-    return gap > 0 ? `Apart by ${short(gap * this.scene.unit)} along ${axis}.` : "Apart along another axis.";
+    return gap > 0 ? `Apart by ${short(gap * this.scene.unit)} along ${axis}.`
+      : `Their boxes overlap along every axis of a box, least by ${short(-gap * this.scene.unit)} along ${axis}.`;
   }
 }

@@ -282,6 +282,7 @@ function startScene() {
   new AnswerLine(scene.answers, events, selection);
   const strip = stripOfRun(scene, events, selection, work.ofStep || new Map());
   const map = scene.map ? new ProofMap(scene, events, selection, view) : null;
+  why.map = map;
   const tabs = new Tabs();
   tabs.listeners.push(() => table.follow());
   explainCells();
@@ -323,7 +324,12 @@ function startScene() {
   }
   selection.goTo(tellingEvent(events));
   const [wrong] = events.wrong[events.step(selection.event)];
-  if (wrong) selection.choose(wrong.simplices);
+  if (wrong) {
+    // The test that rejected it, if the page has its event.
+    const test = map ? map.decision(wrong.simplices) : null, at = test ? events.find(test.event) : -1;
+    if (at >= 0) selection.goTo(at);
+    selection.choose(wrong.simplices);
+  }
   if (view) view.frameAll(view.camera.from);
   const address = new PageAddress({ events, selection, view, controls, tabs });
   if (location.hash.length > 1) address.read();

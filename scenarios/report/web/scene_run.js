@@ -296,8 +296,8 @@ export class Events {
 }
 
 /** Returns the most telling event, with which the page opens: with another engine's wrong answers, the end of
-    the first such step; else the last contact of the step that has most; without contact, the end of the step
-    with most events; of one body, the change halfway. */
+    the first such step, else its first contact; of a run of lrbscope, the last contact of the step that has
+    most; without contact, the end of the step with most events; of one body, the change halfway. */
 export function tellingEvent(events) {
   const { kind, firstOfStep, bodies, wrong, CONTACT } = events, steps = [...firstOfStep.keys()],
     all = [...kind.keys()],
@@ -309,6 +309,7 @@ export function tellingEvent(events) {
   }
   const faulty = steps.find((step) => wrong[step].length);
   if (faulty !== undefined) return end(faulty);
+  if (events.engine && kind.includes(CONTACT)) return kind.indexOf(CONTACT);
   const contacts = new Uint32Array(steps.length);
   for (const i of all) contacts[events.step(i)] += kind[i] === CONTACT;
   const step = most(contacts);

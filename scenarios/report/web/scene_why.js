@@ -18,6 +18,8 @@ export class WhyPanel {
     Object.assign(this, { explanations, events, selection });
     this.listeners = []; // notified when the explanation, or the highlighted row, has changed
     this.now = null; // {kind: "pair" | "step", key, found}
+    this.map = null; // the proof map, which knows what an engine's test rejected
+    this.decision = null; // of the pair that another engine got wrong
     this.row = -1; // of the path, whose boxes the view shows
     byId("why-copy").onclick = () => this.copy();
     byId("why-way").addEventListener("click", (e) => this.point(e.target.closest("[data-row]")));
@@ -47,6 +49,10 @@ export class WhyPanel {
       simplices = this.requested(),
       separation = simplices ? null : explanations.step(step);
     this.row = -1;
+    const wrong = simplices && events.wrong[events.step(selection.event)]
+        .find((w) => w.simplices.every((s, side) => s === simplices[side]));
+    this.decision = wrong && this.map ? this.map.decision(simplices) : null;
+    if (this.decision) this.decision.missed = wrong.missed;
     const found = simplices ? explanations.pair(step, simplices) : separation;
     this.now = found && {
       kind: simplices ? "pair" : "step", key: `${step} ${simplices || ""}`, found,
@@ -63,9 +69,11 @@ export class WhyPanel {
     this.tell();
   }
 
-  title(text) {
-    const engine = this.events.engine ? ", by lrbscope\u2019s own walk" : "";
-    byId("why-title").textContent = text + engine;
+  /** `note`: before it, lrbscope's own walk is named, whose nodes are others than the engine's. */
+  title(text, note) {
+    byId("why-title").textContent = text;
+    const own = this.events.engine ? "The exact answer, by lrbscope\u2019s own walk. " : "";
+    byId("why-note").textContent = own + note;
   }
 
   // -- a pair
@@ -76,13 +84,14 @@ export class WhyPanel {
       return body.complete ? `${body.faceText(body.faceOfSimplex(s))} of ${SIDES[side]}`
         : `simplex ${digits(s)} of ${SIDES[side]}`;
     });
-    this.title(`Why: ${names.join(", ")}`);
-    byId("why-note").textContent = e ? ""
-      : `${this.explanations.cut || "Not among the pairs that were compared one by one here."} ` +
-        "The command below explains it.";
-    byId("why-verdict").textContent = e
-      ? `${["The faces are disjoint", "The faces touch", "The faces cross"][e.meet]}. Decided by ${e.by}.`
-      : "";
+    const { decision } = this, { engine } = events,
+      exact = e ? `${["The faces are disjoint", "The faces touch", "The faces cross"][e.meet]}.` : "";
+    this.title(`${decision ? (decision.missed ? "Missed" : "Reported wrongly") : "Why"}: ${names.join(", ")}`,
+      e ? `${decision ? exact : ""} ${engine ? `Decided by ${e.by}.` : ""}`
+        : `${this.explanations.cut || "Not among the pairs that were compared one by one here."} ` +
+          "The command below explains it.");
+    byId("why-verdict").textContent = decision ? `${engine}: ${decision.words}`
+      : e ? `${exact} ${engine ? "" : `Decided by ${e.by}.`}` : "";
     this.showWay(e ? e.rows : []);
     fillList(byId("why-facts"), e ? this.pairFacts(e) : []);
     this.showRegions(simplices);
@@ -148,8 +157,7 @@ export class WhyPanel {
 
   // -- a step
   showStep(e) {
-    this.title("What separates the bodies");
-    byId("why-note").textContent = "";
+    this.title("What separates the bodies", "");
     byId("why-regions").replaceChildren();
     byId("why-verdict").textContent = this.stepText(e);
     this.showWay([]);
@@ -208,7 +216,7 @@ export class WhyPanel {
         if (row.faces) cell("faces");
         else cell(this.events.engine ? button.textContent : button); // see nodes()
         cell(short(row.gap), true);
-        cell(row.axis.replace(/^(.*) of (.)'s box$/, "$2, $1"));
+        cell(row.axis);
         return line;
       }),
     );
@@ -226,7 +234,8 @@ export class WhyPanel {
 
   /** Returns the nodes of the highlighted row. */
   nodes() {
-    // The nodes are lrbscope's; with another engine, the view has the boxes of that engine's trees.
+    // The nodes of rows are lrbscope's; with another engine, the view has the boxes of that engine's trees.
+    if (this.decision) return this.decision.nodes.map((number, side) => ({ side, number }));
     if (this.events.engine || this.row < 0 || !this.now || this.now.kind !== "pair") return [];
     return this.now.found.rows[this.row].nodes.map((number, side) => ({ side, number }));
   }

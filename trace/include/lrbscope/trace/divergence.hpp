@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <lrbscope/trace/trace.hpp>
 
@@ -13,6 +14,7 @@ struct Divergence {
   std::optional<EventId> event;  ///< first event that differs or that only one run has
   /// Index into Trace::steps; nullopt: the runs differ before the first step.
   std::optional<std::size_t> step;
+  std::uint32_t number = 0;      ///< of the step, as in Step::index
   std::string what;              ///< the field, e.g. "meet" or "body B: hash"
   std::string expected, actual;  ///< its values as text
 
@@ -24,6 +26,13 @@ struct Divergence {
 /// Wall-clock times, names, sources, versions and event caps are ignored. Returns nullopt if the runs are
 /// equal.
 std::optional<Divergence> first_divergence(const Trace& expected, const Trace& actual);
+
+/// A field in which two results differ, with its values as text.
+struct FieldDifference {
+  std::string name, expected, actual;
+  bool is_counter = false;
+};
+std::vector<FieldDifference> differing_fields(const StepResult& expected, const StepResult& actual);
 
 /// Returns a one-line summary of another engine's answer: "any, intersecting, 1 pair".
 std::string to_text(const EngineReport& report);
