@@ -216,7 +216,7 @@ export class WhyPanel {
         if (row.faces) cell("faces");
         else cell(this.events.engine ? button.textContent : button); // see nodes()
         cell(short(row.gap), true);
-        cell(row.axis);
+        cell(row.axis.replace("'s box", "")); // the column is narrow
         return line;
       }),
     );
