@@ -63,13 +63,6 @@ nlohmann::ordered_json body_figures(const LrbRep& rep) {
   return j;
 }
 
-double largest_side(const LrbRep& rep) {
-  Eigen::AlignedBox3d box;
-  for (FaceId f = 0; f < rep.real_face_count(); ++f)
-    for (const VertexId v : rep.face(f)) box.extend(rep.vertices()[v]);
-  return box.isEmpty() ? 0 : box.sizes().maxCoeff();
-}
-
 Wrapper wrapper_at(const LrbRep& rep, double tolerance, unsigned threads) {
   // Empty: no region is included at any tolerance.
   const std::span<const double> needed = rep.levels(threads).needed();
@@ -81,7 +74,10 @@ Wrapper wrapper_at(const LrbRep& rep, double tolerance, unsigned threads) {
 
 std::vector<LevelFigures> level_figures(const LrbRep& rep, std::span<const double> shares, unsigned threads) {
   const std::span<const double> needed = rep.levels(threads).needed();
-  const double size = largest_side(rep);
+  Eigen::AlignedBox3d box;  // of the real faces
+  for (FaceId f = 0; f < rep.real_face_count(); ++f)
+    for (const VertexId v : rep.face(f)) box.extend(rep.vertices()[v]);
+  const double size = box.isEmpty() ? 0 : box.sizes().maxCoeff();
   std::vector<LevelFigures> out;
   for (const double share : shares) {
     LevelFigures level{share, share * size, 0, 0};
