@@ -470,8 +470,8 @@ void Checker::check_answer(const Posed& posed, QueryVerdict& out) {
 std::string cause_of(const WrongPair& wrong) {
   const bool sticks_out = std::max(wrong.outside[0], wrong.outside[1]) > wrong.bound;
   return !wrong.missed ? "false"
-                       : "missed, cause " + io::in_words(name_of(wrong.culprit)) +
-                             (sticks_out ? " from which a triangle sticks out" : "");
+                       : "missed; cause: " + io::in_words(name_of(wrong.culprit)) +
+                             (sticks_out ? ", from which a triangle sticks out" : "");
 }
 
 std::string sentence(const WrongPair& wrong, const capture::Tree& a, const capture::Tree& b) {

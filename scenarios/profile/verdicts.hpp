@@ -164,7 +164,7 @@ class Checker {
 /// found disjoint along axis 1 of A's box; triangle 3560 sticks out of its node by 0.0123". Nodes have the
 /// engine's numbers.
 std::string sentence(const WrongPair& wrong, const capture::Tree& a, const capture::Tree& b);
-/// Returns what wrong pairs have in common: "missed, cause volumes from which a triangle sticks out".
+/// Returns what wrong pairs have in common: "missed; cause: volumes, from which a triangle sticks out".
 std::string cause_of(const WrongPair& wrong);
 
 }  // namespace lrb::profile

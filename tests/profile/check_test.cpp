@@ -90,7 +90,7 @@ TEST_CASE("A capture's sums are those of its queries") {
   CHECK(uneven.sample.ends_with(" error of " + std::to_string(percent) + " %."));
   c.engine.capture.every = 1;
   REQUIRE(checked.wrong.size() == 1);
-  CHECK(checked.wrong[0].words == "missed, cause triangle test");
+  CHECK(checked.wrong[0].words == "missed; cause: triangle test");
   CHECK(checked.wrong[0].lines.at(0).starts_with("query 2: missed " + std::to_string(lost[0]) + "," +
                                                  std::to_string(lost[1]) + ": the triangle test"));
   Prices prices;
