@@ -296,10 +296,12 @@ void PriceBook::price_distance(const QueryWalk& walk, std::span<const TrianglePa
   }
   // Step 2: the one that the engine tested first, or if none was, the first in a visited pair of leaves.
   std::optional<TrianglePair> goal;
-  for (const Event& e : query.events) {
+  for (std::size_t i = 0; i < query.events.size(); ++i) {
+    const Event& e = query.events[i];
     if (e.kind != EventKind::triangles) continue;
     const bool is_closest = is_exact(walk, closest, e);
     out.triangle_tests_for_nothing += !is_closest;
+    out.crowded_tests += !is_closest && is_crowded(walk, i);
     if (is_closest && !goal) goal = {e.a, e.b};
   }
   for (std::size_t i = 0; i < closest.size() && !goal; ++i)
