@@ -61,8 +61,9 @@ using Eigen::Vector2d;
 constexpr double kLine = 1.3;    ///< line spacing, in font sizes
 constexpr double kGutter = 0.8;  ///< between panels, in font sizes
 constexpr double kGap = 0.5;     ///< above legend, bar and caption, in font sizes
-constexpr double kShape = 1.5;   ///< target aspect ratio of automatic columns
-constexpr double kGapCost = 2;   ///< cost of empty cells, in logarithms of that ratio, if all cells are empty
+/// Target aspect ratio of automatic columns. Figures as wide as a page are lower: four panels stand in a row.
+constexpr double kShape = 1.5, kPageShape = 2, kPageWidth = 150 * kPointsPerMm;
+constexpr double kGapCost = 2;  ///< cost of empty cells, in logarithms of that ratio, if all cells are empty
 constexpr double kTallest = 1.4;  ///< maximum height of a block, in widths
 constexpr double kMinPanel = 5 * kPointsPerMm;
 /// Minimum width of a panel in automatic columns, also of one with a title below it.
@@ -210,6 +211,7 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
   const bool titled = std::any_of(block.texts.begin(), block.texts.end(),
                                   [](const std::string& text) { return text.size() > kLetter; });
   const double narrowest = titled ? kMinTitled : kMinAutomatic;
+  const double shape = options.width < kPageWidth ? kShape : kPageShape;
   for (std::size_t columns = 1; columns <= n; ++columns) {
     BlockLayouter layouter(block, options, columns);
     if (best && layouter.panel_width() < narrowest) break;
@@ -217,7 +219,7 @@ Arranged arrange(const Block& block, const LayoutOptions& options) {
     const std::size_t rows = (n + columns - 1) / columns;
     const double gaps = static_cast<double>(rows * columns - n) / static_cast<double>(n);
     const double deviation =
-        std::abs(std::log(options.width / (arranged.height - arranged.spaces) / kShape)) + kGapCost * gaps;
+        std::abs(std::log(options.width / (arranged.height - arranged.spaces) / shape)) + kGapCost * gaps;
     if (deviation < least) least = deviation, best = std::move(arranged);
   }
   return std::move(*best);
