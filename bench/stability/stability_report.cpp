@@ -115,8 +115,8 @@ report::GridDetail page_detail(const Grid& grid, std::size_t f, std::size_t m, c
       d.facts.emplace_back("Missed", render::group_digits(r.missed));
       d.facts.emplace_back("In excess", render::group_digits(r.extra));
     }
-    d.facts.emplace_back("Relation", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
-    if (answered) d.facts.emplace_back("Answered", r.relation.empty() ? "no relation" : r.relation);
+    if (!r.expected_relation.empty()) d.facts.emplace_back("Relation", r.expected_relation);
+    if (!r.relation.empty()) d.facts.emplace_back("Answered", r.relation);
   } else {
     d.facts.emplace_back("Right", r.expected_relation.empty() ? "\u2013" : r.expected_relation);
     if (answered) d.facts.emplace_back("Answered", r.relation);

@@ -67,10 +67,6 @@ std::string breakable(const std::string& text) {
   return out;
 }
 
-std::string small(const std::string& text) {
-  return text.empty() ? "" : fill("<small>{!}</small>", {breakable(text)});
-}
-
 /// Returns marks under a line as wide as a profile, with a value at every third bar.
 std::string axis_html(const std::vector<std::string>& axis) {
   constexpr std::size_t kEvery = 3;
@@ -88,13 +84,13 @@ std::string row_html(const GridHead& head) {
   if (!head.low.empty() || !head.high.empty())
     ends = fill("<small class=\"difficulty\"><span>{}</span> \u2192 <span>{}</span></small>",
                 {head.low, head.high});
-  return fill("<th scope=\"row\"><b>{}</b>{!}{!}{!}</th>",
-              {head.title, small(head.text), ends, axis_html(head.axis)});
+  const std::string text = head.text.empty() ? "" : fill("<small>{!}</small>", {breakable(head.text)});
+  return fill("<th scope=\"row\"><b>{}</b>{!}{!}{!}</th>", {head.title, text, ends, axis_html(head.axis)});
 }
 
 /// If all columns fit, the page scrolls as a whole under fixed heads; otherwise the table scrolls in a frame.
 std::string wide_style(const Grid& grid) {
-  constexpr double kHead = 15, kColumn = 5.6, kMargins = 3.5;  // as in grid.css, rem
+  constexpr double kHead = 15, kColumn = 4.6, kMargins = 3.5;  // as in grid.css, rem
   return fill(
       "<style>@media (min-width: {}rem) { .frame { overflow: visible; max-height: none; } }</style>\n",
       {number_text(kHead + kMargins + kColumn * static_cast<double>(grid.columns.size()))});
@@ -134,7 +130,7 @@ std::string table_html(const Grid& grid) {
       R"(<tr><th class="corner">{}</th>)",
       {grid.title, std::to_string(grid.columns.size()), grid.corner});
   for (const GridHead& c : grid.columns)
-    out += fill(R"(<th scope="col" title="{}"><b>{}</b>{!}</th>)", {c.text, c.title, small(c.text)});
+    out += fill(R"(<th scope="col" title="{}"><b>{}</b></th>)", {c.text, c.title});
   out += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < grid.rows.size(); ++i) {
     const bool total = i < grid.total_rows;  // sums first
