@@ -21,8 +21,8 @@ namespace {
 
 using render::group_digits;
 
-/// Ratio of the ends of the scale: triangles with less than a thousandth of the maximum are pale.
-constexpr double kRange = 1000;
+/// Ratio of the ends of the scale: triangles with less than a hundredth of the maximum are pale.
+constexpr double kRange = 100;
 
 pictures::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::ScaleBar& scale,
                          bool from_behind, const Eigen::Vector3d& up) {

@@ -59,9 +59,9 @@ void add_engine_answer(report::Document& doc, const frames::RecordedRun& p) {
     doc.number({"Wrong verdicts", group_digits(t.wrong_verdicts), "of " + group_digits(t.verdicts)});
   if (t.distances > 0)
     doc.number({"Wrong distances", group_digits(t.wrong_distances), "of " + group_digits(t.distances)});
-  doc.number({"Tests of volumes", group_digits(t.box_tests),
+  doc.number({"Volume tests", group_digits(t.box_tests),
               t.node_pairs == t.box_tests ? "" : "in " + group_digits(t.node_pairs) + " pairs of nodes"})
-      .number({"Tests of triangles", group_digits(t.face_tests),
+      .number({"Triangle tests", group_digits(t.face_tests),
                "brute force: " + group_digits(std::uint64_t{p.reps[0]->real_simplex_count()} *
                                               p.reps[1]->real_simplex_count() * t.queries)});
 }
