@@ -62,7 +62,7 @@ constexpr double kLine = 1.3;    ///< line spacing, in font sizes
 constexpr double kGutter = 0.8;  ///< between panels, in font sizes
 constexpr double kGap = 0.5;     ///< above legend, bar and caption, in font sizes
 /// Target aspect ratio of automatic columns. Figures as wide as a page are lower: four panels stand in a row.
-constexpr double kShape = 1.5, kPageShape = 2, kPageWidth = 150 * kPointsPerMm;
+constexpr double kShape = 1.5, kPageShape = 2.5, kPageWidth = 150 * kPointsPerMm;
 constexpr double kGapCost = 2;  ///< cost of empty cells, in logarithms of that ratio, if all cells are empty
 constexpr double kTallest = 1.4;  ///< maximum height of a block, in widths
 constexpr double kMinPanel = 5 * kPointsPerMm;

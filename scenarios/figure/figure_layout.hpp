@@ -41,7 +41,7 @@ struct LayoutOptions {
   double margin = 1;        ///< around the content of each panel: space for the width of lines
   double grid = 0;          ///< panels begin and end on multiples of it: the size of a pixel of rasterised
                             ///< parts
-  std::size_t columns = 0;  ///< 0: chosen to bring each block closest to 3:2, from 150 mm to 2:1
+  std::size_t columns = 0;  ///< 0: chosen to bring each block closest to 3:2, from 150 mm to 5:2
 };
 
 struct PanelPlace {
