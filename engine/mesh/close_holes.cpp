@@ -34,14 +34,8 @@ Edge edge_of(VertexId v, VertexId w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
-/// Returns true if a triangle is no higher than a millionth of its longest edge, as between the vertices of a
-/// T-junction that rounding has moved off the edge.
-bool is_slit(const std::array<Eigen::Vector3d, 3>& x) {
-  constexpr double kThin = 1e-6;
-  double longest = 0;
-  for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, norm3(x[(i + 1) % 3] - x[i]));
-  return !(norm3((x[1] - x[0]).cross(x[2] - x[0])) > kThin * longest * longest);
-}
+/// Triangles of fills are higher, relative to their longest edge. Rounded T-junctions are not.
+constexpr double kThinnest = 1e-6;
 
 /// A fill in progress: the holes that it fills, its candidates, and the current one.
 struct Attempt {
@@ -196,7 +190,7 @@ class HoleCloser {
   bool has_area(const Attempt& a) {
     const auto x = [&](VertexId v) { return v == kCentroid ? *a.lid().centroid : mesh_.vertices[v]; };
     const bool flat = std::ranges::any_of(a.lid().triangles, [&](const auto& t) {
-      return is_slit({x(t[0]), x(t[1]), x(t[2])});
+      return !(relative_height(x(t[0]), x(t[1]), x(t[2])) > kThinnest);
     });
     HoleState& state = out_.holes[a.holes[0]].state;
     if (flat && state == HoleState::meets_itself) state = HoleState::no_area;

@@ -100,10 +100,8 @@ void note_slivers(const Mesh& mesh, const std::vector<FaceUse>& use, MeshReport&
   for (FaceId f = 0; f < use.size(); ++f) {
     const auto c = mesh.face(f);
     if (use[f] < FaceUse::area || c.size() != 3) continue;
-    const auto &x = mesh.vertices[c[0]], &y = mesh.vertices[c[1]], &z = mesh.vertices[c[2]];
-    const double longest = std::max({stable_norm3(y - x), stable_norm3(z - y), stable_norm3(x - z)});
-    // Twice the area of a triangle with a longest edge of 1 is its height.
-    if (norm3(((y - x) / longest).cross((z - x) / longest)) < kSliver) note(report, MeshFault::sliver, f);
+    const auto& x = mesh.vertices;
+    if (relative_height(x[c[0]], x[c[1]], x[c[2]]) < kSliver) note(report, MeshFault::sliver, f);
   }
 }
 

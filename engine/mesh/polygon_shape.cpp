@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "engine/core/geometry.hpp"
 #include "engine/exact/predicates.hpp"
 
 namespace lrb {
@@ -103,6 +104,12 @@ ProperRing proper_ring(const Mesh& mesh, std::span<const VertexId> corners) {
 }
 
 }  // namespace
+
+double relative_height(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& z) {
+  const double longest = std::max({stable_norm3(y - x), stable_norm3(z - y), stable_norm3(x - z)});
+  // Twice the area of a triangle with a longest edge of 1 is its height.
+  return norm3(((y - x) / longest).cross((z - x) / longest));
+}
 
 std::optional<std::array<VertexId, 3>> spanning_corners(const Mesh& mesh, std::span<const VertexId> corners) {
   if (corners.size() < 3) return std::nullopt;

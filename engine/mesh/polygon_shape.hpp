@@ -26,6 +26,9 @@ std::pair<Eigen::Vector3d, double> newell_normal(std::size_t n, const At& at) {
   return {sum, size};
 }
 
+/// Returns the height of a triangle divided by its longest edge; NaN if its corners coincide.
+double relative_height(const Eigen::Vector3d& x, const Eigen::Vector3d& y, const Eigen::Vector3d& z);
+
 /// Returns three corners that span a plane, or nullopt if all corners are collinear (the polygon has no
 /// area).
 std::optional<std::array<VertexId, 3>> spanning_corners(const Mesh& mesh, std::span<const VertexId> corners);
