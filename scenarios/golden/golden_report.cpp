@@ -1,7 +1,6 @@
 #include "scenarios/golden/golden_report.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -24,16 +23,11 @@
 #include <lrbscope/render/scene.hpp>
 #include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/replay.hpp>
-#include <lrbscope/trace/trace_json.hpp>
 
 namespace lrb::golden {
 namespace {
 
 constexpr int kWidth = 1000, kHeight = 560;
-
-const CollideResult* find_result(const GoldenRun& run, std::size_t step) {
-  return step < run.recording.results.size() ? &run.recording.results[step] : nullptr;
-}
 
 /// Returns the step in which the runs begin to differ: the named one or, if they differ as a whole (the
 /// request, the number of steps), that of the first differing event; else the last one that both have.
@@ -109,9 +103,8 @@ frames::PaintedFrame paint(const GoldenRun& run, const SideShown& side, pictures
 }
 
 bool same_bodies(const trace::Trace& x, const trace::Trace& y) {
-  const auto same = [](const trace::BodyInfo& p, const trace::BodyInfo& q) { return p.hash == q.hash; };
-  return std::equal(x.header.bodies.begin(), x.header.bodies.end(), y.header.bodies.begin(),
-                    y.header.bodies.end(), same);
+  return std::ranges::equal(x.header.bodies, y.header.bodies, {}, &trace::BodyInfo::hash,
+                            &trace::BodyInfo::hash);
 }
 
 /// The two runs where they begin to differ.
@@ -149,8 +142,8 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
     framing.contacts.clear();
     for (const SideShown& side : sides)
       for (const Eigen::Vector3d& p : subject_of(side, reps)) framing.contacts.push_back(p);
-    if (const CollideResult* result = find_result(run, *step); framing.contacts.empty() && result != nullptr)
-      framing.contacts = render::contact_points(result->regions);
+    if (framing.contacts.empty() && *step < run.recording.results.size())
+      framing.contacts = render::contact_points(run.recording.results[*step].regions);
     const pictures::FrameSpec spec = spec_for(run, !framing.contacts.empty());
     frames::PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing),
                                         paint(run, sides[1], spec, framing)};
@@ -174,42 +167,13 @@ report::PngBytes png_of(const render::Image& image) {
   return image.empty() ? report::PngBytes() : render::encode_png(image);
 }
 
-/// Returns the square in which two pictures differ most; nullopt: they do not differ, or in size.
-std::optional<render::PixelRect> place_of(const render::Image& expected, const render::Image& actual) {
-  constexpr int kMostAcross = 24, kSide = 3;  // cells: of the picture at most, and of the square
-  if (actual.empty() || expected.rect() != actual.rect()) return std::nullopt;
-  render::Image mean = render::difference_image(expected, actual);
-  int cell = 1;
-  for (; mean.width() > kMostAcross; cell *= 2) mean = report::halved(mean);
-  std::optional<render::PixelRect> out;
-  const auto start = [&](int at, int end) { return std::clamp((at - 1) * cell, 0, end - kSide * cell); };
-  for (int y = 0, most = 0; y < mean.height(); ++y)
-    for (int x = 0; x < mean.width(); ++x)
-      if (const render::Rgba c = mean.at(x, y); c.r + c.g + c.b > most) {
-        most = c.r + c.g + c.b;
-        out = {start(x, actual.width()), start(y, actual.height()), kSide * cell, kSide * cell};
-      }
-  return out;
-}
-
-/// Draws a circle around a square.
-void circle(render::Image& image, const render::PixelRect& square) {
-  const double radius = 0.6 * square.width, cx = square.x + square.width / 2.0,
-               cy = square.y + square.height / 2.0;
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) {
-      const double off = std::abs(std::hypot(x - cx, y - cy) - radius);
-      if (off < 3) image.at(x, y) = off < 1.5 ? render::palette::kWrong : render::kWhite;
-    }
-}
-
 /// Returns the picture with a circle around what differs most, and that close up, as approved and as found.
 /// Small.
-render::Image thumbnail(const render::Image& expected, const render::Image& actual) {
+render::Image thumbnail(const render::Image& expected, const render::Image& actual,
+                        const std::optional<render::PixelRect>& place) {
   constexpr int kThumbnail = 320, kGap = 6;  // pixels
-  const std::optional<render::PixelRect> place = place_of(expected, actual);
   render::Image whole = actual;
-  if (place) circle(whole, *place);
+  if (place) report::circle(whole, *place);
   while (whole.width() >= 2 * kThumbnail) whole = report::halved(whole);
   if (!place) return whole;
   const int height = whole.height(), wide = height + kGap;
@@ -228,12 +192,14 @@ void add_comparison(GoldenResult& result, report::Comparison comparison, const r
                     const render::Image& actual, bool is_best = false) {
   render::Image difference =
       expected.empty() || actual.empty() ? render::Image() : render::difference_image(expected, actual);
-  if (const auto place = place_of(expected, actual); place && !comparison.passed && !difference.empty())
-    circle(difference, *place);
+  std::optional<render::PixelRect> place;
+  if (!comparison.passed && !actual.empty() && expected.rect() == actual.rect())
+    place = report::brightest_square(difference);
+  if (place) report::circle(difference, *place);
   comparison.pngs = {png_of(expected), png_of(actual), png_of(difference)};
   // A picture of the run, or its proof map, rather than of the first difference, which may only be a number.
   if (!comparison.passed && !actual.empty() && (result.thumbnail.empty() || is_best))
-    result.thumbnail = png_of(thumbnail(expected, actual));
+    result.thumbnail = png_of(thumbnail(expected, actual, place));
   result.comparisons.push_back(std::move(comparison));
 }
 
@@ -265,7 +231,7 @@ void add_maps(GoldenResult& result, const Golden& golden, const GoldenRun& run) 
   std::string text = "All pairs of a face of A (down) and one of B (across), in the order of their trees";
   for (std::size_t i = 0; i < 2; ++i) {
     p.trace = traces[i];
-    auto map = *step < p.trace->steps.size() ? frames::proof_map(p, *step) : std::nullopt;
+    const auto map = frames::proof_map(p, *step);
     if (!map || map->strays > 0 || map->size[0] == 0 || map->size[1] == 0) return;
     const Eigen::AlignedBox2d whole(Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1));
     squares[i] = pixels_of(*map, render::style_of(render::StyleName::screen), whole, kSize, kDot);
@@ -324,8 +290,7 @@ std::string events_text(const GoldenResult& r) {
 /// Returns why a test failed, on one line; empty if it passed.
 std::string cause_text(const GoldenResult& r) {
   const GoldenVerdict& v = r.verdict;
-  if (!v.rejection.empty()) return v.rejection;
-  return v.causes.empty() ? std::string() : v.causes.front();
+  return v.causes.empty() ? v.rejection : v.causes.front();
 }
 
 std::string work_text(const GoldenResult& r) {
@@ -495,10 +460,9 @@ void write_golden_page(const std::vector<GoldenResult>& results, const report::F
 std::string result_text(const GoldenResult& r) {
   const GoldenVerdict& v = r.verdict;
   if (!v.rejection.empty()) return "FAIL  " + r.name + ": " + v.rejection + "\n";
-  const bool more_work = !v.more_work.empty() && !v.divergence;
   std::string head = v.answers_differ                  ? "answers " + answers_text(r)
                      : v.divergence                    ? "events or counters differ"
-                     : more_work                       ? "more work than allowed"
+                     : !v.more_work.empty()            ? "more work than allowed"
                      : r.spec.compares(Level::events)  ? events_text(r)
                      : r.spec.compares(Level::answers) ? "answers of " + answers_text(r)
                      : r.spec.compares(Level::work)    ? "work " + work_text(r)
@@ -517,8 +481,7 @@ std::string result_text(const GoldenResult& r) {
   // Differences of one quantity are one line, with the first step that has one.
   std::vector<std::pair<const Effect*, std::size_t>> kinds;
   for (const Effect& e : v.effects) {
-    const auto same =
-        std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first->what == e.what; });
+    const auto same = std::ranges::find_if(kinds, [&](const auto& k) { return k.first->what == e.what; });
     if (same == kinds.end())
       kinds.emplace_back(&e, 1);
     else
