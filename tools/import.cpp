@@ -31,7 +31,7 @@ struct Imported {
 };
 
 Imported import_pair(const ImportOptions& o, const Globals& globals, const capture::Capture& c,
-                     const profile::TreePair& pair, const std::string& folder, record::EngineTotals& all) {
+                     const profile::TreePair& pair, const std::string& folder) {
   const record::ProgressReport progress = progress_report(globals.quiet);
   std::vector<bodies::LoadedBody> bodies = profile::captured_bodies(c, pair);
   note(globals, bodies[0].notes);
@@ -49,7 +49,6 @@ Imported import_pair(const ImportOptions& o, const Globals& globals, const captu
   choose_views(picture.camera, scenario, recording);
   const run::RunOutcome outcome = run::write_run(scenario, recording, folder, globals.command_line, progress);
   note(globals, outcome.notes);
-  all.add(recording);
   return {{}, scenario.name, record::totals_of(recording)};
 }
 
@@ -120,14 +119,15 @@ int run_import(const ImportOptions& o, const Globals& globals) {
   note(globals, notes);
   record::EngineTotals totals;
   if (found.pairs.size() == 1) {
-    import_pair(o, globals, c, found.pairs[0], folder, totals);
+    totals = import_pair(o, globals, c, found.pairs[0], folder).totals;
   } else {
     compare::reject_folder_of_run(folder);
     std::vector<Imported> runs;
     for (std::size_t i = 0; i < found.pairs.size(); ++i) {
       const std::string part = "pair_" + std::to_string(i + 1);
-      runs.push_back(import_pair(o, globals, c, found.pairs[i], folder + "/" + part, totals));
+      runs.push_back(import_pair(o, globals, c, found.pairs[i], folder + "/" + part));
       runs.back().folder = part;
+      totals += runs.back().totals;
     }
     write_list(folder, globals, c, o.file, runs, left_out, totals);
   }
@@ -170,8 +170,7 @@ void write_query_page(capture::Capture capture, const std::string& source, const
   if (found.pairs.empty()) throw InputError(source + ": " + without_tree_words(found.without_tree));
   ImportOptions options;
   options.file = source;
-  record::EngineTotals totals;
-  import_pair(options, globals, capture, found.pairs[0], folder, totals);
+  import_pair(options, globals, capture, found.pairs[0], folder);
 }
 
 Command add_import(App& root, const Globals& globals) {

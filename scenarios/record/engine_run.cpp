@@ -184,39 +184,44 @@ std::string EngineTotals::words() const {
   return "wrong answers in " + of(wrong_queries, queries) + "queries" + out;
 }
 
-void EngineTotals::add(const trace::Trace& trace, const std::vector<CollideResult>* results,
+EngineTotals totals_of(const trace::Trace& trace, const std::vector<CollideResult>* results,
                        const std::vector<std::vector<pictures::WrongPair>>* wrongs,
                        const std::vector<std::optional<std::string>>* errors) {
-  queries += trace.steps.size();
-  const bool is_checked =
+  EngineTotals out;
+  out.queries = trace.steps.size();
+  out.checked =
       results != nullptr && wrongs != nullptr && !results->empty() && wrongs->size() == results->size();
-  checked |= is_checked;
   for (std::size_t i = 0; i < trace.steps.size(); ++i) {
     const trace::StepResult& r = trace.steps[i].result;
-    has_pairs |= !r.engine || r.engine->complete;
-    intersecting += r.relation == Relation::crossing;
-    node_pairs += r.counters.node_pairs;
-    box_tests += r.counters.box_tests;
-    face_tests += r.counters.face_tests;
-    if (!is_checked) continue;
+    out.has_pairs |= !r.engine || r.engine->complete;
+    out.intersecting += r.relation == Relation::crossing;
+    out.node_pairs += r.counters.node_pairs;
+    out.box_tests += r.counters.box_tests;
+    out.face_tests += r.counters.face_tests;
+    if (!out.checked) continue;
     const AnswerScore s = score_of(r, (*wrongs)[i], (*results)[i]);
     const bool has_distance = errors != nullptr && i < errors->size() && (*errors)[i];
     const bool is_distance_wrong = has_distance && !(*errors)[i]->empty();
-    right += s.right, missed += s.missed, false_pairs += s.false_pairs;
-    verdicts += s.verdict.has_value(), wrong_verdicts += s.verdict == false;
-    distances += has_distance, wrong_distances += is_distance_wrong;
-    wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false || is_distance_wrong;
+    out.right += s.right, out.missed += s.missed, out.false_pairs += s.false_pairs;
+    out.verdicts += s.verdict.has_value(), out.wrong_verdicts += s.verdict == false;
+    out.distances += has_distance, out.wrong_distances += is_distance_wrong;
+    out.wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false || is_distance_wrong;
   }
+  return out;
 }
 
-void EngineTotals::add(const Recording& run) {
-  add(run.trace, &run.results, &run.wrong, &run.distances);
+EngineTotals& EngineTotals::operator+=(const EngineTotals& other) {
+  using T = EngineTotals;
+  for (const auto count : {&T::queries, &T::intersecting, &T::node_pairs, &T::box_tests, &T::face_tests,
+                           &T::right, &T::missed, &T::false_pairs, &T::verdicts, &T::wrong_verdicts,
+                           &T::distances, &T::wrong_distances, &T::wrong_queries})
+    this->*count += other.*count;
+  has_pairs |= other.has_pairs, checked |= other.checked;
+  return *this;
 }
 
 EngineTotals totals_of(const Recording& run) {
-  EngineTotals out;
-  out.add(run);
-  return out;
+  return totals_of(run.trace, &run.results, &run.wrong, &run.distances);
 }
 
 std::string axis_words(std::uint32_t axis) {

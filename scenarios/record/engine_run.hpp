@@ -68,14 +68,14 @@ struct EngineTotals {
   bool has_pairs = false;           ///< the tests of some query were captured
   bool checked = false;
 
-  /// Adds a run. `distances`: as in Recording; null: not known.
-  void add(const trace::Trace& trace, const std::vector<CollideResult>* results,
-           const std::vector<std::vector<pictures::WrongPair>>* wrong,
-           const std::vector<std::optional<std::string>>* distances);
-  void add(const Recording& run);
+  EngineTotals& operator+=(const EngineTotals& other);
   /// Returns "wrong answers in 2 of 40 queries: 30 of 732 intersecting pairs missed".
   std::string words() const;
 };
+/// Returns the sums of a run. `distances`: as in Recording; null: not known.
+EngineTotals totals_of(const trace::Trace& trace, const std::vector<CollideResult>* results,
+                       const std::vector<std::vector<pictures::WrongPair>>* wrong,
+                       const std::vector<std::optional<std::string>>* distances);
 EngineTotals totals_of(const Recording& run);
 
 /// Returns the name of an axis of a test of another engine: see capture::Event::axis.

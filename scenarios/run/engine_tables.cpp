@@ -26,21 +26,15 @@ std::optional<std::string> distance_at(const frames::RecordedRun& p, std::size_t
   return p.distances != nullptr && step < p.distances->size() ? (*p.distances)[step] : std::nullopt;
 }
 
-record::EngineTotals totals_of(const frames::RecordedRun& p) {
-  record::EngineTotals out;
-  out.add(*p.trace, p.results, p.wrong, p.distances);
-  return out;
-}
-
 }  // namespace
 
 std::string engine_sentence(const frames::RecordedRun& p) {
-  return totals_of(p).words() + ".";
+  return record::totals_of(*p.trace, p.results, p.wrong, p.distances).words() + ".";
 }
 
 void add_engine_answer(report::Document& doc, const frames::RecordedRun& p) {
   using render::counted, render::group_digits;
-  const record::EngineTotals t = totals_of(p);
+  const record::EngineTotals t = record::totals_of(*p.trace, p.results, p.wrong, p.distances);
   if (!t.checked)
     doc.verdict("answers not checked");
   else if (t.wrong_queries == 0)
