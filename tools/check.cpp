@@ -145,7 +145,8 @@ int run_check(CheckOptions o, const Globals& globals) {
     if (capture.queries.empty())
       throw InputError(printable_name(path) + ": expected queries, found none" +
                        (o.queries.empty() ? "" : " with these numbers") + "; record some, or choose others");
-    if (!capture.meshes.empty()) resolve_up(o.up, profile::captured_body(capture.meshes[0]).rep, globals);
+    if (!o.up.empty() && !capture.meshes.empty())
+      resolve_up(o.up, profile::captured_body(capture.meshes[0]).rep, globals);
     checks.push_back(profile::check(capture, settings, progress_report(globals.quiet)));
   }
   if (o.json)
