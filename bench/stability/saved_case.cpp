@@ -77,10 +77,11 @@ Json pair_proof(const cases::Case& c, const SimplexPair& pair) {
   out["direction"] = point_json(direction);
   out["largest_of_a"] = oracle::dot(direction, closest.on_f).str();
   out["least_of_b"] = oracle::dot(direction, closest.on_g).str();
-  // The square may be less than the least double, so its root is that of the square times 4^shift.
+  // The square may be outside the range of doubles, so its root is that of the square times 4^shift.
   oracle::Rational square = closest.distance_sq;
   int shift = 0;
   for (; square < 1; ++shift) square *= 4;
+  for (; square > 4; --shift) square /= 4;
   out["distance"] = io::number_text(std::ldexp(std::sqrt(square.convert_to<double>()), -shift), 3);
   return out;
 }
