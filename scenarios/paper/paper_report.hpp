@@ -13,7 +13,7 @@ namespace lrb::paper {
 
 struct PaperReport {
   std::span<const PaperObject> objects;   ///< A first
-  std::span<const ContactStep> steps;     ///< of all seeds; sorted() defines their order
+  std::span<const ContactStep> steps;     ///< of all seeds, in the order of sorted()
   std::span<const ContactStep> settings;  ///< of other_settings(); may be empty
   const PaperExperiment& experiment;
   std::string command;                   ///< the command that made it
