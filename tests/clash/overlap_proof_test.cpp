@@ -71,27 +71,41 @@ TEST_CASE("the clearance of a point is at most its distance to all triangles") {
 
 TEST_CASE("all translations shorter than the proven depth leave an overlap, slightly longer ones need not") {
   RandomEngine random(42);
+  // A cube with two faces normal to (1, 1, 1).
+  constexpr double kNearCorner = 0.83 * 0.25 * 1.7320508075688772;
+  const auto turn = Eigen::Quaterniond::FromTwoVectors(Vector3d(1, 0, 0), Vector3d(1, 1, 1));
+  Mesh turned = shapes::box();
+  for (Vector3d& v : turned.vertices) v = turn * v;
   const struct {
     LrbRep a, b;
     Pose pose_b;
-    double depth;  // about
+    double depth;     // about
+    Vector3d common;  // inside both
   } pairs[] = {
       // Balls of radius 1: the depth is what is missing to 2, but for the faces' flatness.
-      {closed(shapes::icosphere(3)), closed(shapes::icosphere(3)), Pose::translation({1.4, 0.2, 0.1}), 0.58},
+      {closed(shapes::icosphere(3)),
+       closed(shapes::icosphere(3)),
+       Pose::translation({1.4, 0.2, 0.1}),
+       0.58,
+       {0.7, 0.1, 0.05}},
       // As deep as the corner of the one reaches into the other.
-      {closed(shapes::box()), closed(shapes::box()), Pose::translation({0.75, 0.25, 0.5}), 0.25},
+      {closed(shapes::box()),
+       closed(shapes::box()),
+       Pose::translation({0.75, 0.25, 0.5}),
+       0.25,
+       {0.87, 0.6, 0.7}},
+      // The separating translation is just inside the corner of a cube of the proof.
+      {closed(turned), closed(turned), Pose::translation(turn * Vector3d(1 - kNearCorner, 0, 0)), kNearCorner,
+       turn * Vector3d(1 - kNearCorner / 2, 0.5, 0.5)},
   };
   for (const auto& pair : pairs) {
     Pair seen(pair.a, pair.b, pair.pose_b);
     const SurfaceDistance a(seen.bodies.body[0]), b(seen.bodies.body[1]);
-    const Vector3d centre =
-        0.5 * (seen.bodies.frame.to_unit(pair.pose_b.t) + seen.bodies.frame.to_unit({0, 0, 0}));
-    const Vector3d common = pair.depth == 0.25 ? seen.bodies.frame.to_unit({0.87, 0.6, 0.7}) : centre;
     OverlapProof proof(a, b, seen.inside());
     const double most = 1.05 * std::ldexp(pair.depth, -seen.bodies.frame.exponent);
-    REQUIRE(proof.begin({common, Vector3d(0.9, 0.9, 0.9)}, most));
+    REQUIRE(proof.begin({seen.bodies.frame.to_unit(pair.common), Vector3d(0.9, 0.9, 0.9)}, most));
     double before = 0;
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 60; ++i) {
       proof.grow(500);
       CHECK(proof.lower() >= before);
       before = proof.lower();

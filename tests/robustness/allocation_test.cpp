@@ -11,6 +11,7 @@
 
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include "tests/contract/queries.hpp"
 #include "tests/mesh/io/encode.hpp"
 #include "tests/support/counted_new.hpp"
 #include "tests/support/folder.hpp"
@@ -204,6 +205,23 @@ TEST_CASE("queries in a workspace allocate no memory after the first ones") {
     }
     CHECK(met >= 80);
   }
+}
+
+TEST_CASE_TEMPLATE("a workspace does not grow while queries repeat", Q, contract::Collide, contract::Distance,
+                   contract::Clash, contract::FirstContact, contract::Near, contract::Manifold) {
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(2, 4)), b = build_lrb(shapes::torus(16, 8));
+  Workspace workspace;
+  std::int64_t before = 0;
+  for (int round = 0; round < 3; ++round) {
+    shapes::RandomEngine random(1);
+    for (int i = 0; i < 20; ++i) {
+      const contract::Case c{&a, &b, {}, shapes::random_pose(random, a, b, shapes::uniform(random, 0, 1.2))};
+      for (const auto& request : Q::requests()) (void)Q::ask(c, request, workspace);
+    }
+    // Buffers reach their size in the first round.
+    if (round == 1) before = bytes_in_use();
+  }
+  CHECK(bytes_in_use() == before);
 }
 
 // Not the reading of traces: the destructors of nlohmann-json 3.11 allocate, and end the process if they

@@ -5,12 +5,15 @@
 #include <cstdlib>
 #include <new>
 
+#include <malloc.h>
+
 namespace lrb::test {
 namespace {
 
 thread_local std::uint64_t left = kNoFailure;
 thread_local bool failed = false;
 thread_local std::uint64_t allocation_count = 0;
+thread_local std::int64_t kept = 0;  // bytes
 
 /// Null if it is this allocation's turn to fail.
 void* allocate(std::size_t size, std::size_t alignment) {
@@ -21,7 +24,14 @@ void* allocate(std::size_t size, std::size_t alignment) {
     return nullptr;
   }
   const std::size_t whole = (std::max(size, std::size_t{1}) + alignment - 1) / alignment * alignment;
-  return std::aligned_alloc(alignment, whole);
+  void* const memory = std::aligned_alloc(alignment, whole);
+  kept += static_cast<std::int64_t>(malloc_usable_size(memory));
+  return memory;
+}
+
+void release(void* memory) {
+  kept -= static_cast<std::int64_t>(malloc_usable_size(memory));
+  std::free(memory);
 }
 
 void* allocate_or_throw(std::size_t size, std::size_t alignment) {
@@ -44,10 +54,15 @@ std::uint64_t allocations() {
   return allocation_count;
 }
 
+std::int64_t bytes_in_use() {
+  return kept;
+}
+
 }  // namespace lrb::test
 
 using lrb::test::allocate;
 using lrb::test::allocate_or_throw;
+using lrb::test::release;
 
 // Every form that is used: under ASan a form left out would be ASan's own, which frees only its own memory.
 void* operator new(std::size_t size) {
@@ -63,20 +78,20 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return allocate(size, alignof(std::max_align_t));
 }
 void operator delete(void* memory) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory) noexcept {
-  std::free(memory);
+  release(memory);
 }
 void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
+  release(memory);
 }

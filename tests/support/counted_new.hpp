@@ -17,4 +17,7 @@ bool allocation_has_failed();
 /// Of this thread, so far.
 std::uint64_t allocations();
 
+/// What this thread allocated less what it freed.
+std::int64_t bytes_in_use();
+
 }  // namespace lrb::test
