@@ -489,6 +489,31 @@ TEST_CASE("What rounding explains of hits of rays, boxes and their number is und
   }
 }
 
+TEST_CASE("The bounds of a hit of a narrow triangle cover the rounding of its normal") {
+  using Exact = Eigen::Matrix<long double, 3, 1>;
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto vector = [&] { return Eigen::Vector3d(any(random), any(random), any(random)); };
+  for (int i = 0; i < 2000; ++i) {
+    // Narrow, and nearly along the ray, which passes near the first corner.
+    const double width = std::exp2(-20 - 10 * any(random)), steep = std::exp2(-5 - 5 * any(random));
+    const Eigen::Vector3d along = vector().cwiseProduct(Eigen::Vector3d(steep, steep, 1));
+    const Eigen::Vector3d across = width * vector();
+    const Eigen::Vector3d corner = -0.5 * along - 0.25 * across + Eigen::Vector3d(0, 0, 3);
+    const auto mesh = triangle_mesh({corner, corner + along, corner + 0.5 * along + across});
+    auto c = capture_of(mesh, ray_along_z(), QueryKind::distance);
+    const std::vector<Eigen::Vector3d>& v = mesh.vertices;
+    const Exact first = v[0].cast<long double>();
+    const Exact u = v[1].cast<long double>() - first, w = v[2].cast<long double>() - first;
+    const Exact normal = u.cross(w);
+    const auto hit = static_cast<double>(normal.dot(first) / normal[2]);
+    const auto [least, greatest] = hit_of(c.queries[0], mesh, 0, 0x1p-50);
+    CAPTURE(width);
+    CHECK(least <= hit);
+    CHECK(greatest >= hit);
+  }
+}
+
 TEST_CASE("A self query is checked for triangles without a common vertex") {
   FaultyEngine engine;
   std::mt19937_64 random(5);
