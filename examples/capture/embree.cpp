@@ -10,14 +10,13 @@ struct Built {
   std::vector<std::uint32_t> triangles;
 };
 static Triangles mesh;
-static std::vector<Node> nodes;
-static std::vector<double> boxes;  // least and greatest x, y, z of each node
+static Tree tree;
 static void append(const Built& from, const RTCBounds& box) {
-  const std::size_t node = nodes.size();
-  nodes.push_back({{}, from.triangles});
-  for (const float* x : {&box.lower_x, &box.upper_x}) boxes.insert(boxes.end(), x, x + 3);
+  const std::size_t node = tree.nodes.size();
+  tree.nodes.push_back({{}, from.triangles});
+  for (const float* x : {&box.lower_x, &box.upper_x}) tree.boxes.insert(tree.boxes.end(), x, x + 3);
   for (std::size_t i = 0; i < from.children.size(); ++i) {
-    nodes[node].children.push_back(std::uint32_t(nodes.size()));
+    tree.nodes[node].children.push_back(std::uint32_t(tree.nodes.size()));
     append(*from.children[i], from.boxes[i]);
   }
 }
@@ -56,5 +55,5 @@ int main(int, char** argv) {
   mesh = read_obj(argv[1]);
   for (double& x : mesh.vertices) x = float(x);
   build();
-  return RayTracer(mesh, nodes, boxes).run("rays by trees of Embree", argv[1], argv[2]);
+  return MeshTracer(mesh, tree).run("rays by trees of Embree", argv[1], argv[2]);
 }
