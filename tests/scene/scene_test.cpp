@@ -1,4 +1,5 @@
 // Scenes against brute force, over random adds, removals and moves, for any number of threads.
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -12,6 +13,7 @@
 #include <lrbscope/world_box.hpp>
 
 using namespace lrb;
+using Eigen::Vector3d;
 using shapes::RandomEngine;
 
 namespace {
@@ -339,4 +341,49 @@ TEST_CASE("a scene keeps the answers of bodies that have not moved, for the same
   check(request);
   check(request);
   CHECK(scene.work().kept == 0);
+}
+
+TEST_CASE("a batch finds the poses of a motion at which bodies meet, however few they are") {
+  RandomEngine random(3);
+  const CollideRequest any{.mode = Mode::any_pair};
+  const LrbRep ball = LrbRep::without_regions(shapes::bumpy_sphere(4, 2), true, false);
+  for (int i = 0; i < 400; ++i) {
+    // B, whose frame may be far from it, passes A in steps, one of which or each more than the one before
+    // goes aside or turns.
+    const double far = i % 2 == 0 ? 0 : shapes::uniform(random, 2, 20);
+    const LrbRep b =
+        LrbRep::without_regions(shapes::box({far, -0.05, -1}, {far + 0.1, 0.05, 1}), true, false);
+    const Vector3d way = shapes::uniform(random, 0, i % 5 == 0 ? 4 : 0.3) * Vector3d(0, 1, 1),
+                   aside = shapes::uniform(random, 0, 0.4) * Vector3d(-1, 0, 0);
+    const double angle = shapes::uniform(random, -0.3, 0.3);
+    const int only = static_cast<int>(random() % 8);
+    const Pose pose_a{(i % 7 == 0 ? 1.25 : 1) * Eigen::Matrix3d::Identity(), Vector3d::Zero()};
+    const auto pose = [&](int k, double gap) {
+      const double share = i % 4 < 2 ? k == only : k / 7.0;
+      return Pose::rotation({0, 1, 0}, (i % 3 != 0) * share * angle,
+                            Vector3d(gap - far, 0, 0) + k / 7.0 * way + (i % 3 == 0) * share * aside);
+    };
+    const auto meets = [&](int k, double gap) {
+      return !collide(ball, pose_a, b, pose(k, gap), any).pairs.empty();
+    };
+    // The largest gap, nearly, at which a pose meets A.
+    std::array<double, 2> gap = {0.5, 20};
+    for (int step = 0; step < 12; ++step) {
+      const double middle = (gap[0] + gap[1]) / 2;
+      bool some = false;
+      for (int k = 0; k < 8 && !some; ++k) some = meets(k, middle);
+      gap[some ? 0 : 1] = middle;
+    }
+    std::vector<Pose> poses;
+    for (int k = 0; k < 8; ++k) poses.push_back(pose(k, gap[0]));
+    const CollideAnswers found = collide(ball, pose_a, b, poses, any, 1);
+    std::size_t meet = 0;
+    for (int k = 0; k < 8; ++k) {
+      CAPTURE(i);
+      CAPTURE(k);
+      CHECK(found[k].value().pairs.empty() != meets(k, gap[0]));
+      meet += meets(k, gap[0]);
+    }
+    CHECK(meet > 0);
+  }
 }
