@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <string>
 #include <thread>
@@ -9,8 +11,22 @@
 
 #define LRBCAP_IMPLEMENTATION
 #include "tests/trace/captures.hpp"
+#include <lrbscope/error.hpp>
 
 namespace lrb::capture {
+namespace {
+
+/// Changes the first instance of a row: it is twice as large along x.
+Bytes stretched(Bytes row) {
+  const double pose[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  const auto* const from = reinterpret_cast<const std::byte*>(pose);
+  const auto at = std::search(row.begin(), row.end(), from, from + sizeof pose);
+  const double two = 2;
+  std::memcpy(&*at, &two, sizeof two);
+  return row;
+}
+
+}  // namespace
 
 TEST_CASE("threads record at once, and helpers join a query") {
   const Bytes bytes = record([] {
@@ -184,6 +200,39 @@ TEST_CASE("one query of each n in succession is recorded, at changing places") {
   CHECK(c.every == 8);
   CHECK(c.queries.size() == 100);
   CHECK(places.size() == 8);
+}
+
+TEST_CASE("volumes of instances may be scaled, split and empty, and are limited in number") {
+  // Four instances as in a_row(), the last one twice as large, of a body with these volumes.
+  const auto row = [](std::uint32_t volume, const double* volumes, std::uint32_t vertices = 4) {
+    return [=] {
+      const std::vector<double> xyz(3 * std::size_t{vertices}, 0.5);
+      lrbcap_tree tree = shape_of_tree(LRBCAP_MESH("wedge", vertices, xyz.data(), 4, kCorners));
+      tree.volume = volume, tree.volumes = volumes;
+      a_row(LRBCAP_TREE(&tree), volume == LRBCAP_SPHERE ? LRBCAP_SPHERE : LRBCAP_AABB);
+    };
+  };
+  const double spheres[] = {0.5, 0.5, 0.5, 1, 0, 0, 0, 2, 1, 1, 1, 3};
+  const Tree round = read(record(row(LRBCAP_SPHERE, spheres))).trees.at(1);
+  CHECK(round.volume == VolumeKind::rss);
+  for (const std::uint32_t child : {0, 1, 2})
+    CHECK(round.volume_of(12 + child)[9] == 2 * spheres[4 * child + 3]);
+  CHECK_FALSE(read(record(row(LRBCAP_AABB, kBoxes))).trees.at(1).splits);
+  CHECK(read(record(row(LRBCAP_AABB | LRBCAP_SPLITS, kBoxes))).trees.at(1).splits);
+  // An empty box is a point: no half axis.
+  const double empty[] = {0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 1, 1, 1};
+  const Tree with_empty = read(record(row(LRBCAP_AABB, empty))).trees.at(1);
+  for (std::size_t k = 3; k < 12; ++k) CHECK(with_empty.volume_of(4)[k] == 0);
+  // Boxes along other axes than those of a scale would be skewed.
+  const double boxes[36] = {};
+  const Bytes good = record(row(LRBCAP_OBB, boxes));
+  CHECK_NOTHROW(read(good));
+  CHECK_THROWS_WITH_AS(read(stretched(good)), doctest::Contains("for AABBs one along each of their axes"),
+                       InputError);
+  CHECK_NOTHROW(read(stretched(record(row(LRBCAP_AABB, kBoxes)))));
+  CHECK_NOTHROW(read(record(row(LRBCAP_AABB, kBoxes, 1'999'990))));
+  CHECK_THROWS_WITH_AS(read(record(row(LRBCAP_AABB, kBoxes, 2'000'000))),
+                       doctest::Contains("instance 3: more than 8 million"), InputError);
 }
 
 }  // namespace lrb::capture
