@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <random>
 #include <set>
@@ -150,6 +151,15 @@ TEST_CASE("flat holes are closed, also with collinear corners") {
   CHECK(shaft.new_vertices == 0);
   CHECK(check_mesh(shaft.mesh).buildable());
   CHECK(volume(shaft.mesh) == doctest::Approx(2 * 10));
+  // A thin one; and a slit, whose fill would have no area but for rounding.
+  for (const double height : {1e-5, 1e-7}) {
+    Mesh m;
+    m.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, height, 0}, {0.5, 0, 1}};
+    for (const std::uint32_t v : {0, 1, 2})
+      m.add_face(std::array{VertexId(v), VertexId((v + 1) % 3), VertexId(3)});
+    const ClosedHoles thin = close(m);
+    CHECK(thin.holes.at(0).state == (height > 1e-6 ? HoleState::closed : HoleState::no_area));
+  }
 }
 
 TEST_CASE("random holes: fills intersect nothing, and holes left open are reported") {

@@ -100,6 +100,14 @@ TEST_CASE("A capture's sums are those of its queries") {
   CheckSettings settings;
   settings.split = false;
   CHECK(check(c.engine.capture, settings).sum().prices.unsplit == prices.wasted());
+  // All nodes below the root of A are elsewhere: a more frequent cause, which comes first.
+  std::vector<double>& volumes = c.engine.capture.trees[c.a].volumes;
+  for (std::size_t i = 8; i < volumes.size(); i += 3) volumes[i] += 100;
+  c.engine.ask(c.a, {}, c.b, c.pose);
+  const Check more = check(c.engine.capture, {});
+  REQUIRE(more.wrong.size() == 3);
+  CHECK(more.wrong[0].words.starts_with("missed; cause: volumes"));
+  CHECK(more.wrong[1].words == checked.wrong[0].words);
 }
 
 TEST_CASE("Poses that are recorded wrongly are named, and only these") {

@@ -241,6 +241,12 @@ TEST_CASE("Broken trees, other kinds of queries and sides without a tree are pri
   CHECK(of_distance.needed > 0);
   CHECK(of_distance.needed + of_distance.order == of_distance.visits);
   CHECK(of_distance.crowded_tests > 0);
+  FaultyEngine of_leaves;  // of which each has all triangles
+  const std::uint32_t leaf = of_leaves.grow(of_leaves.add(soup_mesh(random, 20)), random, 20);
+  of_leaves.ask(leaf, {}, leaf, Pose::translation({0.4, 0.2, 0.1})).kind = QueryKind::distance;
+  const Prices of_leaf = check(of_leaves.capture, {}).sum().prices;
+  CHECK(of_leaf.triangle_tests_for_nothing < 20 * 20);
+  CHECK(of_leaf.crowded_tests == of_leaf.triangle_tests_for_nothing);
   c = sound;
   c.queries[0].trees[1] = kNull;
   std::erase_if(c.queries[0].events,

@@ -78,33 +78,35 @@ TEST_CASE(
 }
 
 TEST_CASE("A box that was shrunk is blamed, with its node, axis and how far the triangle sticks out") {
-  Sheets s;
-  const QueryVerdict sound = verdict_of((s.ask(), s.engine.capture));
-  REQUIRE(sound.outcome == Judgement::right);
-  REQUIRE(sound.exact.size() > 5);
-  // The leaf of a triangle that intersects.
-  const std::uint32_t f = sound.exact[sound.exact.size() / 2].a;
-  const std::uint32_t leaf = TreeIndex(s.engine.capture.trees[s.a], 50).leaf[f];
-  auto& volumes = s.engine.capture.trees[s.a].volumes;
-  volumes[6 * leaf + 2] += 100, volumes[6 * leaf + 5] += 100;  // far away
-  s.engine.capture.queries.clear();
-  s.ask();
-  const QueryVerdict v = verdict_of(s.engine.capture);
-  CHECK(v.outcome == Judgement::wrong);
-  CHECK(v.answer == Judgement::right);  // other pairs make the verdict right
-  CHECK(v.missed ==
-        static_cast<std::uint64_t>(std::count_if(sound.exact.begin(), sound.exact.end(),
-                                                 [&](const TrianglePair& p) { return p.a == f; })));
-  for (const WrongPair& w : v.wrong) {
-    CHECK(w.triangles.a == f);
-    CHECK(w.culprit == Culprit::volumes);
-    CHECK(w.nodes[0] == leaf);
-    CHECK(w.outside[0] == doctest::Approx(100));
-    CHECK(w.outside[1] == 0);
-    CHECK(w.margin > w.bound);
+  for (const std::size_t side : {0, 1}) {
+    Sheets s;
+    const QueryVerdict sound = verdict_of((s.ask(), s.engine.capture));
+    REQUIRE(sound.outcome == Judgement::right);
+    REQUIRE(sound.exact.size() > 5);
+    const auto of = [&](const TrianglePair& p) { return side == 0 ? p.a : p.b; };
+    // The leaf of a triangle that intersects.
+    const std::uint32_t f = of(sound.exact[sound.exact.size() / 2]), t = side == 0 ? s.a : s.b;
+    const std::uint32_t leaf = TreeIndex(s.engine.capture.trees[t], side == 0 ? 50 : 32).leaf[f];
+    auto& volumes = s.engine.capture.trees[t].volumes;
+    volumes[6 * leaf + 2] += 100, volumes[6 * leaf + 5] += 100;  // far away
+    s.engine.capture.queries.clear();
+    s.ask();
+    const QueryVerdict v = verdict_of(s.engine.capture);
+    CHECK(v.outcome == Judgement::wrong);
+    CHECK(v.answer == Judgement::right);  // other pairs make the verdict right
+    CHECK(v.missed == std::ranges::count(sound.exact, f, of));
+    for (const WrongPair& w : v.wrong) {
+      CHECK(of(w.triangles) == f);
+      CHECK(w.culprit == Culprit::volumes);
+      CHECK(w.nodes[side] == leaf);
+      CHECK(w.outside[side] == doctest::Approx(100));
+      CHECK(w.outside[1 - side] == 0);
+      CHECK(w.margin > w.bound);
+      CHECK(cause_of(w) == "missed; cause: volumes, from which a triangle sticks out");
+    }
+    CHECK(first_sentence(s.engine.capture, v)
+              .find("triangle " + std::to_string(f) + " sticks out of its node by 100") != std::string::npos);
   }
-  CHECK(first_sentence(s.engine.capture, v)
-            .find("triangle " + std::to_string(f) + " sticks out of its node by 100") != std::string::npos);
 }
 
 TEST_CASE("A test of triangles that lies is blamed, in both directions") {
