@@ -369,10 +369,10 @@ TEST_CASE("a batch finds the poses of a motion at which bodies meet, however few
     // The largest gap, nearly, at which a pose meets A.
     std::array<double, 2> gap = {0.5, 20};
     for (int step = 0; step < 12; ++step) {
-      const double middle = (gap[0] + gap[1]) / 2;
+      const double midpoint = (gap[0] + gap[1]) / 2;
       bool some = false;
-      for (int k = 0; k < 8 && !some; ++k) some = meets(k, middle);
-      gap[some ? 0 : 1] = middle;
+      for (int k = 0; k < 8 && !some; ++k) some = meets(k, midpoint);
+      gap[some ? 0 : 1] = midpoint;
     }
     std::vector<Pose> poses;
     for (int k = 0; k < 8; ++k) poses.push_back(pose(k, gap[0]));
