@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# docs/site.sh OUT [API]: makes a site of these pages in OUT/html, with mkdocs (Debian's package), which must not warn. Targets of links
+# docs/site.sh OUT [API]: makes a site of these pages in OUT/html, with mkdocs and mkdocstrings (Debian's packages), which must not warn. Targets of links
 # out of this folder are copied. API: the folder with Doxygen's HTML, if it exists. Then checks that every link and anchor in the site
 # has a target, and that no page loads external resources.
 set -euo pipefail
@@ -7,7 +7,9 @@ docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tree=$(dirname "$docs")
 out=${1:?a folder}
 api=${2:-}
-command -v mkdocs >/dev/null || { echo "site.sh: needs mkdocs (apt-get install mkdocs)" >&2 && exit 77; }
+needs="mkdocs mkdocstrings mkdocstrings-python-handlers black"
+/usr/bin/python3 -c 'import mkdocs, mkdocstrings_handlers.python, black' 2>/dev/null ||
+  { echo "site.sh: needs $needs (apt-get install $needs)" >&2 && exit 77; }
 rm -rf "$out"
 mkdir -p "$out/pages/source"
 out=$(cd "$out" && pwd)
@@ -30,13 +32,34 @@ cp "$tree/CONTRIBUTING.md" "$out/pages/contributing.md"
     sed 's|^[a-z]*/include/\(.*\)|- [`<\1>`](../&)|')
 } >"$out/pages/reference.md"
 
-# With the texts of the built module, if there is one that this Python can load.
-package=$tree/build/release/python
-for python in /usr/bin/python3 python3; do
-  ! PYTHONPATH=$package "$python" -c 'import lrbscope' 2>/dev/null || break
+# The Python reference, by mkdocstrings, of the sources and of the stub of the built module, which has its texts.
+stub=$tree/build/release/python/lrbscope/_core.pyi
+modules="_core _picture collision report many fcl capture"
+mkdir -p "$out/package/lrbscope"
+cp "$tree"/python/lrbscope/*.py "$out/package/lrbscope/"
+if [ -f "$stub" ]; then cp "$stub" "$out/package/lrbscope/_core.py"; else
+  echo "site.sh: the Python reference lacks the compiled classes: build the module first" >&2
+  modules=${modules#_core }
+fi
+# Examples become blocks of code, up to an empty line or the end of the text.
+for file in "$out"/package/lrbscope/*.py; do
+  awk '/^ *>>> / && !inside { inside = 1; print "```python" }
+    inside && (/^ *$/ || /"""$/) { inside = 0; ends = sub(/"""$/, ""); print; print ends ? "```\n\"\"\"" : "```\n"; next }
+    { print }' "$file" >"$file.text" && mv "$file.text" "$file"
 done
-PYTHONPATH=$package "$python" -c 'import lrbscope' 2>/dev/null || package=
-PYTHONPATH=$package PYTHONDONTWRITEBYTECODE=1 "$python" "$docs/python_reference.py" "$tree" >"$out/pages/python_reference.md"
+{
+  printf '# Python reference\n\n## lrbscope\n'
+  for module in $modules; do
+    case $module in many | fcl | capture) printf '\n## lrbscope.%s\n' "$module" ;; esac
+    printf '\n::: lrbscope.%s\n' "$module"
+    # Of these, the package exports some names.
+    case $module in
+      _picture) printf '    options: {members: [Picture]}\n' ;;
+      collision) printf '    options: {members: [CollisionManager, ContactData, DistanceData]}\n' ;;
+      report) printf '    options: {members: [Interference, Report]}\n' ;;
+    esac
+  done
+} >"$out/pages/python_reference.md"
 
 # mkdocs, unlike GitHub, needs a blank line before lists. Targets of links out of the folder are copied.
 python3 - "$tree" "$out/pages" <<'P'
