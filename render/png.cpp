@@ -2,8 +2,10 @@
 #include <array>
 #include <cmath>
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
-#include <new>
+#include <limits>
+#include <memory>
 #include <utility>
 
 #include <png.h>
@@ -14,14 +16,37 @@
 #include <lrbscope/render/frame_writer.hpp>
 #include <lrbscope/render/image.hpp>
 
+namespace {
+
+/// Compresses for stb_image_write by zlib, which is faster. Level 1: rendered frames have large flat areas,
+/// where more effort gains almost nothing.
+unsigned char* deflated(unsigned char* data, int size, int* out_size, int /*level*/) {
+  uLongf length = compressBound(static_cast<uLong>(size));
+  auto* const out = static_cast<unsigned char*>(std::malloc(length));
+  if (out != nullptr && compress2(out, &length, data, static_cast<uLong>(size), 1) == Z_OK) {
+    *out_size = static_cast<int>(length);
+    return out;
+  }
+  std::free(out);
+  return nullptr;
+}
+
+}  // namespace
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#define STBIW_ZLIB_COMPRESS deflated
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
+
 namespace lrb::render {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Level 1 without row filters: rendered frames have large flat areas, where more effort gains almost
-/// nothing.
-constexpr int kZlibLevel = 1;
 constexpr double kInchesPerMetre = 1 / 0.0254;
 /// Limits of chunks other than pixels: lrbscope's texts are far below; a file with millions of chunks is
 /// rejected.
@@ -53,78 +78,31 @@ bool succeeds(png_structp png, const Body& body) {
   return true;
 }
 
-/// Makes a text chunk: plain ASCII becomes tEXt, other text (UTF-8) iTXt.
-png_text as_chunk(const PngText& text) {
+void put_u32(Bytes& out, std::size_t number) {
+  for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(number >> shift));
+}
+
+void put_chunk(Bytes& out, const std::string& type, const Bytes& data) {
+  put_u32(out, data.size());
+  const std::size_t start = out.size();
+  out.insert(out.end(), type.begin(), type.end());
+  out.insert(out.end(), data.begin(), data.end());
+  put_u32(out, crc32(0, &out[start], static_cast<uInt>(out.size() - start)));
+}
+
+/// Appends a text chunk: plain ASCII becomes tEXt, other text (UTF-8) iTXt.
+void put_text(Bytes& out, const PngText& text) {
   const auto& [key, value] = text;
   // Limits of the PNG specification.
   if (key.empty() || key.size() > 79)
     throw InputError("PNG text keyword '" + key + "': expected 1 to 79 characters");
   const bool ascii =
       std::all_of(value.begin(), value.end(), [](char c) { return static_cast<signed char>(c) > 0; });
-  png_text out{};
-  out.compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
-  out.key = const_cast<png_charp>(key.c_str());
-  out.text = const_cast<png_charp>(value.c_str());
-  return out;
+  Bytes data(key.begin(), key.end());
+  data.resize(key.size() + (ascii ? 1 : 5), 0);  // iTXt: not compressed, no language, no translated keyword
+  data.insert(data.end(), value.begin(), value.end());
+  put_chunk(out, ascii ? "tEXt" : "iTXt", data);
 }
-
-class PngWriter {
- public:
-  PngWriter() : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &complaint_, complain, keep_silent)) {
-    if (png_ != nullptr) info_ = png_create_info_struct(png_);
-    if (info_ != nullptr) png_set_write_fn(png_, this, append, [](png_structp) {});
-  }
-  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
-  PngWriter(const PngWriter&) = delete;
-  PngWriter& operator=(const PngWriter&) = delete;
-
-  bool write(const Image& image, const std::vector<png_text>& text, png_uint_32 per_metre) {
-    return info_ != nullptr && succeeds(png_, [&] {
-             write_header(image, text, per_metre);
-             for (int y = 0; y < image.height(); ++y)
-               png_write_row(png_, reinterpret_cast<png_const_bytep>(&image.at(0, y)));
-             png_write_end(png_, nullptr);
-           });
-  }
-
-  Bytes bytes;
-  const char* complaint() const { return info_ != nullptr ? complaint_.text.data() : "out of memory"; }
-
- private:
-  void write_header(const Image& image, const std::vector<png_text>& text, png_uint_32 per_metre) {
-    // Without transparency three channels suffice.
-    const bool rgb = image.opaque();
-    const auto width = static_cast<png_uint_32>(image.width()),
-               height = static_cast<png_uint_32>(image.height());
-    png_set_IHDR(png_, info_, width, height, 8, rgb ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
-    png_set_compression_level(png_, kZlibLevel);
-    // A buffer for the whole compressed stream gives a single IDAT chunk.
-    const std::size_t raw = std::size_t{height} * (1 + std::size_t{width} * (rgb ? 3 : 4));
-    png_set_compression_buffer_size(png_, compressBound(raw));  // pixels in one chunk
-    if (per_metre > 0) png_set_pHYs(png_, info_, per_metre, per_metre, PNG_RESOLUTION_METER);
-    png_set_text(png_, info_, text.data(), static_cast<int>(text.size()));
-    png_write_info(png_, info_);
-    if (rgb) png_set_filler(png_, 0, PNG_FILLER_AFTER);  // skips each fourth byte
-  }
-
-  static void append(png_structp png, png_bytep data, std::size_t size) {
-    // Exceptions must not cross libpng's C frames.
-    bool room = true;
-    try {
-      Bytes& bytes = static_cast<PngWriter*>(png_get_io_ptr(png))->bytes;
-      bytes.insert(bytes.end(), data, data + size);
-    } catch (const std::bad_alloc&) {
-      room = false;
-    }
-    if (!room) png_error(png, "out of memory");
-  }
-
-  Complaint complaint_;
-  png_structp png_;
-  png_infop info_ = nullptr;
-};
 
 class PngReader {
  public:
@@ -216,14 +194,38 @@ void check_size(const PngReader& reader, std::size_t file_bytes, const std::stri
 
 Bytes encode_png(const Image& image, const PngOptions& options) {
   if (image.empty()) throw InputError("an empty image cannot be encoded: it has no pixels");
-  std::vector<png_text> text;
-  for (const PngText& t : options.text) text.push_back(as_chunk(t));
-  const double per_metre = std::max(0.0, options.dpi) * kInchesPerMetre;
-  PngWriter writer;
-  if (!writer.write(image, text, static_cast<png_uint_32>(std::lround(per_metre))))
-    throw EnvironmentError("cannot encode a PNG of " + std::to_string(image.width()) + "x" +
-                           std::to_string(image.height()) + " pixels: " + writer.complaint());
-  return std::move(writer.bytes);
+  Bytes extra;
+  if (const std::size_t per_metre = std::lround(std::max(0.0, options.dpi) * kInchesPerMetre);
+      per_metre > 0) {
+    Bytes density;
+    put_u32(density, per_metre), put_u32(density, per_metre);
+    density.push_back(PNG_RESOLUTION_METER);
+    put_chunk(extra, "pHYs", density);
+  }
+  for (const PngText& t : options.text) put_text(extra, t);
+  // Without transparency three channels suffice.
+  const int channels = image.opaque() ? 3 : 4;
+  const std::string size = std::to_string(image.width()) + "x" + std::to_string(image.height()) + " pixels";
+  if ((std::int64_t{image.width()} * channels + 1) * image.height() > std::numeric_limits<int>::max())
+    throw InputError("a picture of " + size + " is too large for a PNG; choose a smaller size");
+  Bytes pixels;
+  pixels.reserve(image.pixels().size() * static_cast<std::size_t>(channels));
+  for (const Rgba& p : image.pixels()) {
+    pixels.insert(pixels.end(), {p.r, p.g, p.b});
+    if (channels == 4) pixels.push_back(p.a);
+  }
+  stbi_write_force_png_filter = 0;
+  int length = 0;
+  const std::unique_ptr<unsigned char, decltype(&std::free)> png(
+      stbi_write_png_to_mem(pixels.data(), image.width() * channels, image.width(), image.height(), channels,
+                            &length),
+      &std::free);
+  if (!png) throw EnvironmentError("cannot encode a PNG of " + size + ": out of memory");
+  // The other chunks follow the signature and the header.
+  constexpr std::ptrdiff_t kHeaderEnd = 8 + 12 + 13;
+  Bytes out(png.get(), png.get() + length);
+  out.insert(out.begin() + kHeaderEnd, extra.begin(), extra.end());
+  return out;
 }
 
 DecodedPng decode_png(std::span<const std::uint8_t> bytes, const std::string& name,
