@@ -183,12 +183,12 @@ export class WhyPanel {
   }
 
   stepText(e) {
-    const inside = e.relation !== "separate";
     if (e.plane)
       return `Apart: a plane has A on one side and B on the other, gap \u2265 ${least(e.plane.gap)}.`;
-    const what = inside ? "No faces intersect; one body is inside the other"
-      : "Apart, though no plane was found that has one body on each side";
-    const last = e.left > 0 ? ", or in faces that planes and tests part" : e.facePairs > 0
+    const what = e.relation === "undefined" ? "No faces intersect" // a surface that bounds no solid
+      : e.relation === "separate" ? "Apart, though no plane was found that has one body on each side"
+      : "No faces intersect; one body is inside the other";
+    const last = e.left > 0 ? ", or in faces separated by planes and tests" : e.facePairs > 0
           ? ", or in faces separated by planes" : "";
     return `${what}: the traversal ended in pairs of disjoint boxes${last}.`;
   }
