@@ -28,7 +28,7 @@ struct GoldenOptions {
   std::optional<std::uint32_t> frames;
   std::vector<golden::Level> levels;      ///< nullopt: as in each golden
   std::optional<double> large_share;      ///< of pixels; nullopt: as in each golden
-  std::optional<double> flip, work;       ///< nullopt: as in each golden
+  std::optional<double> work;             ///< nullopt: as in each golden
   std::vector<std::string> ignore, only;  ///< of pictures; empty: as in each golden
   std::string junit, markdown, picture_url, from;
   unsigned jobs = 1;
@@ -43,7 +43,6 @@ void apply(const GoldenOptions& o, golden::GoldenSpec& spec) {
     for (const golden::Level level : o.levels) spec.levels[static_cast<std::size_t>(level)] = true;
   }
   if (o.large_share) spec.tolerance.large_share = *o.large_share;
-  if (o.flip) spec.flip = *o.flip;
   if (o.work) spec.work = *o.work;
   const auto rectangles = [](const std::vector<std::string>& words, std::vector<render::PixelRect>& out) {
     if (!words.empty()) out.clear();
@@ -416,11 +415,6 @@ void add_comparison(App& app, const std::shared_ptr<GoldenOptions>& o) {
       ->one_of(words);
   app.add_option("--picture-tolerance", o->large_share, "SHARE",
                  "Fraction of pixels allowed to differ strongly [0.0005, or as stored in the golden]")
-      ->in_range(0.0, 1.0);
-  app.add_option(
-         "--flip", o->flip, "ERROR",
-         "Also pass pictures whose mean FLIP, the difference that an eye perceives, is at most this [0, or as "
-         "stored in the golden]")
       ->in_range(0.0, 1.0);
   app.add_option(
          "--work-tolerance", o->work, "SHARE",

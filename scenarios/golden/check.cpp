@@ -7,7 +7,6 @@
 #include <span>
 #include <unordered_map>
 
-#include "render/flip.hpp"
 #include "render/gl.hpp"
 #include "render/page_palette.hpp"
 #include "scenarios/record/engine_run.hpp"
@@ -287,21 +286,12 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const frames:
     const render::Image found = masked(expected, actual.image, spec, ignored);
     const bool equal = expected == found;
     render::ImageDifference d;
-    std::string flip;  // the mean FLIP of a picture beyond the tolerance
     bool passed = equal;
     if (!equal) {
       d = render::compare(expected, found, tolerance);
       d.pixels -= std::min(ignored, d.pixels);
       d.equal -= std::min(ignored, d.equal);
       passed = d.within(tolerance);
-      if (!passed && d.same_size) {
-        const double pixels = static_cast<double>(found.pixels().size());
-        const double mean = render::mean_flip(expected, found) * pixels /
-                            std::max<double>(1, pixels - static_cast<double>(ignored));
-        passed = mean <= spec.flip;
-        flip = "; mean FLIP " + render::short_number(mean) +
-               (spec.flip > 0 ? " (allowed " + render::short_number(spec.flip) + ")" : "");
-      }
     }
     const bool nearer = passed != best.passed            ? passed
                         : d.same_size != least.same_size ? d.same_size
@@ -314,7 +304,7 @@ ImageVerdict check_frame(const std::vector<GoldenImage>& variants, const frames:
     best.equal = equal;
     best.text = equal ? "the images are identical"
                 : d.same_size
-                    ? d.text(tolerance) + flip
+                    ? d.text(tolerance)
                     : "expected " + size_text(expected) + " pixels, found " + size_text(actual.image);
     if (equal) return best;
   }

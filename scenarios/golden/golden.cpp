@@ -186,12 +186,11 @@ GoldenImage read_image(const std::string& folder, const std::string& file, const
 }
 
 void read_tolerance(const io::JsonNode& node, GoldenSpec& spec) {
-  node.object({"large", "large_share", "small_share", "flip", "work"});
+  node.object({"large", "large_share", "small_share", "work"});
   render::ImageTolerance& t = spec.tolerance;
   if (const auto n = node.get("large")) t.large = static_cast<int>(n->integer(1, 255));
   if (const auto n = node.get("large_share")) t.large_share = n->number(0, 1);
   if (const auto n = node.get("small_share")) t.small_share = n->number(0, 1);
-  if (const auto n = node.get("flip")) spec.flip = n->number(0, 1);
   if (const auto n = node.get("work")) spec.work = n->number(0, kMaxWorkTolerance);
 }
 
@@ -330,7 +329,6 @@ void write_golden_spec(const std::string& goldens, const std::string& name, cons
     json["tolerance"] = {{"large", spec.tolerance.large},
                          {"large_share", spec.tolerance.large_share},
                          {"small_share", spec.tolerance.small_share}};
-  if (spec.flip != usual.flip) json["tolerance"]["flip"] = spec.flip;
   if (spec.work != usual.work) json["tolerance"]["work"] = spec.work;
   if (!spec.ignore.empty()) json["ignore"] = rectangles_json(spec.ignore);
   if (!spec.only.empty()) json["only"] = rectangles_json(spec.only);

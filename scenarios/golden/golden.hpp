@@ -52,9 +52,7 @@ struct GoldenSpec {
   /// (kLevels) the levels that are compared
   std::array<bool, kLevels> levels = {true, true, true, true};
   render::ImageTolerance tolerance;  ///< of pictures
-  /// A picture beyond the tolerance passes if its mean FLIP (render/flip.hpp) is at most this.
-  double flip = 0;
-  double work = 0.05;  ///< the share by which a sum of counters may increase
+  double work = 0.05;                ///< the share by which a sum of counters may increase
   /// Rectangles of pictures, in pixels: those whose contents are ignored, and those that alone are compared
   /// (empty: the whole picture).
   std::vector<render::PixelRect> ignore, only;
