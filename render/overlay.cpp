@@ -13,18 +13,20 @@ constexpr double kPictureShare = 0.5;  ///< minimum share of the frame's height
 constexpr const char* kNarrowSpace = "\u202f";
 constexpr const char* kRoom = "0\u202f000";
 
-/// Returns 1, 2 and 5 times powers of ten between two positive values, inclusive; on a long scale only the
-/// powers.
+/// Returns 1, 2 and 5 times powers of ten from a positive value on, on a long scale only the powers, and last
+/// the largest value, in place of ticks too close to it.
 std::vector<double> log_ticks(double low, double high) {
-  constexpr double kRounding = 1e-9, kLong = 1e3;
+  constexpr double kRounding = 1e-9, kLong = 1e3;  // rounding must not lose the first tick
+  const bool is_long = high > kLong * low;
+  const double room = is_long ? 3 : 1.6;
   std::vector<double> out;
-  // The tolerance keeps ticks at both ends of the scale despite rounding.
   for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10, power) <= high; ++power)
     for (const int digit : {1, 2, 5}) {
-      if (digit > 1 && high > kLong * low) continue;
+      if (digit > 1 && is_long) continue;
       const double value = digit * std::pow(10, power);
-      if (value >= low * (1 - kRounding) && value <= high * (1 + kRounding)) out.push_back(value);
+      if (value >= low * (1 - kRounding) && value * room <= high) out.push_back(value);
     }
+  out.push_back(high);
   return out;
 }
 

@@ -147,7 +147,7 @@ Command add_chart(App& root, const Globals& globals) {
          "by more than the span of rounds [3]")
       ->in_range(1, 100);
   app->add_option("--width", o->width, "LENGTH",
-                  "Also write figure.pdf and figure.svg, this wide on paper, in mm, cm, in or pt; text is 8 "
+                  "Also write figure.pdf and figure.svg, this wide on paper, in mm, cm, in or pt; text is 7 "
                   "points high [85mm with --panel]");
   app->add_option("--panel", o->print.panels, "NAME,NAME,...",
                   "Panels of the figure: pairs of bodies, classes of poses, or BODIES/CLASS [all]")

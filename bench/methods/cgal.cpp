@@ -177,7 +177,7 @@ std::vector<MethodEntry> cgal_methods() {
                "inside or separate.",
            .pairs = false,
            .says = Says::inside,
-           .style = {"CGAL, yes or no", "#009e73", "triangle"},
+           .style = {"CGAL, yes or no", "#009e73", "triangleOpen"},
            .rank = 40},
           "libcgal-dev"),
       entry_of<Pairs>(

@@ -156,7 +156,7 @@ MethodEntry entry(const char* name) {
            "with an epsilon; it cannot stop at the first pair. Body B moves at every query, and its tree is " +
            how + ", which is part of the time.",
        .traits = {},
-       .style = {"Embree", "#b58900", "rectRounded"},
+       .style = {"Embree", "#b58900", "rectOpen"},
        .rank = kRebuilds ? 61 : 60},
       "libembree-dev");
 }

@@ -265,7 +265,7 @@ std::vector<MethodEntry> ours_methods() {
            .remark = "Whether they intersect, exactly, and the contact of one crossing pair of faces.",
            .pairs = false,
            .traits = kCoarse,
-           .style = {"lrbscope, one pair", "#0072b2", "rectRounded"},
+           .style = {"lrbscope, one pair", "#0072b2", "rectOpen"},
            .role = Role::ours_other,
            .rank = 14}),
       entry_of<OursCoarse, Content::tolerance>(

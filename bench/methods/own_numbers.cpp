@@ -282,7 +282,7 @@ std::vector<MethodEntry> own_numbers_methods() {
             .traits = {Trait::proves},
             .parameter = "within",
             .settings = {0.05},
-            .style = {"lrbscope, yes or no: within a distance?", "#0072b2", "rectRounded"},
+            .style = {"lrbscope, yes or no: within a distance?", "#0072b2", "rectOpen"},
             .role = Role::ours_other,
             .rank = kRank,
             .quantity = Quantity::distance},

@@ -502,7 +502,7 @@ std::vector<MethodEntry> structures_methods() {
            .remark =
                "Faces of B against those of A in the cells of grids that they touch, each face in the grid of its "
                "size, by the test of `plain`. No relation.",
-           .style = {"hierarchical grid", "#b0702a", "triangle"},
+           .style = {"hierarchical grid", "#b0702a", "rectRotOpen"},
            .rank = 83})};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 #include <span>
@@ -182,7 +183,7 @@ constexpr std::array<std::pair<const char*, const char*>, 8> kSpares = {{
     {"#f95d6a", "rectRot"},
     {"#4f7942", "star"},
     {"#8f5bd9", "cross"},
-    {"#c04000", "rectRounded"},
+    {"#c04000", "rectOpen"},
     {"#00798c", "rect"},
     {"#a0522d", "circle"},
     {"#b0006d", "crossRot"},
@@ -223,11 +224,10 @@ double drawn_time(const Point& p, double slowest) {
   return p.median > 0 ? p.median : kAbove * slowest;
 }
 
-/// Returns the slowest median on a data set, over all classes of poses.
-double slowest_of(const std::vector<Point>& points, const std::string& set) {
+/// Returns the slowest median of all panels, which have the same axes.
+double slowest_of(const std::vector<Point>& points) {
   double slowest = 1;
-  for (const Point& p : points)
-    if (p.set == set) slowest = std::max(slowest, p.median);
+  for (const Point& p : points) slowest = std::max(slowest, p.median);
   return slowest;
 }
 
@@ -246,10 +246,11 @@ std::vector<const Point*> frontier(const std::vector<const Point*>& panel) {
 }
 
 /// Returns a sentence that names the points that are not drawn, and those left out of the frontier.
+/// Reasons that hold in all panels are only in the first chart.
 std::string left_out_text(const std::vector<const Point*>& panel) {
   std::map<std::string, std::string> by_reason;
   for (const Point* p : panel)
-    if (!p->left_out.empty()) {
+    if (!p->left_out.empty() && (p->set == kAllSets || !(p->median > 0) || p->always_wrong)) {
       std::string& names = by_reason[p->left_out];
       names += (names.empty() ? "" : ", ") + name_of(p->method, p->setting);
     }
@@ -260,22 +261,37 @@ std::string left_out_text(const std::vector<const Point*>& panel) {
   return out;
 }
 
+/// Returns a logarithmic axis with ticks at these powers of ten.
+report::Axis decades(const std::string& label, double min, double max, const std::vector<int>& exponents) {
+  report::Axis axis{label, true, min, max};
+  for (const int e : exponents) axis.ticks.push_back({std::pow(10, e), report::power_label(e)});
+  return axis;
+}
+
 report::Axis error_axis(Quantity quantity, const std::string& label) {
-  if (quantity == Quantity::pairs)
-    return {label, true, 0.3e-7, 3, {{1e-7, "0"}, {1e-5, "1e-5"}, {1e-3, "1e-3"}, {0.1, "0.1"}, {1, "1"}}};
-  return {
-      label, true, 0.3e-14, 3, {{1e-14, "0"}, {1e-10, "1e-10"}, {1e-6, "1e-6"}, {0.01, "0.01"}, {1, "1"}}};
+  const double zero = no_error(quantity);
+  report::Axis axis =
+      decades(label, 0.3 * zero, 3,
+              quantity == Quantity::pairs ? std::vector{-5, -3, -1, 0} : std::vector{-10, -6, -2, 0});
+  axis.ticks.insert(axis.ticks.begin(), {zero, "0"});
+  return axis;
+}
+
+report::Axis time_axis(double slowest) {
+  constexpr double kRoom = 6;  // above the slowest
+  std::vector<int> exponents;
+  for (int e = -1; std::pow(10, e) <= kRoom * slowest; ++e) exponents.push_back(e);
+  return decades("median, \u00b5s", 0.05, kRoom * slowest, exponents);
 }
 
 report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>& points,
                        const std::vector<methods::MethodInfo>& methods,
                        const std::function<std::string(const Point&)>& scene_of) {
-  const double slowest = slowest_of(points, set.name);
+  const double slowest = slowest_of(points);
   const std::vector<const Point*> current = panel(points, set.name, c);
   const ChartText words = chart_text(set.quantity);
-  report::Chart chart{set.name + ", " + info_of(c).title,
-                      error_axis(set.quantity, words.error),
-                      {"median, \u00b5s", true, 0.05, 6 * slowest}};
+  report::Chart chart{set.name + ", " + info_of(c).title, error_axis(set.quantity, words.error),
+                      time_axis(slowest)};
   chart.note = left_out_text(current);
   const auto add = [&](report::Series& series, const Point& p, double error) {
     series.x.push_back(drawn_error(error, set.quantity));
@@ -521,8 +537,10 @@ std::vector<report::Chart> accuracy_charts(const std::vector<DataSet>& sets, con
                                            const std::function<std::string(const Point&)>& scene_of) {
   std::vector<report::Chart> out;
   for (const DataSet& set : sets)
-    for (const PoseClass c : classes_of(set.quantity))
+    for (const PoseClass c : classes_of(set.quantity)) {
       out.push_back(chart_of(set, c, points, methods, scene_of));
+      out.back().has_key = false;
+    }
   return out;
 }
 
@@ -533,7 +551,16 @@ report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& se
   const ChartText words = chart_text(quantity);
   report::Document doc(words.title, words.purpose);
   if (!unfinished.empty()) doc.verdict("unfinished", false).purpose(unfinished);
-  if (!sets.empty()) doc.chart(summary_chart(sets, points, methods));
+  if (!sets.empty()) {
+    report::Chart summary = summary_chart(sets, points, methods);
+    // Its key is that of all charts.
+    for (const report::Chart& chart : charts)
+      for (const report::Series& s : chart.series)
+        if (!s.label.empty() && std::none_of(summary.series.begin(), summary.series.end(),
+                                             [&](const auto& known) { return known.label == s.label; }))
+          summary.series.push_back({s.label, {}, {}, s.style});
+    doc.chart(summary);
+  }
   doc.table(table_of_settings(sets, points, methods)).each(charts, &report::Document::chart);
   doc.each(words.texts, &report::Document::reading);
   return doc.table(table_of_metrics(points)).table(table_of_methods(methods)).table(table_of_points(points));
@@ -588,12 +615,25 @@ std::vector<report::Chart> printed_panels(Quantity quantity, const std::vector<D
 report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& sets,
                                const std::vector<Missing>& missing, const std::vector<report::Chart>& charts,
                                const ChartPrint& print) {
-  const bool in_rows = print.width == 0;
-  const std::vector<report::Chart> panels =
-      printed_panels(quantity, sets, missing, charts, print.panels, in_rows && print.panels.empty());
-  const int columns = static_cast<int>(classes_of(quantity).size());
-  if (in_rows) return report::gnuplot(panels, {columns, 42, 40, 6.5, "", columns});
-  return report::gnuplot(panels, report::layout_for(print.width, panels));
+  constexpr double kPanel = 44;  // millimetres, without a width
+  const auto classes = static_cast<int>(classes_of(quantity).size());
+  const bool is_whole = print.panels.empty();
+  const double width = print.width > 0 ? print.width : kPanel * classes;
+  std::vector<report::Chart> panels = printed_panels(quantity, sets, missing, charts, print.panels, is_whole);
+  const int count = static_cast<int>(panels.size()), rows = count / classes;
+  // A row for each pair of bodies, or if that does not fit, for each class of poses; of some panels, or of
+  // one pair, as many columns as fit.
+  int columns = std::clamp(report::columns_within(width), 1, std::max(1, count));
+  if (is_whole && columns >= classes) {
+    columns = classes;
+  } else if (is_whole && rows > 1 && columns >= rows) {
+    std::vector<report::Chart> turned;
+    for (int c = 0; c < classes; ++c)
+      for (int r = 0; r < rows; ++r) turned.push_back(panels[static_cast<std::size_t>(r * classes + c)]);
+    panels = std::move(turned);
+    columns = rows;
+  }
+  return report::gnuplot(panels, report::layout_for(width, columns, panels));
 }
 
 }  // namespace lrb::speed

@@ -31,10 +31,11 @@ struct ChartPrint {
   std::vector<std::string> panels;
 };
 
-/// Arranges the charts for print: without a width, a row per pair of bodies and a column per class of poses,
-/// without rows that have no points; for a width, as many columns as fit, with text at 8 points. There is one
-/// key. `missing`: of an unfinished survey; the title of the first panel of its pairs names it. Throws
-/// InputError for an unknown name of a panel, and if the width is too small.
+/// Arranges the charts for print, with common axes, one key and text at 7 points: a row per pair of bodies
+/// and a column per class of poses, or the reverse where the width requires it, without rows that have no
+/// points; some panels, in as many columns as fit. `missing`: of an unfinished survey; the title of the first
+/// panel of its pairs names it. Throws InputError for an unknown name of a panel, and if the width is too
+/// small.
 report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& sets,
                                const std::vector<Missing>& missing, const std::vector<report::Chart>& charts,
                                const ChartPrint& print = {});

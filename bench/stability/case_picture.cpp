@@ -25,8 +25,8 @@ namespace lrb::stability {
 using Eigen::AlignedBox3d, Eigen::Vector3d;
 
 render::Rgba colour_of(Mark m) {
-  if (m == Mark::missed) return render::palette::kContact;
-  return m == Mark::extra ? render::Rgba{150, 60, 170} : render::palette::kGreen;
+  if (m == Mark::missed) return render::palette::kWrong;
+  return m == Mark::extra ? render::Rgba{84, 40, 150} : render::palette::kGreen;
 }
 
 Verdict compare(std::span<const SimplexPair> expected, const std::optional<Pairs>& answered) {
@@ -58,7 +58,8 @@ struct CasePicture {
   /// A mark is on every simplex, as in minimised cases. The bodies then have their own colours, because marks
   /// would not distinguish anything, and the worst pairs have places.
   bool all_marked = false;
-  /// The intersections of these pairs, or the segments between their closest points.
+  /// The intersections of the worst pairs, or the segments between their closest points; of many pairs the
+  /// first.
   std::vector<Corners> places;
 
   CasePicture(const cases::Case& c, const Verdict& verdict);
@@ -94,8 +95,10 @@ CasePicture::CasePicture(const cases::Case& c, const Verdict& verdict) : flat(c.
   }
   crowded = 4 * marked > all;
   all_marked = marked == all;
-  if (!all_marked) return;
-  for (const SimplexPair& p : verdict.worst()) places.push_back(PosedPair(c, p).place());
+  constexpr std::size_t kFew = 32;
+  if (!all_marked && verdict.mark() == Mark::found) return;
+  for (const SimplexPair& p : verdict.worst())
+    if (all_marked || places.size() < kFew) places.push_back(PosedPair(c, p).place());
 }
 
 void CasePicture::add(std::size_t side, Corners corners, Mark mark) {
@@ -177,6 +180,7 @@ render::Rgba body_colour(std::size_t side) {
 
 /// Marks smaller than this share of the picture get a dot.
 constexpr double kDot = 0.03;
+constexpr float kMark = 4;  ///< radius of dots, and width of lines at places of pairs
 
 /// Returns a draw list: bodies translucent, marks in their colours. Geometry outside [-reach, reach]^3 of the
 /// frame is cut off.
@@ -190,13 +194,6 @@ render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame, doub
     line.width = width;
     line.nudge = static_cast<std::int8_t>(nudge);
     list.lines.push_back(std::move(line));
-  };
-  const auto add_dot = [&](const Vector3d& x, render::Rgba colour) {
-    render::DrawPoint dot;
-    dot.x = x;
-    dot.colour = colour;
-    dot.radius = 4;
-    list.points.push_back(dot);
   };
   for (std::size_t side = 0; side < 2; ++side) {
     const render::Rgba edge = render::palette::edge_of(body_colour(side));
@@ -234,16 +231,16 @@ render::DrawList draw_list(const CasePicture& s, const PictureFrame& frame, doub
       add_line(x, s.flat ? colour : render::mix(colour, edge, 0.6), s.flat ? 4.5F : 1.6F, nudge + 2);
       AlignedBox3d box;
       for (const Vector3d& corner : x) box.extend(corner);
-      if (box.diagonal().norm() < kDot) add_dot(box.center(), colour_of(m));
+      if (box.diagonal().norm() < kDot) pictures::add_mark(list, box.center(), colour_of(m), kMark);
     }
     constexpr double kLargest = 1e6;  // that is filled in doubles
     if (s.flat && largest < kLargest) list.fills.push_back(std::move(fill));
   }
   for (const Corners& place : s.places) {
     const Corners x = frame.cut(place, reach);
-    if (x.size() > 1) add_line(x, colour_of(worst), 4, 12);
     if (x.size() < 3)
-      for (const Vector3d& end : x) add_dot(end, colour_of(worst));
+      for (const Vector3d& end : x) pictures::add_mark(list, end, colour_of(worst), kMark);
+    if (x.size() > 1) pictures::outline(list, x, colour_of(worst), kMark);
   }
   return list;
 }
@@ -360,6 +357,10 @@ render::Overlay overlay_of(const CasePicture& s, const Verdict& verdict, const W
   add(Mark::found, verdict.found, "found", "found: expected and returned");
   add(Mark::missed, verdict.missed, "missed", "missed: expected, not returned");
   add(Mark::extra, verdict.extra, "extra", "extra: returned, not expected");
+  if (!s.places.empty() && verdict.mark() != Mark::found)
+    o.key.push_back(
+        {Item::line, colour_of(verdict.mark()),
+         verdict.mark() == Mark::missed ? "where missed pairs meet" : "where extra pairs are closest"});
   return o;
 }
 

@@ -12,6 +12,17 @@
 #include <lrbscope/render/scene.hpp>
 
 namespace lrb::figure {
+bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
+  const auto turn = [](const Vector2d& p, const Vector2d& q, const Vector2d& r) {
+    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
+  };
+  const auto around = [](const Vector2d& p, const Vector2d& q) {
+    return AlignedBox2d(p.cwiseMin(q), p.cwiseMax(q));
+  };
+  return turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0 &&
+         around(a, b).intersects(around(c, d));
+}
+
 namespace {
 
 using Eigen::AlignedBox2d;
@@ -56,18 +67,6 @@ bool read_target(std::string_view kind, std::string_view number, Target& out) {
 
 double length(const AlignedBox2d& box) {
   return box.sizes().norm();
-}
-
-/// Returns true if two segments intersect, also at their ends.
-bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
-  const auto turn = [](const Vector2d& p, const Vector2d& q, const Vector2d& r) {
-    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
-  };
-  const auto around = [](const Vector2d& p, const Vector2d& q) {
-    return AlignedBox2d(p.cwiseMin(q), p.cwiseMax(q));
-  };
-  return turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0 &&
-         around(a, b).intersects(around(c, d));
 }
 
 /// Returns true if a segment crosses a diagonal of a box.

@@ -46,6 +46,10 @@ Callout parse_callout(const std::string& text);
 /// Reads "PANEL:face:N[:MAGNIFICATION]", or "region", or "contact" without N. Throws InputError.
 Inset parse_inset(const std::string& text);
 
+/// Returns true if two segments intersect, also at their ends.
+bool cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+           const Eigen::Vector2d& d);
+
 /// Throws InputError with the prefix `option` if the bodies have no such face or region.
 void check_target(const std::string& option, const Target& target, std::span<const LrbRep* const> reps);
 

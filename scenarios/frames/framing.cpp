@@ -281,10 +281,15 @@ std::vector<pictures::FrameSpec::View> whole_and_contact(const std::vector<pictu
 }
 
 void widen_close_ups(const RecordedRun& recorded, std::vector<pictures::Look::View>& views) {
+  const bool any = std::any_of(recorded.reps.begin(), recorded.reps.end(),
+                               [](const LrbRep* rep) { return rep->region_count() > 0; }) &&
+                   std::any_of(views.begin(), views.end(), [](const auto& view) { return view.wrapper; });
   for (pictures::Look::View& view : views) {
+    for (const char* what : {" with wrappers", " without wrappers"})
+      if (!any && view.title.ends_with(what)) view.title.resize(view.title.rfind(" with"));
     if (view.camera != pictures::Look::Camera::contact || !close_up_is_whole(recorded, view)) continue;
     view.camera = pictures::Look::Camera::scene;
-    if (!view.wrapper) view.title = "Without wrappers";
+    if (!view.wrapper) view.title = any ? "Without wrappers" : "Overview";
   }
 }
 

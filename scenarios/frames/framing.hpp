@@ -36,7 +36,7 @@ std::vector<pictures::FrameSpec::View> whole_and_contact(
     const std::vector<pictures::FrameSpec::View>& as = {});
 
 /// Shows both bodies completely in close-ups of the contacts that would magnify little and only cut off
-/// parts.
+/// parts. If no wrapper is drawn, titles do not name it.
 void widen_close_ups(const RecordedRun& recorded, std::vector<pictures::Look::View>& views);
 
 }  // namespace lrb::frames

@@ -210,15 +210,14 @@ std::string_view volume_name(capture::VolumeKind kind) {
   return "?";
 }
 
-std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const TreeFigures& figures) {
+/// `largest`: of the nodes' EPO.
+std::string icicle_svg(const capture::Tree& tree, const TreeIndex& index, const TreeFigures& figures,
+                       double largest) {
   using namespace render::svg_text;
   constexpr double kWidth = 1200, kMargin = 8, kRow = 18, kText = 11, kRule = 0.7, kRuleShare = 0.2;
   constexpr double kRoomForText = 40, kNarrowest = 1;  // pixels
   constexpr double kDark = 0.588;  // share of the colour scale from which white is better legible than black
   constexpr std::uint32_t kMaxDepths = 40;
-  double largest = 0;
-  if (figures.epo)
-    for (const double epo : figures.epo->by_node) largest = std::max(largest, epo);
   // Parents come before children: each node stores its left end and the left end of its next child.
   std::vector<double> left(tree.size(), kMargin);
   const double unit = (kWidth - 2 * kMargin) / std::max(1U, index.triangles_below[0]);
@@ -274,9 +273,11 @@ void write_tree_page(const report::Folder& folder, const capture::Tree& tree, co
     doc.tree_view(view_json(tree, mesh, index, f, view));
   else
     doc.purpose("No view: it is limited to " + group_digits(kMaxFaces) + " triangles.");
+  const double largest = f.epo ? std::ranges::max(f.epo->by_node) : 0;
   doc.picture(
-      "nodes.svg", icicle_svg(tree, index, f), "All nodes",
-      "By depth, the root on top. Width: triangles below the node. Colour: its EPO, from pale (none) to dark (the largest).",
+      "nodes.svg", icicle_svg(tree, index, f, largest), "All nodes",
+      "By depth, the root on top. Width: triangles below the node. Colour: its EPO, from pale (0) to dark (" +
+          render::short_number(largest) + ", the largest).",
       true);
   doc.key_figures();
   if (faults > 0) {

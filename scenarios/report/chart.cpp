@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "render/canvas.hpp"
 #include "render/page_palette.hpp"
 #include "scenarios/io/files.hpp"
 #include <lrbscope/core/strings.hpp>
@@ -36,7 +37,8 @@ std::string terminal(const Gnuplot& chart, const std::string& ending) {
     return "svg noenhanced" + size(kPointsPerInch) + font + " linewidth 0.75 background '#ffffff'";
   if (ending == ".pdf")
     return "pdfcairo noenhanced size " + io::number_text(chart.width / kInch) + "," +
-           io::number_text(chart.height / kInch) + font + " linewidth 0.75";
+           io::number_text(chart.height / kInch) + " fontscale 0.75 pointscale 0.7" + font +
+           " linewidth 0.75";
   if (ending == ".png")  // its fonts and lines are made for 96 dpi
     return "pngcairo noenhanced" + size(kDpi) + " fontscale " + io::number_text(kDpi / kPngDpi) + font +
            " linewidth " + io::number_text(kDpi / kPngDpi) + " pointscale " + io::number_text(kDpi / kPngDpi);
@@ -109,14 +111,14 @@ using io::number_text;
 using nlohmann::json;
 
 struct Shape {
-  const char* name;  ///< Chart.js's
+  const char* name;  ///< Chart.js's, with "Open" for an outline
   int point;         ///< gnuplot's number
 };
 
 /// Shapes of series without one of their own, cycled through the first seven.
-constexpr Shape kShapes[] = {{"circle", 7},   {"rect", 5},  {"triangle", 9},
-                             {"rectRot", 13}, {"star", 3},  {"rectRounded", 4},
-                             {"crossRot", 2}, {"cross", 1}, {"none", 0}};
+constexpr Shape kShapes[] = {{"circle", 7},       {"rect", 5},         {"triangle", 9}, {"rectRot", 13},
+                             {"star", 3},         {"rectOpen", 4},     {"crossRot", 2}, {"cross", 1},
+                             {"triangleOpen", 8}, {"rectRotOpen", 12}, {"none", 0}};
 
 json axis_json(const Axis& axis) {
   json ticks = json::array();
@@ -152,7 +154,7 @@ std::string look(const SeriesStyle& style, std::size_t i) {
   const Shape* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
                                     [&](const Shape& s) { return s.name == style.shape; });
   const int point = (shape == std::end(kShapes) ? kShapes[i % colours] : *shape).point;
-  return colour_of(style, i) + " pt " + std::to_string(point) + " ps 0.5 dt " +
+  return colour_of(style, i) + " pt " + std::to_string(point) + " ps 0.55 dt " +
          (style.line == Line::dashed ? "2" : std::to_string(1 + i / colours)) + " lw 1.2";
 }
 
@@ -174,24 +176,34 @@ std::string plot(Gnuplot& chart, const Series& s, std::size_t i, const std::stri
   const std::string style = look(s.style, i), data = "$" + name + " using ";
   const std::string title = s.label.empty() ? " notitle" : " title " + gnuplot_text(s.label);
   std::string out;
-  if (!s.low.empty()) out += data + "1:2:3:4 with yerrorbars" + style + " notitle, ";
+  if (!s.low.empty())
+    out += data + "1:3:(0):($4-$3) with vectors nohead" + colour_of(s.style, i) + " lw 1.2 notitle, ";
   if (!s.from.empty())
     out += data + "3:2:($1-$3):(0) with vectors nohead" + colour_of(s.style, i) + " dt 3 lw 1.2 notitle, ";
   return out + data + "1:2 with " + form(s) + style + title;
 }
 
-std::string axis_commands(const std::string& name, const Axis& axis, bool labelled) {
+constexpr double kPoint = 25.4 / 72;  // millimetres
+
+/// `labelled`, `ticked`: with its label, with those of the ticks.
+std::string axis_commands(const std::string& name, const Axis& axis, bool labelled, bool ticked) {
   std::string out =
       (axis.log ? "set logscale " : "unset logscale ") + name + "\nset " + name + "range " +
       (axis.max > axis.min ? "[" + number_text(axis.min) + ":" + number_text(axis.max) + "]" : "[*:*]") +
-      "\nset " + name + "label " + gnuplot_text(labelled ? axis.label : "") + "\nset " + name + "tics ";
+      "\nset format " + name + (ticked ? " '%g'" : " ''") + "\nset " + name + "label " +
+      gnuplot_text(labelled ? axis.label : "") + "\nset " + name + "tics ";
   if (axis.ticks.empty()) return out + "autofreq\n";
   for (std::size_t i = 0; i < axis.ticks.size(); ++i) {
     std::string label;
-    for (const char c : axis.ticks[i].label) label += c == '%' ? std::string("%%") : std::string(1, c);
+    for (const char c : ticked ? axis.ticks[i].label : "")
+      label += c == '%' ? std::string("%%") : std::string(1, c);
     out += (i == 0 ? "(" : ", ") + gnuplot_text(label) + " " + number_text(axis.ticks[i].at);
   }
-  return out + ")\n";
+  out += ")\n";
+  if (axis.log && axis.ticks.size() > 1 && axis.ticks[0].label == "0")  // the axis is broken behind 0
+    out += "set label 1 '//' at first " + number_text(std::sqrt(axis.ticks[0].at * axis.ticks[1].at)) +
+           ", graph 0 center boxed front\n";
+  return out;
 }
 
 /// Dimensions of the whole figure, in millimetres from the upper left corner.
@@ -225,17 +237,17 @@ std::vector<std::pair<const Series*, std::size_t>> key_of(std::span<const Chart>
 std::string key_commands(Gnuplot& chart, const std::vector<std::pair<const Series*, std::size_t>>& key,
                          int columns, int lines) {
   std::string out =
-      "unset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nunset grid\nunset logscale\n"
+      "unset label\nunset border\nunset tics\nunset title\nunset xlabel\nunset ylabel\nunset grid\nunset logscale\n"
       "set xrange [0:" +
       std::to_string(columns) + "]\nset yrange [0:" + std::to_string(lines) + "]\nplot ";
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < key.size(); ++i) {
     const double x = static_cast<int>(i) / lines, y = lines - 0.5 - static_cast<int>(i) % lines;
     const bool points = key[i].first->style.line == Line::none;
-    const Series sample{"", points ? std::vector{x + 0.05} : std::vector{x + 0.02, x + 0.08},
+    const Series sample{"", points ? std::vector{x + 0.055} : std::vector{x + 0.02, x + 0.09},
                         std::vector(points ? 1 : 2, y), key[i].first->style};
     out += plot(chart, sample, key[i].second, "key" + std::to_string(i)) + ", ";
-    labels.push_back(number_text(x + 0.1) + " " + number_text(y) + " " +
+    labels.push_back(number_text(x + 0.13) + " " + number_text(y) + " " +
                      gnuplot_data_text(key[i].first->label));
   }
   chart.add_data("labels", labels);
@@ -268,92 +280,148 @@ std::string chart_json(const Chart& chart) {
   const json out = {{"x", axis_json(chart.x)},
                     {"y", axis_json(chart.y)},
                     {"cursor", kCursors[static_cast<std::size_t>(chart.cursor)]},
+                    {"has_key", chart.has_key},
                     {"series", std::move(series)}};
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 namespace {
 
-/// Widths and heights around a panel, in millimetres.
+constexpr double kLeastPanel = 20, kNarrow = 31, kHighest = 230;  // millimetres
+const PrintLayout kCommon{1, 0, 0, 7, ""};                        ///< of panels with common axes and one key
+
+/// Widths and heights around a panel, in millimetres. `is_common`: panels have one key and the same axes.
 struct PanelMargins {
-  double line, left, right, top, bottom;
+  bool is_common;
+  double line, left, right, bottom, column_gap;
 };
 
-PanelMargins margins_of(double font, std::size_t panels) {
-  constexpr double kPoint = 25.4 / 72;  // millimetres
-  const double line = 1.3 * kPoint * font;
-  return {line, 5.5 * line, line, panels > 1 ? 2 * line : line, 3.5 * line};
+PanelMargins margins_of(const PrintLayout& layout) {
+  const bool is_common = layout.key.empty();
+  const double line = 1.3 * kPoint * layout.font, left = (is_common ? 4.7 : 5.5) * line;
+  return {is_common, line, left, line, (is_common ? 3 : 3.5) * line, is_common ? line : left + line};
 }
 
-}  // namespace
+/// Heights of a figure, in millimetres.
+struct Heights {
+  double top = 0, row = 0, panels = 0, key = 0;
+  int key_lines = 0;
+};
 
-PrintLayout layout_for(double width, std::span<const Chart> panels) {
-  constexpr double kLeastPanel = 30, kLetter = 0.6, kSample = 8;  // of the key: letters per line, millimetres
-  PrintLayout layout;
-  const PanelMargins m = margins_of(layout.font, panels.size());
-  const double around = m.left + m.right;
-  if (width < around + kLeastPanel)
-    throw InputError("expected a width of at least " + io::number_text(std::ceil(around + kLeastPanel)) +
-                     " mm for a chart, found " + io::number_text(std::round(width * 10) / 10) + " mm");
-  layout.columns = std::clamp(static_cast<int>(width / (around + kLeastPanel)), 1,
-                              std::max(1, static_cast<int>(panels.size())));
-  layout.panel_width = width / layout.columns - around;
-  layout.panel_height = std::min(layout.panel_width, 0.6 * layout.panel_width + 12);
-  std::size_t longest = 1;
-  for (const auto& entry : key_of(panels)) longest = std::max(longest, entry.first->label.size());
-  layout.key = "";
-  layout.key_columns =
-      std::max(1, static_cast<int>((width - 2 * m.line) /
-                                   (kSample + kLetter * m.line / 1.3 * static_cast<double>(longest))));
-  return layout;
-}
-
-Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout) {
-  const auto [line, left, right, top, bottom] = margins_of(layout.font, panels.size());
-  const int count = static_cast<int>(panels.size()), columns = std::min(count, layout.columns);
-  const int rows = (count + columns - 1) / columns;
-  const auto key = layout.key.empty() ? key_of(panels) : key_of({});
-  const int lines = (static_cast<int>(key.size()) + layout.key_columns - 1) / layout.key_columns;
+Heights heights_of(std::span<const Chart> panels, const PrintLayout& layout) {
+  const PanelMargins m = margins_of(layout);
+  const auto columns = static_cast<std::size_t>(layout.columns),
+             key = m.is_common ? key_of(panels).size() : 0;
+  const auto rows = static_cast<double>((panels.size() + columns - 1) / columns);
   // A label of all panels is only below the last ones: the rows above need less space.
   const bool has_common_label = std::all_of(panels.begin(), panels.end(), [&](const Chart& panel) {
     return panel.x.label == panels.front().x.label;
   });
-  const double gap = has_common_label ? 2 * line : bottom;
-  const double column_width = left + layout.panel_width + right, row_height = top + layout.panel_height + gap,
-               panels_height = rows * row_height + bottom - gap;
-  const Sheet sheet{columns * column_width, panels_height + (lines > 0 ? 1.2 * line * lines + line : 0)};
+  const double gap = m.is_common ? 0.5 * m.line : has_common_label ? 2 * m.line : m.bottom;
+  Heights out;
+  out.top = m.line * (panels.size() < 2 ? 1 : m.is_common ? 3 : 2);
+  out.row = out.top + layout.panel_height + gap;
+  out.panels = rows * out.row + m.bottom - gap;
+  out.key_lines =
+      static_cast<int>(key + static_cast<std::size_t>(layout.key_columns) - 1) / layout.key_columns;
+  if (out.key_lines > 0) out.key = (out.key_lines + 1) * m.line;
+  return out;
+}
+
+bool is_empty(const Chart& panel) {
+  return std::all_of(panel.series.begin(), panel.series.end(), [](const Series& s) { return s.x.empty(); });
+}
+
+}  // namespace
+
+std::string power_label(int exponent) {
+  constexpr const char* kDigits[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                     "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  if (exponent >= -2 && exponent <= 3) return number_text(std::pow(10, exponent));
+  std::string out = exponent < 0 ? "10\u207b" : "10";
+  for (const char digit : std::to_string(std::abs(exponent))) out += kDigits[digit - '0'];
+  return out;
+}
+
+int columns_within(double width) {
+  const PanelMargins m = margins_of(kCommon);
+  const double least = std::ceil(m.left + kLeastPanel + m.right);
+  if (width < least)
+    throw InputError("expected a width of at least " + number_text(least) + " mm for a chart, found " +
+                     number_text(std::round(width * 10) / 10) + " mm");
+  return static_cast<int>((width - m.left - m.right + m.column_gap) / (kLeastPanel + m.column_gap));
+}
+
+PrintLayout layout_for(double width, int columns, std::span<const Chart> panels) {
+  constexpr double kSample = 6, kLowest = 12;  // of the key, of panels: millimetres
+  PrintLayout layout = kCommon;
+  layout.columns = columns;
+  const PanelMargins m = margins_of(layout);
+  layout.panel_width = (width - m.left - m.right + m.column_gap) / columns - m.column_gap;
+  double longest = 0;
+  for (const auto& entry : key_of(panels))
+    longest = std::max(longest,
+                       kPoint * render::text_width(entry.first->label, layout.font * render::kHeightOfFont));
+  layout.key_columns = std::max(1, static_cast<int>((width - m.line) / (kSample + longest)));
+  const Heights around = heights_of(panels, layout);
+  const double rows = std::ceil(static_cast<double>(panels.size()) / columns),
+               room = (kHighest - around.panels - around.key) / rows;
+  layout.panel_height =
+      std::min({layout.panel_width, 0.6 * layout.panel_width + 12, std::max(kLowest, room)});
+  return layout;
+}
+
+Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& given) {
+  PrintLayout layout = given;
+  const int count = static_cast<int>(panels.size());
+  layout.columns = std::max(1, std::min(count, layout.columns));
+  const int columns = layout.columns;
+  const PanelMargins m = margins_of(layout);
+  const Heights high = heights_of(panels, layout);
+  const double step = layout.panel_width + m.column_gap;
+  const Sheet sheet{m.left + m.right + columns * step - m.column_gap, high.panels + high.key};
   Gnuplot out{"", sheet.width, sheet.height, layout.font};
   std::string commands;
-  const auto is_empty = [](const Chart& panel) {
-    return std::all_of(panel.series.begin(), panel.series.end(), [](const Series& s) { return s.x.empty(); });
+  const auto differs = [&](int p, int other, Axis Chart::*axis) {
+    const auto at = [&](int i) -> const Chart& { return panels[static_cast<std::size_t>(i)]; };
+    return is_empty(at(other)) || (at(other).*axis).label != (at(p).*axis).label;
   };
   for (int p = 0; p < count; ++p) {
     const Chart& panel = panels[static_cast<std::size_t>(p)];
     if (is_empty(panel)) continue;
-    const auto at = [&](int other) -> const Chart& { return panels[static_cast<std::size_t>(other)]; };
     const int column = p % columns, row = p / columns;
-    const double x = column * column_width + left, y = row * row_height + top;
-    commands +=
-        sheet.margins(x, x + layout.panel_width, y, y + layout.panel_height) + "set title " +
-        gnuplot_text(count > 1 ? panel.title : "") + " offset 0,-0.6\n" +
-        axis_commands(
-            "x", panel.x,
-            p + columns >= count || is_empty(at(p + columns)) || at(p + columns).x.label != panel.x.label) +
-        axis_commands("y", panel.y, column == 0 || is_empty(at(p - 1)) || at(p - 1).y.label != panel.y.label);
+    const double x = column * step + m.left, y = row * high.row + high.top;
+    const bool is_lowest = p + columns >= count || differs(p, p + columns, &Chart::x),
+               is_left = column == 0 || differs(p, p - 1, &Chart::y);
+    const bool is_first = commands.empty();
+    std::string title = gnuplot_text(count > 1 ? panel.title : "");
+    if (const std::size_t comma = title.find(", "); m.is_common && comma != std::string::npos)
+      title.replace(comma, 2, "'.\"\\n\".'");
+    Axis x_axis = panel.x;
+    if (m.is_common && layout.panel_width < kNarrow)  // every second label, or they would touch
+      for (std::size_t t = x_axis.ticks.size(); t > 1; t -= 2) x_axis.ticks[t - 2].label = "";
+    commands += sheet.margins(x, x + layout.panel_width, y, y + layout.panel_height) +
+                "unset label\nset title " + title + " offset 0,-0.6\n" +
+                axis_commands("x", x_axis, is_lowest && !m.is_common, is_lowest || !m.is_common) +
+                axis_commands("y", panel.y, is_left, is_left || !m.is_common);
     std::string plots;
     for (std::size_t i = 0; i < panel.series.size(); ++i)
       if (!panel.series[i].x.empty())
         plots += (plots.empty() ? "plot " : ", ") +
                  plot(out, panel.series[i], i, "p" + std::to_string(p) + "s" + std::to_string(i));
+    if (m.is_common && is_first)  // the label of all panels
+      commands += "set label 2 " + gnuplot_text(panel.x.label) + " at screen " +
+                  number_text((m.left + 0.5 * (sheet.width - m.left - m.right)) / sheet.width) + ", screen " +
+                  number_text((high.key + 0.6 * m.line) / sheet.height) + " center\n";
     commands += plots + "\n";
   }
-  if (lines > 0)
-    commands +=
-        sheet.margins(line, sheet.width - line, panels_height + 0.5 * line, sheet.height - 0.5 * line) +
-        key_commands(out, key, layout.key_columns, lines);
+  if (high.key_lines > 0)
+    commands += sheet.margins(0.5 * m.line, sheet.width - 0.5 * m.line, high.panels + 0.5 * m.line,
+                              sheet.height - 0.5 * m.line) +
+                key_commands(out, key_of(panels), layout.key_columns, high.key_lines);
   out.script +=
-      "set multiplot\nset border 3 lw 0.6 lc rgb '#8a8f95'\nset tics nomirror scale 0.5\nset format '%g'\n"
-      "set grid lw 0.4 lc rgb '#dddddd' dt 1\n" +
+      "set multiplot\nset border 3 lw 0.6 lc rgb '#6b7075'\nset tics nomirror scale 0.5\n"
+      "set grid lw 0.4 lc rgb '#dddddd' dt 1\nset style textbox opaque noborder margins 0.2,0.1\n" +
       (layout.key.empty() ? "unset key" : "set key " + layout.key + " reverse Left samplen 1.5") + "\n" +
       commands + "unset multiplot\n";
   return out;

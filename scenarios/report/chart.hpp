@@ -81,6 +81,7 @@ struct Chart {
   std::vector<Series> series = {};
   std::string note = {};  ///< how to read the chart, in a sentence
   Cursor cursor = Cursor::none;
+  bool has_key = true;  ///< on a page; false: that of an earlier chart is for this one as well
 };
 
 /// Returns the palette's colour for the i-th series of a chart.
@@ -111,12 +112,19 @@ struct PrintLayout {
   int key_columns = 2;            ///< of the common key
 };
 
-/// Returns a layout that is `width` millimetres wide: as many columns as leave room for readable panels, and
-/// a common key. Throws InputError if not even one fits.
-PrintLayout layout_for(double width, std::span<const Chart> panels);
+/// Returns how many readable panels with common axes stand side by side at a width in millimetres. Throws
+/// InputError if not even one does.
+int columns_within(double width);
+/// Returns a layout of panels with common axes that is `width` millimetres wide and at most a page high, with
+/// a common key.
+PrintLayout layout_for(double width, int columns, std::span<const Chart> panels);
 
-/// Lays out panels in rows. Axis labels are at the left and lower ends of rows and columns, and where a label
-/// differs from the neighbour's.
+/// Returns the label of a tick at a power of ten: 0.1, 100, 10\u2075.
+std::string power_label(int exponent);
+
+/// Lays out panels in rows. Panels with one key below them have the same axes, whose ticks have labels at the
+/// left and lower ends of rows and columns only; of others only the axes' labels are left out, where they do
+/// not differ from the neighbour's.
 Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& layout = {});
 
 }  // namespace lrb::report

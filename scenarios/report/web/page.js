@@ -84,7 +84,13 @@ const marksPlugin = {
         line(set.borderColor, [], px, y.getPixelForValue(p.low), px, y.getPixelForValue(p.high));
       if (p.from !== undefined) line(set.borderColor, [2, 3], x.getPixelForValue(p.from), py, px, py);
     }
-    const at = chart.config.options.cursorAt, px = x.getPixelForValue(at);
+    const at = chart.config.options.cursorAt, px = x.getPixelForValue(at), [zero, next] = x.ticks;
+    if (x.type === "logarithmic" && zero?.label === "0" && next) { // the axis is broken behind 0
+      const gap = (x.getPixelForValue(zero.value) + x.getPixelForValue(next.value)) / 2;
+      c.fillStyle = style("--card");
+      c.fillRect(gap - 2, bottom - 5, 5, 10);
+      for (const side of [-3, 2]) line(style("--soft"), [], gap + side, bottom + 5, gap + side + 2, bottom - 5);
+    }
     for (const about of chart.config.options.aboutAt || []) { // below the axis' line
       const ax = x.getPixelForValue(about);
       if (ax < left - 1 || ax > right + 1) continue;
@@ -160,7 +166,7 @@ function axis({ label, log, min, max, ticks }, isWhole = true) {
     ticks: {
       color: style("--soft"), maxRotation: 0, precision: log || !isWhole ? undefined : 0,
       ...(given.size
-        ? { callback: (value) => given.get(value)?.replace(/^1e(-?\d+)$/, (_, n) => tenTo(n)) }
+        ? { callback: (value) => given.get(value) }
         : log ? { callback(value) { return logLabel(value, this); } } : {}),
     },
   };
@@ -181,7 +187,7 @@ function seen(colour) {
   }
 }
 
-const hasLegend = (spec) => spec.series.filter((s) => s.label).length > 1;
+const hasLegend = (spec) => spec.has_key && spec.series.filter((s) => s.label).length > 1;
 
 /** Returns the height of a chart's legend at this width, in pixels, as Chart.js lays it out. */
 function legendHeight(spec, canvas, width) {
@@ -216,12 +222,13 @@ function makeChart(spec, canvas) {
   const datasets = spec.series.map((s, i) => ({
     ...(s.line === "bars"
       ? { type: "bar", stack: "bars", grouped: false, barPercentage: 1, categoryPercentage: 0.9 } : {}),
-    label: s.label, data: s.data, borderColor: colours[i], backgroundColor: colours[i],
+    label: s.label, data: s.data, borderColor: colours[i],
+    backgroundColor: s.shape.endsWith("Open") ? style("--card") : colours[i],
     borderWidth: s.line === "bars" ? 0 : 1.8,
     stepped: s.line === "steps" ? "before" : false, showLine: s.line !== "none",
     borderDash: s.line === "dashed" ? [5, 4] : [],
     pointRadius: radius(s), pointHitRadius: radius(s) || !scatter ? 8 : 0, pointStyle: s.shape === "none"
-        ? "line" : s.shape || "circle", clip: 12,
+        ? "line" : s.shape.replace("Open", "") || "circle", clip: 12,
   }));
   const ends = spec.series.flatMap((s) => s.data.flatMap((p) => p.high ?? [])), // of error bars
     whole = spec.series.every((s) => s.data.every((p) => Number.isInteger(p.y)));
