@@ -533,8 +533,7 @@ std::string Document::html() const {
   if (of_run_) {
     head = numbers + (summary_ + purpose_ == ""
                           ? ""
-                          : fill("<p class=\"lead\" title=\"{} {}\"><b>Whole run</b> {} {}</p>\n",
-                                 {summary_, purpose_, summary_, purpose_}));
+                          : fill("<p class=\"lead\"><b>Whole run</b> {} {}</p>\n", {summary_, purpose_}));
     numbers = "";
     source = tab_html("Run", source);
   } else if (!summary_.empty()) {

@@ -42,8 +42,6 @@ void add_engine_answer(report::Document& doc, const frames::RecordedRun& p) {
   else
     doc.verdict("wrong in " + group_digits(t.wrong_queries) + " of " + counted(t.queries, "query", "queries"),
                 false);
-  doc.number(
-      {"Queries", group_digits(t.queries), group_digits(t.intersecting) + " intersecting, by the engine"});
   // Errors come first, and right verdicts are no comfort beside them.
   if (t.checked && t.has_pairs)
     doc.number({"Missed pairs", group_digits(t.missed),

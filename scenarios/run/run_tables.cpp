@@ -38,7 +38,6 @@ constexpr std::pair<std::string_view, std::string_view> kMeaningOfNames[] = {
     {"Shared volume", "volume common to both bodies; proven bounds"},
     {"Passes", "passes of the builder that made regions"},
     {"Caps", "covers of a patch with fewer faces, which the builder accepted"},
-    {"Queries", "queries in this recording"},
     {"Wrong verdicts", "queries whose yes or no contradicts the exact answer"},
     {"Missed pairs", "pairs of triangles that intersect and that the engine did not find"},
     {"False pairs", "pairs of triangles that the engine found and that are disjoint"},

@@ -287,8 +287,6 @@ function startScene() {
   tabs.listeners.push(() => table.follow());
   explainCells();
   if (view) printView(view);
-  const lead = document.querySelector(".lead"); // it may be cut at the end
-  if (lead) lead.title = lead.textContent;
   for (const row of document.querySelectorAll(".tools, .keys, header .numbers")) showMore(row);
   showMore(document.querySelector(".panel"));
   selection.listeners.push((what) => {
