@@ -343,7 +343,7 @@ export class ContactCurves extends WorldLines {
 const MARKED = [
   ["tested", "underTest", "pair under test"], ["refined", "refining", "region being refined"],
   ["attempt", "underTest", "patch of this attempt"], ["picked", "selected", "selected"],
-  ["resolved", "refining", "faces on the way in"],
+  ["resolved", "refining", "faces on the way in"], ["way", "selected", "boxes of nodes in the panel"],
   ["wrong", "wrong", "pairs that the engine got wrong"],
 ];
 
