@@ -273,7 +273,6 @@ struct Rasterizer::State {
   }
 
   void resize(int w, int h) {
-    check_size(w, h);
     // Frames of a series share one target.
     if (w == width && h == height) return;
     scene = scene_target(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, w, h);
@@ -350,37 +349,31 @@ struct Rasterizer::State {
   /// The faces come in painting order (back_to_front()), so that one pass blends all layers.
   void draw_translucent(const ScreenMesh& mesh) {
     const auto layer = static_cast<std::size_t>(Layer::translucent);
-    if (mesh.face_layers[layer].count > 0) {
-      blend_over();
-      gl.Enable(GL_DEPTH_TEST);
-      gl.DepthFunc(GL_LESS);
-      // Test against opaque faces, but do not write: translucent faces must not occlude each other.
-      gl.DepthMask(GL_FALSE);
-      gl.UseProgram(face);
-      draw(faces, mesh.face_layers[layer]);
-      gl.DepthMask(GL_TRUE);
-    }
+    blend_over();
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_LESS);
+    // Test against opaque faces, but do not write: translucent faces must not occlude each other.
+    gl.DepthMask(GL_FALSE);
+    gl.UseProgram(face);
+    draw(faces, mesh.face_layers[layer]);
+    gl.DepthMask(GL_TRUE);
     draw_lines(mesh.line_layers[layer], GL_LEQUAL, false, false);
   }
 
   /// Hidden parts are drawn first, ghosted, then visible ones.
   void draw_on_top(const ScreenMesh& mesh) {
     const auto layer = static_cast<std::size_t>(Layer::on_top);
+    blend_over();
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthMask(GL_FALSE);
     // The reversed depth test selects the hidden fragments.
     for (const bool hidden : {true, false}) {
-      if (mesh.face_layers[layer].count > 0) {
-        blend_over();
-        gl.Enable(GL_DEPTH_TEST);
-        gl.DepthMask(GL_FALSE);
-        gl.DepthFunc(hidden ? GL_GREATER : GL_LEQUAL);
-        set(ghost, "strength", hidden ? kGhostStrength : kFullStrength);
-        draw(faces, mesh.face_layers[layer]);
-        gl.DepthMask(GL_TRUE);
-      }
+      gl.DepthFunc(hidden ? GL_GREATER : GL_LEQUAL);
+      set(ghost, "strength", hidden ? kGhostStrength : kFullStrength);
+      draw(faces, mesh.face_layers[layer]);
     }
-    for (const bool hidden : {true, false}) {
+    for (const bool hidden : {true, false})
       draw_lines(mesh.line_layers[layer], hidden ? GL_GREATER : GL_LEQUAL, false, hidden);
-    }
   }
 
   Image draw_list(const DrawList& list, const Camera& camera, const RasterOptions& options) {
@@ -422,6 +415,19 @@ struct Rasterizer::State {
                                       scene_target(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, w, h)};
     upload(faces, out.first.faces);
     begin(out.second, w, h);
+    gl.UseProgram(id);
+    gl.DepthFunc(GL_LESS);
+    return out;
+  }
+
+  /// Returns the pixels row by row from the top. OpenGL's rows begin at the bottom.
+  template <class T>
+  std::vector<T> read(GLenum format, GLenum type, int w, int h) {
+    std::vector<T> rows(static_cast<std::size_t>(w) * h), out;
+    gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    gl.ReadPixels(0, 0, w, h, format, type, rows.data());
+    context.check("drawing faces");
+    for (auto end = rows.end(); end != rows.begin(); end -= w) out.insert(out.end(), end - w, end);
     return out;
   }
 
@@ -429,43 +435,22 @@ struct Rasterizer::State {
     const CurrentContext current(context);
     const auto [mesh, target] = begin_faces(list, camera, w, h);
     gl.ClearBufferuiv(GL_COLOR, 0, glm::value_ptr(glm::uvec4(kNoId, 0, 0, 0)));
-    gl.UseProgram(id);
     // Ids are integers: no blending, one sample per pixel.
     draw_fills(mesh, false);
     gl.Enable(GL_DEPTH_TEST);
-    gl.DepthFunc(GL_LESS);
     draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::opaque)]);
     if (translucent) draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::translucent)]);
-    // OpenGL's rows begin at the bottom, those of images at the top.
-    std::vector<std::uint32_t> rows(static_cast<std::size_t>(w) * h);
-    gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
-    gl.ReadPixels(0, 0, w, h, GL_RED_INTEGER, GL_UNSIGNED_INT, rows.data());
-    context.check("drawing ids");
-    IdImage out{w, h, {}};
-    out.ids.reserve(rows.size());
-    for (int y = h - 1; y >= 0; --y) {
-      out.ids.insert(out.ids.end(), rows.begin() + static_cast<std::ptrdiff_t>(y) * w,
-                     rows.begin() + static_cast<std::ptrdiff_t>(y + 1) * w);
-    }
-    return out;
+    return {w, h, read<std::uint32_t>(GL_RED_INTEGER, GL_UNSIGNED_INT, w, h)};
   }
 
   DepthImage draw_depths(const DrawList& list, const Camera& camera, int w, int h) {
     const CurrentContext current(context);
     const auto [mesh, target] = begin_faces(list, camera, w, h);
-    gl.UseProgram(id);
     gl.Enable(GL_DEPTH_TEST);
-    gl.DepthFunc(GL_LESS);
     draw(faces, mesh.face_layers[static_cast<std::size_t>(Layer::opaque)]);
-    std::vector<float> rows(static_cast<std::size_t>(w) * h);
-    gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
-    gl.ReadPixels(0, 0, w, h, GL_DEPTH_COMPONENT, GL_FLOAT, rows.data());
-    context.check("drawing depths");
-    DepthImage out{w, h, {}};
-    // From OpenGL's window depth in [0, 1] to [-1, 1], with the rows flipped.
-    out.depths.reserve(rows.size());
-    for (int y = h - 1; y >= 0; --y)
-      for (int x = 0; x < w; ++x) out.depths.push_back(2 * rows[static_cast<std::size_t>(y) * w + x] - 1);
+    DepthImage out{w, h, read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, w, h)};
+    // From OpenGL's window depth in [0, 1] to [-1, 1].
+    for (float& depth : out.depths) depth = 2 * depth - 1;
     return out;
   }
 };

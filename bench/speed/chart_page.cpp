@@ -568,11 +568,11 @@ report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& se
 
 namespace {
 
-/// Returns the panels that print names, or all with points.
+/// Returns the panels of these names, or all rows with points.
 std::vector<report::Chart> printed_panels(Quantity quantity, const std::vector<DataSet>& sets,
                                           const std::vector<Missing>& missing,
                                           const std::vector<report::Chart>& charts,
-                                          const std::vector<std::string>& names, bool in_rows) {
+                                          const std::vector<std::string>& names) {
   const std::span<const PoseClass> classes = classes_of(quantity);
   std::vector<bool> is_known(names.size());
   std::vector<report::Chart> out;
@@ -588,7 +588,7 @@ std::vector<report::Chart> printed_panels(Quantity quantity, const std::vector<D
           is_known[n] = is_named = true;
       const bool is_empty = std::all_of(chart.series.begin(), chart.series.end(),
                                         [](const report::Series& one) { return one.x.empty(); });
-      if (!is_named || (is_empty && !in_rows)) continue;
+      if (!is_named || (is_empty && !names.empty())) continue;
       row.push_back(chart);
       if (is_empty || has_points) continue;
       has_points = true;
@@ -619,7 +619,7 @@ report::Gnuplot accuracy_print(Quantity quantity, const std::vector<DataSet>& se
   const auto classes = static_cast<int>(classes_of(quantity).size());
   const bool is_whole = print.panels.empty();
   const double width = print.width > 0 ? print.width : kPanel * classes;
-  std::vector<report::Chart> panels = printed_panels(quantity, sets, missing, charts, print.panels, is_whole);
+  std::vector<report::Chart> panels = printed_panels(quantity, sets, missing, charts, print.panels);
   const int count = static_cast<int>(panels.size()), rows = count / classes;
   // A row for each pair of bodies, or if that does not fit, for each class of poses; of some panels, or of
   // one pair, as many columns as fit.

@@ -43,9 +43,7 @@ std::vector<EventId> candidates(const frames::RecordedRun& recorded) {
 }
 
 States states(const frames::RecordedRun& recorded) {
-  trace::Cursor cursor = recorded.reps.size() == 1
-                             ? trace::Cursor(*recorded.trace, *recorded.reps[0])
-                             : trace::Cursor(*recorded.trace, *recorded.reps[0], *recorded.reps[1]);
+  trace::Cursor cursor(*recorded.trace, recorded.reps);
   States out{candidates(recorded), {}};
   for (const EventId e : out.events) {
     cursor.seek(e);

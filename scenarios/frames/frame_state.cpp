@@ -10,10 +10,6 @@
 namespace lrb::frames {
 namespace {
 
-trace::Cursor make_cursor(const trace::Trace& trace, const std::vector<const LrbRep*>& reps) {
-  return reps.size() == 1 ? trace::Cursor(trace, *reps[0]) : trace::Cursor(trace, *reps[0], *reps[1]);
-}
-
 /// Returns a mesh's name without folder and extension.
 std::string short_name(const LrbRep& rep) {
   return std::filesystem::path(rep.name()).stem().string();
@@ -26,7 +22,7 @@ FrameState::FrameState(RecordedRun run, const pictures::FrameSpec& spec, bool po
       trace_(*run_.trace),
       spec_(spec),
       point_out_refined_(point_out_refined),
-      cursor_(make_cursor(trace_, run_.reps)),
+      cursor_(trace_, run_.reps),
       passes_(trace::passes_of(trace_)) {}
 
 void FrameState::seek(trace::EventId event) {

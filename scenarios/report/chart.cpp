@@ -290,41 +290,31 @@ namespace {
 constexpr double kLeastPanel = 20, kNarrow = 31, kHighest = 230;  // millimetres
 const PrintLayout kCommon{1, 0, 0, 7, ""};                        ///< of panels with common axes and one key
 
-/// Widths and heights around a panel, in millimetres. `is_common`: panels have one key and the same axes.
-struct PanelMargins {
+/// Dimensions of a figure, in millimetres. `is_common`: panels have one key and the same axes.
+struct Dimensions {
   bool is_common;
-  double line, left, right, bottom, column_gap;
-};
-
-PanelMargins margins_of(const PrintLayout& layout) {
-  const bool is_common = layout.key.empty();
-  const double line = 1.3 * kPoint * layout.font, left = (is_common ? 4.7 : 5.5) * line;
-  return {is_common, line, left, line, (is_common ? 3 : 3.5) * line, is_common ? line : left + line};
-}
-
-/// Heights of a figure, in millimetres.
-struct Heights {
-  double top = 0, row = 0, panels = 0, key = 0;
+  double line, left, right, bottom, column_gap;  ///< around panels
+  double top = 0, row = 0, panels = 0, key = 0;  ///< heights
   int key_lines = 0;
 };
 
-Heights heights_of(std::span<const Chart> panels, const PrintLayout& layout) {
-  const PanelMargins m = margins_of(layout);
-  const auto columns = static_cast<std::size_t>(layout.columns),
-             key = m.is_common ? key_of(panels).size() : 0;
+Dimensions dimensions_of(const PrintLayout& layout, std::span<const Chart> panels) {
+  const bool is_common = layout.key.empty();
+  const double line = 1.3 * kPoint * layout.font, left = (is_common ? 4.7 : 5.5) * line;
+  Dimensions out{is_common, line, left, line, (is_common ? 3 : 3.5) * line, is_common ? line : left + line};
+  const auto columns = static_cast<std::size_t>(layout.columns), key = is_common ? key_of(panels).size() : 0;
   const auto rows = static_cast<double>((panels.size() + columns - 1) / columns);
   // A label of all panels is only below the last ones: the rows above need less space.
   const bool has_common_label = std::all_of(panels.begin(), panels.end(), [&](const Chart& panel) {
     return panel.x.label == panels.front().x.label;
   });
-  const double gap = m.is_common ? 0.5 * m.line : has_common_label ? 2 * m.line : m.bottom;
-  Heights out;
-  out.top = m.line * (panels.size() < 2 ? 1 : m.is_common ? 3 : 2);
+  const double gap = is_common ? 0.5 * line : has_common_label ? 2 * line : out.bottom;
+  out.top = line * (panels.size() < 2 ? 1 : is_common ? 3 : 2);
   out.row = out.top + layout.panel_height + gap;
-  out.panels = rows * out.row + m.bottom - gap;
+  out.panels = rows * out.row + out.bottom - gap;
   out.key_lines =
       static_cast<int>(key + static_cast<std::size_t>(layout.key_columns) - 1) / layout.key_columns;
-  if (out.key_lines > 0) out.key = (out.key_lines + 1) * m.line;
+  if (out.key_lines > 0) out.key = (out.key_lines + 1) * line;
   return out;
 }
 
@@ -344,7 +334,7 @@ std::string power_label(int exponent) {
 }
 
 int columns_within(double width) {
-  const PanelMargins m = margins_of(kCommon);
+  const Dimensions m = dimensions_of(kCommon, {});
   const double least = std::ceil(m.left + kLeastPanel + m.right);
   if (width < least)
     throw InputError("expected a width of at least " + number_text(least) + " mm for a chart, found " +
@@ -356,14 +346,14 @@ PrintLayout layout_for(double width, int columns, std::span<const Chart> panels)
   constexpr double kSample = 6, kLowest = 12;  // of the key, of panels: millimetres
   PrintLayout layout = kCommon;
   layout.columns = columns;
-  const PanelMargins m = margins_of(layout);
+  const Dimensions m = dimensions_of(layout, {});
   layout.panel_width = (width - m.left - m.right + m.column_gap) / columns - m.column_gap;
   double longest = 0;
   for (const auto& entry : key_of(panels))
     longest = std::max(longest,
                        kPoint * render::text_width(entry.first->label, layout.font * render::kHeightOfFont));
   layout.key_columns = std::max(1, static_cast<int>((width - m.line) / (kSample + longest)));
-  const Heights around = heights_of(panels, layout);
+  const Dimensions around = dimensions_of(layout, panels);
   const double rows = std::ceil(static_cast<double>(panels.size()) / columns),
                room = (kHighest - around.panels - around.key) / rows;
   layout.panel_height =
@@ -376,10 +366,9 @@ Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& given) {
   const int count = static_cast<int>(panels.size());
   layout.columns = std::max(1, std::min(count, layout.columns));
   const int columns = layout.columns;
-  const PanelMargins m = margins_of(layout);
-  const Heights high = heights_of(panels, layout);
+  const Dimensions m = dimensions_of(layout, panels);
   const double step = layout.panel_width + m.column_gap;
-  const Sheet sheet{m.left + m.right + columns * step - m.column_gap, high.panels + high.key};
+  const Sheet sheet{m.left + m.right + columns * step - m.column_gap, m.panels + m.key};
   Gnuplot out{"", sheet.width, sheet.height, layout.font};
   std::string commands;
   const auto differs = [&](int p, int other, Axis Chart::*axis) {
@@ -390,7 +379,7 @@ Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& given) {
     const Chart& panel = panels[static_cast<std::size_t>(p)];
     if (is_empty(panel)) continue;
     const int column = p % columns, row = p / columns;
-    const double x = column * step + m.left, y = row * high.row + high.top;
+    const double x = column * step + m.left, y = row * m.row + m.top;
     const bool is_lowest = p + columns >= count || differs(p, p + columns, &Chart::x),
                is_left = column == 0 || differs(p, p - 1, &Chart::y);
     const bool is_first = commands.empty();
@@ -412,13 +401,13 @@ Gnuplot gnuplot(std::span<const Chart> panels, const PrintLayout& given) {
     if (m.is_common && is_first)  // the label of all panels
       commands += "set label 2 " + gnuplot_text(panel.x.label) + " at screen " +
                   number_text((m.left + 0.5 * (sheet.width - m.left - m.right)) / sheet.width) + ", screen " +
-                  number_text((high.key + 0.6 * m.line) / sheet.height) + " center\n";
+                  number_text((m.key + 0.6 * m.line) / sheet.height) + " center\n";
     commands += plots + "\n";
   }
-  if (high.key_lines > 0)
-    commands += sheet.margins(0.5 * m.line, sheet.width - 0.5 * m.line, high.panels + 0.5 * m.line,
+  if (m.key_lines > 0)
+    commands += sheet.margins(0.5 * m.line, sheet.width - 0.5 * m.line, m.panels + 0.5 * m.line,
                               sheet.height - 0.5 * m.line) +
-                key_commands(out, key_of(panels), layout.key_columns, high.key_lines);
+                key_commands(out, key_of(panels), layout.key_columns, m.key_lines);
   out.script +=
       "set multiplot\nset border 3 lw 0.6 lc rgb '#6b7075'\nset tics nomirror scale 0.5\n"
       "set grid lw 0.4 lc rgb '#dddddd' dt 1\nset style textbox opaque noborder margins 0.2,0.1\n" +

@@ -355,14 +355,9 @@ void add_answer(report::Document& doc, const frames::RecordedRun& p, const Repor
 }
 
 void add_charts(report::Document& doc, const frames::RecordedRun& p) {
-  if (p.trace->has_engine_reports()) {
+  if (p.trace->has_engine_reports())
     doc.each(engine_charts(p), &report::Document::chart);
-    add_charts_of(doc, p, trace::chart_over_events(*p.trace), report::Cursor::event, "Wrapper size by event",
-                  "Work and answer by event");
-    doc.each(measure_charts(*p.trace), &report::Document::chart);
-    return;
-  }
-  if (p.trace->steps.size() > 1)
+  else if (p.trace->steps.size() > 1)
     add_charts_of(doc, p, trace::chart_over_steps(*p.trace), report::Cursor::step, "Largest wrappers by step",
                   "Work and answer by step");
   add_charts_of(doc, p, trace::chart_over_events(*p.trace), report::Cursor::event, "Wrapper size by event",

@@ -148,10 +148,9 @@ function ticksWithin(axis) {
 const tenTo = (n) => `10${String(n).replace(/./g, (c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)])}`;
 /** Returns the label of a logarithmic axis: 0.01, 100, 10⁵; on a long axis of powers of ten only */
 function logLabel(value, { min, max }) {
-  const power = Math.round(Math.log10(value));
-  if (Math.abs(Math.log10(value) - power) > 1e-6)
-    return max < 30 * min ? String(Number(value.toPrecision(2))) : "";
-  return power >= -2 && power <= 3 ? String(Number(value.toPrecision(2))) : tenTo(power);
+  const power = Math.round(Math.log10(value)), isPower = Math.abs(Math.log10(value) - power) <= 1e-6;
+  if (isPower ? power < -2 || power > 3 : max >= 30 * min) return isPower ? tenTo(power) : "";
+  return String(Number(value.toPrecision(2)));
 }
 
 function axis({ label, log, min, max, ticks }, isWhole = true) {

@@ -68,6 +68,7 @@ class Cursor {
   /// Throws InputError if the trace is damaged (check_trace) or an LRB-rep is not the recorded one.
   Cursor(const Trace& trace, const LrbRep& a, const LrbRep& b);
   Cursor(const Trace& trace, const LrbRep& a);
+  Cursor(const Trace& trace, std::vector<const LrbRep*> reps);
 
   const Trace& trace() const { return *trace_; }
   bool at_start() const { return position_ == kNull; }
@@ -105,7 +106,6 @@ class Cursor {
   std::vector<RefinedRegion> refined() const;
 
  private:
-  Cursor(const Trace& trace, std::vector<const LrbRep*> reps);
   void apply_to(EventId event);
   void rewind();
 
