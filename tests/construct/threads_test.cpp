@@ -1,17 +1,15 @@
 // On any number of threads the same bytes, and the same report.
 
-#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/float_modes.hpp"
+#include "tests/support/lrb_files.hpp"
 #include <lrbscope/build.hpp>
-#include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/parallel.hpp>
@@ -21,14 +19,6 @@ namespace lrb::test {
 namespace {
 
 using namespace shapes;
-
-std::string bytes_of(const LrbRep& rep) {
-  const auto file = std::filesystem::temp_directory_path() / ("threads_test." + std::to_string(getpid()));
-  save_lrb(rep, file.string());
-  std::string bytes = read_file(file.string());
-  std::filesystem::remove(file);
-  return bytes;
-}
 
 LrbRep build_on(const Mesh& mesh, unsigned threads) {
   BuildOptions options;
@@ -52,10 +42,10 @@ Mesh ball_in_tight_void() {
 void check_threads(const Mesh& mesh) {
   CAPTURE(mesh.name);
   CAPTURE(mesh.face_count());
-  const std::string one = bytes_of(build_on(mesh, 1));
+  const std::string one = lrb_bytes(build_on(mesh, 1));
   for (const unsigned threads : {2u, 5u}) {
     const test::InMode mode(static_cast<int>(threads));
-    CHECK((bytes_of(build_on(mesh, threads)) == one));
+    CHECK((lrb_bytes(build_on(mesh, threads)) == one));
   }
 }
 

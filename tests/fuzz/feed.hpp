@@ -11,8 +11,8 @@ namespace lrb::fuzz {
 
 /// The first byte chooses the extension of the name, the rest are the file.
 bool feed_mesh(std::string_view bytes);
-/// The first byte decides whether the checksum is corrected (its lowest bit) and how the body is used
-/// (the next two), the rest are the file.
+/// The lowest bit of the first byte decides whether the checksum is corrected, without which nearly every
+/// mutation would stop at it; the rest are the file.
 bool feed_lrb(std::string_view bytes);
 /// Four edits of five bytes each say which fields of a good file are damaged; the first byte chooses the
 /// file. Its checksum is corrected, and accepted files go through every reader.
@@ -30,10 +30,6 @@ bool feed_capture(std::string_view bytes);
 /// The first byte chooses the query: two in four a first contact, one a distance, one a clash; with 64 in the
 /// plane; with 128 of a body and itself. The rest choose bodies, poses, motions and tolerances.
 bool feed_motion(std::string_view bytes);
-
-/// Without it the checksum of a .lrb would stop nearly every mutation, and the code behind it would never be
-/// tried.
-void put_checksum_right(std::string& file);
 
 /// Throws std::logic_error unless an InputError's message is one line that begins with `name` and a colon.
 void judge_message(std::string_view message, std::string_view name);

@@ -21,16 +21,11 @@
 
 using namespace lrb;
 using shapes::RandomEngine;
+using test::with_right_checksum;
 
 namespace {
 
-std::string bytes_of(const LrbRep& rep) {
-  const test::Folder directory;
-  const std::string path = directory / "body.lrb";
-  save_lrb(rep, path);
-  CHECK(directory.tree().size() == 1);
-  return test::load_bytes(path);
-}
+constexpr auto& bytes_of = test::lrb_bytes;
 
 /// Returns the error for bytes, or an empty string if they are accepted.
 std::string complaint(const std::string& bytes) {
@@ -39,12 +34,6 @@ std::string complaint(const std::string& bytes) {
 
 bool is_one_line(const std::string& text) {
   return std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; });
-}
-
-std::string with_right_checksum(std::string bytes) {
-  const std::uint64_t value = lrb_checksum(std::string_view(bytes).substr(0, bytes.size() - 8));
-  std::memcpy(bytes.data() + bytes.size() - 8, &value, 8);
-  return bytes;
 }
 
 template <class T>
@@ -129,42 +118,6 @@ TEST_CASE("a file is read in chunks as it is from memory") {
   }
 }
 
-TEST_CASE("lengths beyond the file are rejected before memory is allocated") {
-  const LrbRep rep = shapes::stairs_2d();
-  const std::string whole = bytes_of(rep);
-  constexpr std::size_t kHash = ~std::size_t{0};  // a number, no array
-  std::size_t at = kNameAt;
-  const auto skip = [&](std::size_t size) { at += 8 + size; };
-  const LrbData& d = rep.data();
-  const std::size_t sizes[] = {d.name.size(),
-                               d.vertices.size() * 24,
-                               d.face_offsets.size() * 4,
-                               d.face_vertices.size() * 4,
-                               d.inner_cell.size() * 4,
-                               d.outer_cell.size() * 4,
-                               d.region_layer.size() * 2,
-                               kHash,
-                               rep.tree().nodes().size() * sizeof(TreeNode),
-                               rep.tree().blocks().size() * sizeof(LeafBlock)};
-  for (const std::size_t size : sizes) {
-    if (size == kHash) {
-      at += 8;
-      continue;
-    }
-    for (const std::uint64_t length : {~std::uint64_t{0}, std::uint64_t{1} << 62, std::uint64_t{1} << 61,
-                                       std::uint64_t{1} << 40, std::uint64_t{0}}) {
-      std::uint64_t there;
-      std::memcpy(&there, whole.data() + at, 8);
-      if (length == there) continue;
-      CAPTURE(at);
-      CAPTURE(length);
-      CHECK_FALSE(complaint(with(whole, at, length)).empty());
-    }
-    skip(size);
-  }
-  CHECK(at + sizeof(std::uint32_t) + 8 == whole.size());  // no levels
-}
-
 TEST_CASE("a name with control characters does not break a message into lines") {
   LrbData d = shapes::stairs_2d().data();
   d.name = "two\nlines\x1b[31m";
@@ -199,57 +152,9 @@ TEST_CASE("files of version 2 are read, without levels of detail") {
   old.erase(old.size() - 8 - sizeof(std::uint32_t), sizeof(std::uint32_t));
   const std::uint32_t version = 2;
   std::memcpy(old.data() + kVersionAt, &version, sizeof version);
-  const std::uint64_t sum = lrb_checksum(std::string_view(old).substr(0, old.size() - 8), version);
-  std::memcpy(old.data() + old.size() - 8, &sum, sizeof sum);
-  const LrbRep back = load_lrb(std::string_view(old), "body.lrb");
+  const LrbRep back = load_lrb(std::string_view(with_right_checksum(old)), "body.lrb");
   CHECK(!back.has_levels());
   CHECK(bytes_of(back) == bytes_of(rep));
-}
-
-TEST_CASE("a saved self-intersecting body has no levels of detail and answers as its mesh") {
-  const Mesh rock = shapes::bumpy_sphere(2, 1);
-  const Mesh twice = shapes::several({rock, shapes::translated(rock, {0.3, 0.1, 0.05})});
-  const LrbRep rep = build_lrb(twice);
-  REQUIRE(rep.self_intersecting());
-  REQUIRE(rep.region_count() > 0);
-  CHECK(why_no_levels(rep) == "its surface intersects itself");
-  rep.levels();
-  const LrbRep back =
-      load_lrb(std::string_view(bytes_of(rep)), "body.lrb");  // the file has an empty list of levels
-  CHECK(back.levels().all().empty());
-  CHECK(bytes_of(back) == bytes_of(rep));
-  CHECK(validate(back).valid);
-  CollideRequest request;
-  for (const double tolerance : {0.0, 0.05}) {
-    request.tolerance = tolerance;
-    for (const double x : {0.2, 1.5, 3.0}) {
-      const Pose pose = Pose::translation({x, 0.1, 0});
-      CHECK(collide(back, Pose{}, back, pose, request).pairs == brute_force(rep, Pose{}, rep, pose).pairs);
-    }
-  }
-}
-
-TEST_CASE("levels of detail are saved and loaded unchanged") {
-  for (const Mesh& mesh : {shapes::bumpy_sphere(3, 1), shapes::quad_torus(20, 12), shapes::gear(40)}) {
-    const LrbRep rep = build_lrb(mesh);
-    const std::string without = bytes_of(rep);
-    CHECK(!load_lrb(std::string_view(without), "body.lrb").has_levels());
-    const WrapperLevels& levels = rep.levels();
-    REQUIRE(levels.all().size() > 1);
-    const std::string whole = bytes_of(rep);
-    CHECK(whole.size() > without.size());
-    const LrbRep back = load_lrb(std::string_view(whole), "body.lrb");
-    REQUIRE(back.has_levels());
-    CHECK(bytes_of(back) == whole);
-    CHECK(validate(back).valid);
-    CollideRequest request;
-    request.tolerance = levels.all()[1].bound;
-    const Pose p = Pose::translation({0.3, 0.2, 0});
-    const CollideResult before = collide(rep, Pose{}, rep, p, request),
-                        after = collide(back, Pose{}, back, p, request);
-    CHECK(before.pairs == after.pairs);
-    CHECK(before.counters == after.counters);
-  }
 }
 
 TEST_CASE("stored levels of another body: incomplete wrappers are rejected, wrong deviations are found") {
