@@ -206,19 +206,6 @@ TEST_CASE(
   CHECK(slides.contact > 100);
 }
 
-TEST_CASE("coherent queries of bodies of any size") {
-  for (const double size : {1e-310, 1e-300, 1e-200, 1e-160, 1e-12, 1e9, 1e150, 1e200, 1e300}) {
-    CAPTURE(size);
-    CoherentTally tally;
-    const auto said =
-        compare_along(bare(shapes::scaled(shapes::icosphere(2), size)),
-                      bare(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size)),
-                      line(size * Eigen::Vector3d(2.3, 0.1, 0), {-size, 0, 0}, 0.6, 0.01), tally);
-    CHECK(said.from_cache > 10);
-    CHECK(tally.contact > 10);
-  }
-}
-
 TEST_CASE("coherent queries of bodies that leave the range of doubles") {
   using Eigen::Vector3d;
   const double size = 1e300, step = 4e307;

@@ -12,6 +12,7 @@
 #include "engine/lrb/complex.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/bodies.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include "tests/support/hard_bodies.hpp"
 #include <lrbscope/collide.hpp>
 
@@ -32,23 +33,13 @@ bool near(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double by = 1e-12)
   return (x - y).norm() <= by;
 }
 
-/// Each face with vertices of its own, as STL files and the seams of textures have them.
-Mesh torn(const Mesh& mesh) {
-  Mesh out;
-  out.dim = mesh.dim;
-  for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    std::vector<Eigen::Vector3d> corners;
-    for (const VertexId v : mesh.face(f)) corners.push_back(mesh.vertices[v]);
-    test::add_loose(out, corners);
-  }
-  return out;
-}
-
 }  // namespace
 
 TEST_CASE("coincident vertices are one: contacts across seams are connected") {
   const Mesh ball = shapes::icosphere(2), box = shapes::box({-1, -1, -1}, {1, 1, 1});
-  const auto open = [](const Mesh& mesh) { return LrbRep::without_regions(torn(mesh), false, false); };
+  const auto open = [](const Mesh& mesh) {
+    return LrbRep::without_regions(test::as_soup(mesh), false, false);
+  };
   for (const auto& [x, y, by] : {std::tuple{ball, ball, Eigen::Vector3d(1.3, 0.2, 0.1)},
                                  std::tuple{box, ball, Eigen::Vector3d(0.9, 0.8, 0.7)},
                                  std::tuple{box, box, Eigen::Vector3d(0.5, 0.25, 2)}}) {
@@ -233,14 +224,17 @@ std::set<VertexId> located_vertices(QueryContext& context, Side side, const std:
   return found;
 }
 
-void check_enclosed(int poses) {
+}  // namespace
+
+TEST_CASE("vertices enclosed by a region are those that are located inside, one by one") {
+  constexpr int kPoses = 60;
   const Mesh two_boxes =  // the surface intersects itself
       shapes::several({shapes::box({-1, -1, -1}, {1, 1, 1}), shapes::box({0, 0, 0}, {2, 2, 2})});
   const LrbRep bodies[] = {closed(shapes::icosphere(4)), closed(hard::tiles(6)), closed(hard::crown(20)),
                            closed(shapes::bowl(24, 12, 0.2)), closed(two_boxes)};
   std::mt19937 random(5);
   std::size_t enclosed = 0, searches = 0;
-  for (int i = 0; i < poses; ++i) {
+  for (int i = 0; i < kPoses; ++i) {
     const LrbRep &a = bodies[random() % std::size(bodies)], &b = bodies[random() % std::size(bodies)];
     // Poses on a grid bring vertices and edges onto the other surface.
     const auto step = [&] { return 0.25 * (static_cast<double>(random() % 9) - 4); };
@@ -275,17 +269,6 @@ void check_enclosed(int poses) {
       }
     }
   }
-  CHECK(enclosed > 2 * static_cast<std::size_t>(poses));
-  CHECK(searches > static_cast<std::size_t>(poses));
-}
-
-}  // namespace
-
-TEST_CASE("vertices enclosed by a region are those that are located inside, one by one") {
-  check_enclosed(50);
-}
-
-TEST_CASE("vertices enclosed by regions at 300 poses are those that are located inside" *
-          doctest::test_suite("long")) {
-  check_enclosed(300);
+  CHECK(enclosed > 2 * kPoses);
+  CHECK(searches > kPoses);
 }

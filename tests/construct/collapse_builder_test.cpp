@@ -278,6 +278,7 @@ TEST_CASE("bodies with huge faces and high-valence vertices are built with all g
     const LrbRep rep = build_lrb(mesh);
     check_valid(rep);
     check_keeps_mesh(rep, mesh);
+    CHECK_FALSE(rep.self_intersecting());
     CHECK(rep.outermost_faces().size() <= 20);
   }
 }

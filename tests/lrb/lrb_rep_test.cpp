@@ -40,18 +40,6 @@ TEST_CASE("simplices of polygons are numbered face by face") {
   CHECK(v[2] == quads.face(2)[3]);
 }
 
-TEST_CASE("a body without regions has the mesh that it was made of") {
-  const Mesh mesh = shapes::quad_box(), back = LrbRep::without_regions(mesh, true, false).real_mesh();
-  CHECK(back.vertices == mesh.vertices);
-  CHECK(back.face_vertices == mesh.face_vertices);
-  CHECK(back.face_offsets == mesh.face_offsets);
-}
-
-TEST_CASE("components are pieces joined by vertices") {
-  CHECK(LrbRep::without_regions(shapes::box(), true, false).component_vertices().size() == 1);
-  CHECK(LrbRep::without_regions(shapes::box_with_void(), true, false).component_vertices().size() == 2);
-}
-
 TEST_CASE("inconsistent arrays are rejected by name") {
   const auto message = [](auto change) {
     LrbData d = shapes::dented_box().data();

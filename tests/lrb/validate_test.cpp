@@ -31,18 +31,18 @@ TEST_CASE("valid LRB-reps pass, with known volumes") {
   CHECK(box.volume_outer == doctest::Approx(32));
   CHECK(box.embedding_pairs > 0);
   CHECK(box.states == 100);
-  const ValidateReport stairs = validate(shapes::stairs_2d());
-  CHECK_MESSAGE(stairs.valid, (stairs.violations.empty() ? "" : stairs.violations[0]));
-  CHECK(stairs.volume_solid == doctest::Approx(10));
-  CHECK(stairs.volume_outer == doctest::Approx(16));
-  const ValidateReport plate = validate(LrbRep(toy::small_plate()));
-  CHECK_MESSAGE(plate.valid, (plate.violations.empty() ? "" : plate.violations[0]));
-  CHECK(plate.volume_solid == doctest::Approx(25));
-  CHECK(plate.volume_outer == doctest::Approx(36));
-  const ValidateReport pit = validate(LrbRep(toy::dented_tetrahedron()));
-  CHECK_MESSAGE(pit.valid, (pit.violations.empty() ? "" : pit.violations[0]));
-  CHECK(pit.volume_solid == doctest::Approx(4));
-  CHECK(pit.volume_outer == doctest::Approx(32.0 / 3));
+  struct {
+    LrbRep rep;
+    double solid, outer;
+  } const others[] = {{shapes::stairs_2d(), 10, 16},
+                      {LrbRep(toy::small_plate()), 25, 36},
+                      {LrbRep(toy::dented_tetrahedron()), 4, 32.0 / 3}};
+  for (const auto& [rep, solid, outer] : others) {
+    const ValidateReport report = validate(rep);
+    CHECK_MESSAGE(report.valid, (report.violations.empty() ? "" : report.violations[0]));
+    CHECK(report.volume_solid == doctest::Approx(solid));
+    CHECK(report.volume_outer == doctest::Approx(outer));
+  }
 }
 
 TEST_CASE("the mean thickness is the volume of the regions over the lids' area") {
@@ -107,23 +107,6 @@ TEST_CASE("a region of negative volume is rejected") {
   CHECK(names(report, "negative"));
 }
 
-TEST_CASE("a tree with NaN bounds is reported, also with levels of detail") {
-  const LrbRep sound = build_lrb(shapes::bumpy_sphere(3, 1));
-  const WrapperLevels& levels = sound.levels();
-  std::vector<TreeNode> nodes = sound.tree().nodes();
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (TreeNode& node : nodes)
-    for (int i = 0; i < 3; ++i) node.base[i] = node.scale[i] = nan;
-  LrbRep damaged(sound.data(), nodes, sound.tree().blocks(), sound.hash());
-  std::vector<WrapperLevels::StoredLevel> stored;
-  for (const WrapperLevel& level : levels.all())
-    stored.push_back({level.bound, level.tree.nodes(), level.tree.blocks()});
-  damaged.keep_levels(WrapperLevels(damaged, {levels.needed().begin(), levels.needed().end()}, stored));
-  CHECK(names(validate(damaged), "tree do not contain its faces"));
-  // Nothing is at a finite distance in such a tree: the bound says so.
-  CHECK(region_thickness(damaged)[0] >= 0);
-}
-
 TEST_CASE("the thickness of a region whose lids are too far away for doubles is infinite") {
   LrbData data = shapes::dented_box().data();
   for (const VertexId v : data.face(FaceId(data.face_count() - 1)))
@@ -132,12 +115,4 @@ TEST_CASE("the thickness of a region whose lids are too far away for doubles is 
     if (std::abs(x.z()) < 1e299) x *= 1e-20;
   const LrbRep rep(data);
   for (const double t : region_thickness(rep)) CHECK(t > 1e200);
-}
-
-TEST_CASE("cells are proven by validate_cells() as by validate()") {
-  CHECK(validate_cells(build_lrb(shapes::bumpy_sphere(2, 1))).valid);
-  CHECK(validate_cells(shapes::stairs_2d()).valid);
-  LrbData data = shapes::dented_box().data();
-  data.outer_cell[0] = data.outer_cell[0] == kOutside ? CellId(RegionId(0)) : kOutside;
-  CHECK(names(validate_cells(LrbRep(data)), "is open at edge"));
 }

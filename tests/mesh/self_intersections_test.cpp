@@ -219,14 +219,6 @@ TEST_CASE("copies of triangles are counted with all their pairs, in time that gr
   CHECK(check_mesh(m)[MeshFault::self_intersection].count > kCopies * (kCopies - 1) / 2);
 }
 
-TEST_CASE("self-intersections of polygons are counted by face") {
-  const Mesh cubes = several({quad_box(), translated(quad_box(), {0.5, 0.5, 0.5})});
-  CHECK(check_mesh(cubes)[MeshFault::self_intersection].count ==
-        6);  // three faces of each cut two of the other
-  const Mesh apart = several({quad_box(), translated(quad_box(), {1.5, 0, 0})});
-  CHECK(check_mesh(apart)[MeshFault::self_intersection].count == 0);
-}
-
 TEST_CASE("collinear corners are not self-intersections") {
   // A slab whose top and bottom have them on every side: their plain fans hold triangles without area.
   for (int shift = 0; shift < 8; ++shift) {
