@@ -84,26 +84,27 @@ class FrameJob {
     return render::compose_frame(picture(i), place_, overlays_[i], look_.width, look_.height,
                                  look_.background(), static_cast<float>(look_.scale()));
   }
+  /// Returns the place of each view in the picture.
+  std::vector<render::PixelRect> places() const {
+    std::vector<render::PixelRect> out = pictures::panel_places(place_, look_.views.size(), look_.scale());
+    for (render::PixelRect& r : out) r.x += place_.x, r.y += place_.y;
+    return out;
+  }
   /// Returns the camera of each view.
   std::vector<render::Camera> cameras(std::size_t i) const {
-    const std::vector<render::PixelRect> places =
-        pictures::panel_places(place_, look_.views.size(), look_.scale());
     std::vector<render::Camera> out;
-    for (std::size_t view = 0; view < places.size(); ++view)
-      out.push_back(pictures::camera_for(look_.views[view], framing_, places[view].width, places[view].height,
-                                         progress(i)));
+    for (const render::PixelRect& r : places())
+      out.push_back(pictures::camera_for(look_.views[out.size()], framing_, r.width, r.height, progress(i)));
     return out;
   }
   /// Returns each view as SVG (2D).
   std::vector<std::string> svgs(std::size_t i, bool plain = false) {
-    const std::vector<render::PixelRect> places =
-        pictures::panel_places(place_, look_.views.size(), look_.scale());
     const std::vector<render::Camera> all = cameras(i);
     std::vector<std::string> out;
-    for (std::size_t view = 0; view < places.size(); ++view) {
+    for (std::size_t view = 0; view < all.size(); ++view) {
       render::SvgOptions options;
-      options.width = places[view].width;
-      options.height = places[view].height;
+      options.width = places()[view].width;
+      options.height = places()[view].height;
       options.title = state.caption();
       options.units_per_pixel = look_.scale();
       options.background = look_.paper();
@@ -274,7 +275,7 @@ std::vector<PaintedFrame> paint_frames(const RecordedRun& recorded, const pictur
   for (std::size_t i = 0; i < events.size(); ++i) {
     progress("draw", i, events.size());
     job.state.seek(events[i]);
-    out.push_back({job.frame(i), job.state.caption(), events[i], job.cameras(i)});
+    out.push_back({job.frame(i), job.state.caption(), events[i], job.cameras(i), job.places()});
   }
   return out;
 }

@@ -61,7 +61,8 @@ struct PaintedFrame {
   render::Image image;
   std::string caption;
   trace::EventId event = 0;
-  std::vector<render::Camera> cameras;  ///< one for each view
+  std::vector<render::Camera> cameras;    ///< one for each view
+  std::vector<render::PixelRect> places;  ///< of the views in the image
 };
 
 /// Throws InputError if frames exceed the maximum number of pixels.

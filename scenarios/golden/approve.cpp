@@ -75,14 +75,12 @@ std::vector<std::string> approve_files(const std::string& goldens, const Golden&
       approval.approve(file,
                        [&](const std::string& to) { write_file(to, io::read_text(from + "/" + file)); });
   };
-  const auto copy_meshes = [&] {
-    for (const int dim : {2, 3})
-      for (const std::size_t body : {0, 1}) copy(kept_file(body, dim));
-  };
   const std::optional<Golden> old = load_if_sound(goldens, found.name);
   if (!old) approval.remove(image_files_from(folder, 0));
   if (!old || trace::first_divergence(old->trace, found.trace)) copy(kGoldenTrace);
-  if (!old || old->facts.meshes != found.facts.meshes) copy_meshes();
+  if (!old || old->facts.meshes != found.facts.meshes)
+    for (const int dim : {2, 3})
+      for (const std::size_t body : {0, 1}) copy(kept_file(body, dim));
   static const std::vector<GoldenImage> none;
   bool same_pictures = true;
   for (std::size_t i = 0; i < std::max(old ? old->frames.size() : 0, found.frames.size()); ++i) {

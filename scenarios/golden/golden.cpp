@@ -55,7 +55,7 @@ std::string kept_file(std::size_t body, int dim) {
   return std::string(1, static_cast<char>('a' + body)) + (dim == 2 ? ".obj" : ".ply");
 }
 
-std::string mesh_difference(const Mesh& x, const Mesh& y) {
+std::string mesh_difference(const Mesh& x, const Mesh& y, std::optional<std::size_t>* farthest_out) {
   if (x.vertices.size() != y.vertices.size() || x.face_count() != y.face_count())
     return counts_of(x) + " -> " + counts_of(y);
   std::size_t moved = 0, farthest = 0;
@@ -69,6 +69,7 @@ std::string mesh_difference(const Mesh& x, const Mesh& y) {
   if (moved == 0 && faces == 0) return {};
   std::string out;
   if (moved > 0) {
+    if (farthest_out != nullptr) *farthest_out = farthest;
     const double share = 100 * most / diagonal_of(x);
     out = (moved == 1 ? "vertex "
                       : render::group_digits(moved) + " vertices moved; largest displacement: vertex ") +

@@ -154,7 +154,9 @@ std::string scenario_difference(const std::string& expected, const std::string& 
 std::string compact_json(const std::string& text);
 
 /// Describes in one line how two meshes differ: moved vertices, starting with the largest displacement; or
-/// other numbers of vertices and faces. Returns an empty text if they are equal.
-std::string mesh_difference(const Mesh& expected, const Mesh& found);
+/// other numbers of vertices and faces. Returns an empty text if they are equal. `farthest`: where the number
+/// of the vertex with the largest displacement is stored, if one moved.
+std::string mesh_difference(const Mesh& expected, const Mesh& found,
+                            std::optional<std::size_t>* farthest = nullptr);
 
 }  // namespace lrb::golden

@@ -1,6 +1,7 @@
 #include "scenarios/golden/golden_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -50,6 +51,30 @@ trace::EventId event_to_show(const trace::Trace& trace, std::size_t step,
   return event ? std::min(*event, last) : last;
 }
 
+/// Returns the places in a picture of the vertex that moved farthest, in each view; empty if no body's mesh
+/// has the same elements at other places.
+std::vector<Eigen::Vector2d> places_of_moved_vertex(const Golden& golden, const GoldenRun& run,
+                                                    const frames::PaintedFrame& frame) {
+  std::vector<Eigen::Vector2d> out;
+  trace::Cursor cursor(run.recording.trace, recorded_run_of(run).reps);
+  cursor.seek(frame.event);
+  for (std::size_t i = 0; i < golden.meshes.size(); ++i) {
+    const Mesh mesh = run.recording.bodies[i].rep.real_mesh();
+    std::optional<std::size_t> vertex;
+    if (golden.meshes[i]) mesh_difference(*golden.meshes[i], mesh, &vertex);
+    if (!vertex) continue;
+    const Eigen::Vector3d x = cursor.pose(static_cast<Side>(i)).apply(mesh.vertices[*vertex]);
+    for (std::size_t view = 0; view < frame.cameras.size(); ++view) {
+      const render::PixelRect& place = frame.places[view];
+      const render::Projection projection(frame.cameras[view], place.width, place.height, {x, x});
+      const Eigen::Vector2d at =
+          projection.to_pixel(x).value_or(Eigen::Vector2d(-1, -1)) + Eigen::Vector2d(place.x, place.y);
+      if (place.contains({static_cast<int>(at.x()), static_cast<int>(at.y()), 1, 1})) out.push_back(at);
+    }
+  }
+  return out;
+}
+
 /// One of the two runs, which differ in their traces.
 struct SideShown {
   const trace::Trace& trace;
@@ -58,8 +83,7 @@ struct SideShown {
 
 /// Returns the corners of the element of an event: the pair that it compares, or the region that it refines.
 std::vector<Eigen::Vector3d> subject_of(const SideShown& side, const std::vector<const LrbRep*>& reps) {
-  trace::Cursor cursor =
-      reps.size() == 1 ? trace::Cursor(side.trace, *reps[0]) : trace::Cursor(side.trace, *reps[0], *reps[1]);
+  trace::Cursor cursor(side.trace, reps);
   cursor.seek(side.event);
   std::vector<Eigen::Vector3d> out;
   if (const auto pair = cursor.pair_under_test())
@@ -167,13 +191,55 @@ report::PngBytes png_of(const render::Image& image) {
   return image.empty() ? report::PngBytes() : render::encode_png(image);
 }
 
+/// Returns a part of a picture of differences around the first suspect that is not black, or else the
+/// brightest; nullopt: all is black.
+std::optional<render::PixelRect> brightest_square(const render::Image& image,
+                                                  std::span<const Eigen::Vector2d> suspects) {
+  constexpr int kMaxCells = 24, kSide = 3;  // across the picture, and across the square
+  render::Image mean = image;
+  int cell = 1;
+  for (; mean.width() > kMaxCells; cell *= 2) mean = report::halved(mean);
+  const int side = std::min({kSide * cell, image.width(), image.height()});
+  const auto brightness = [&](int x, int y) {
+    const render::Rgba c = mean.at(std::min(x, mean.width() - 1), std::min(y, mean.height() - 1));
+    return c.r + c.g + c.b;
+  };
+  std::optional<Eigen::Vector2d> centre;
+  for (const Eigen::Vector2d& at : suspects)
+    if (const Eigen::Vector2i c = (at / cell).cast<int>(); !centre && brightness(c.x(), c.y()) > 0)
+      centre = at;
+  int most = centre ? 3 * 255 : 0;
+  for (int y = 0; y < mean.height(); ++y)
+    for (int x = 0; x < mean.width(); ++x)
+      if (brightness(x, y) > most) {
+        most = brightness(x, y);
+        centre = Eigen::Vector2d(x + 0.5, y + 0.5) * cell;
+      }
+  if (!centre) return std::nullopt;
+  const auto start = [&](double at, int end) {
+    return std::clamp(static_cast<int>(at) - side / 2, 0, end - side);
+  };
+  return render::PixelRect{start(centre->x(), image.width()), start(centre->y(), image.height()), side, side};
+}
+
+/// Draws a circle around a square.
+void circle(render::Image& image, const render::PixelRect& square) {
+  const double radius = 0.6 * square.width, cx = square.x + square.width / 2.0,
+               cy = square.y + square.height / 2.0;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      const double off = std::abs(std::hypot(x - cx, y - cy) - radius);
+      if (off < 3) image.at(x, y) = off < 1.5 ? render::palette::kWrong : render::kWhite;
+    }
+}
+
 /// Returns the picture with a circle around what differs most, and that close up, as approved and as found.
 /// Small.
 render::Image thumbnail(const render::Image& expected, const render::Image& actual,
                         const std::optional<render::PixelRect>& place) {
   constexpr int kThumbnail = 320, kGap = 6;  // pixels
   render::Image whole = actual;
-  if (place) report::circle(whole, *place);
+  if (place) circle(whole, *place);
   while (whole.width() >= 2 * kThumbnail) whole = report::halved(whole);
   if (!place) return whole;
   const int height = whole.height(), wide = height + kGap;
@@ -189,13 +255,14 @@ render::Image thumbnail(const render::Image& expected, const render::Image& actu
 }
 
 void add_comparison(GoldenResult& result, report::Comparison comparison, const render::Image& expected,
-                    const render::Image& actual, bool is_best = false) {
+                    const render::Image& actual, bool is_best = false,
+                    const std::vector<Eigen::Vector2d>& suspects = {}) {
   render::Image difference =
       expected.empty() || actual.empty() ? render::Image() : render::difference_image(expected, actual);
   std::optional<render::PixelRect> place;
   if (!comparison.passed && !actual.empty() && expected.rect() == actual.rect())
-    place = report::brightest_square(difference);
-  if (place) report::circle(difference, *place);
+    place = brightest_square(difference, suspects);
+  if (place) circle(difference, *place);
   comparison.pngs = {png_of(expected), png_of(actual), png_of(difference)};
   // A picture of the run, or its proof map, rather than of the first difference, which may only be a number.
   if (!comparison.passed && !actual.empty() && (result.thumbnail.empty() || is_best))
@@ -250,9 +317,12 @@ void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run,
   add_comparison(result, {result.name + "-" + frame, result.name + ": " + v.file, v.text, v.passed},
                  v.has_expected ? golden.frames[v.frame][v.variant].png.image : render::Image(),
                  v.has_actual ? run.frames[v.frame].image : render::Image(),
-                 std::ranges::none_of(result.comparisons, [](const report::Comparison& c) {
-                   return c.id.find("-frame_") != std::string::npos && !c.passed;
-                 }));
+                 std::ranges::none_of(result.comparisons,
+                                      [](const report::Comparison& c) {
+                                        return c.id.find("-frame_") != std::string::npos && !c.passed;
+                                      }),
+                 v.has_actual ? places_of_moved_vertex(golden, run, run.frames[v.frame])
+                              : std::vector<Eigen::Vector2d>());
 }
 
 /// Returns "3 of 3 equal", "2 of 3 differ".
@@ -329,9 +399,8 @@ std::string file_of(const std::string& id, const std::string& name, const char* 
 }
 
 bool is_result(const std::string& file) {
-  for (const char* kind : kKinds)
-    if (file.ends_with("." + std::string(kind) + ".png")) return true;
-  return false;
+  return std::ranges::any_of(
+      kKinds, [&](const char* kind) { return file.ends_with("." + std::string(kind) + ".png"); });
 }
 
 }  // namespace

@@ -190,33 +190,6 @@ render::Image halved(const render::Image& image) {
   return half;
 }
 
-std::optional<render::PixelRect> brightest_square(const render::Image& image) {
-  constexpr int kMaxCells = 24, kSide = 3;  // across the picture, and across the square
-  render::Image mean = image;
-  int cell = 1;
-  for (; mean.width() > kMaxCells; cell *= 2) mean = halved(mean);
-  const int side = std::min({kSide * cell, image.width(), image.height()});
-  std::optional<render::PixelRect> out;
-  const auto start = [&](int at, int end) { return std::clamp((at - 1) * cell, 0, end - side); };
-  for (int y = 0, most = 0; y < mean.height(); ++y)
-    for (int x = 0; x < mean.width(); ++x)
-      if (const render::Rgba c = mean.at(x, y); c.r + c.g + c.b > most) {
-        most = c.r + c.g + c.b;
-        out = {start(x, image.width()), start(y, image.height()), side, side};
-      }
-  return out;
-}
-
-void circle(render::Image& image, const render::PixelRect& square) {
-  const double radius = 0.6 * square.width, cx = square.x + square.width / 2.0,
-               cy = square.y + square.height / 2.0;
-  for (int y = 0; y < image.height(); ++y)
-    for (int x = 0; x < image.width(); ++x) {
-      const double off = std::abs(std::hypot(x - cx, y - cy) - radius);
-      if (off < 3) image.at(x, y) = off < 1.5 ? render::palette::kWrong : render::kWhite;
-    }
-}
-
 InlinedImages inline_pngs(const std::vector<PngBytes>& pngs, std::size_t budget) {
   std::size_t size = 0;
   for (const PngBytes& png : pngs) size += png.size() / 3 * 4;

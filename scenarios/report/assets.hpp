@@ -35,11 +35,6 @@ InlinedImages inline_pngs(const std::vector<PngBytes>& pngs, std::size_t budget 
 /// Returns a picture of half the size each way. Each pixel is the mean of four.
 render::Image halved(const render::Image& image);
 
-/// Returns the brightest part of a picture of differences; nullopt: it is black.
-std::optional<render::PixelRect> brightest_square(const render::Image& image);
-/// Draws a circle around a square.
-void circle(render::Image& image, const render::PixelRect& square);
-
 /// Returns "data:TYPE;base64,...".
 std::string data_uri(const std::string& type, const std::uint8_t* bytes, std::size_t size);
 

@@ -118,6 +118,22 @@ TEST_CASE("goldens: a changed colour fails, and is no moved camera; noise of pro
   CHECK(has(noise.out, "images: 2 equal, 1 of them within tolerance"));
 }
 
+TEST_CASE("goldens: the circle is around a moved vertex, not around what differs most") {
+  const golden::GoldenRun run = play();
+  golden::Golden golden = golden_of(run);
+  golden.meshes = {run.recording.bodies[0].rep.real_mesh()};
+  golden.meshes[0]->vertices[0] *= 1.1;
+  render::Image& approved = golden.frames[0][0].png.image;
+  for (render::Rgba& p : approved.pixels()) p.g ^= 16;
+  approved.fill({0, 0, 60, 60}, render::palette::kInk);
+  const golden::GoldenResult result = golden::test_golden(golden, run, "", false);
+  const render::Image found = render::decode_png(result.comparisons.at(0).pngs[2]).image;
+  const auto first = std::ranges::find(found.pixels(), render::palette::kWrong);
+  REQUIRE(first != found.pixels().end());
+  CHECK(first - found.pixels().begin() >
+        found.width());  // a circle around the corner begins in the first row
+}
+
 TEST_CASE("goldens: a variant passes; a changed picture loses its variants") {
   const Approved folder;
   const std::string base = folder / "goldens/balls/frame_1.png";
