@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <span>
 
@@ -32,10 +33,26 @@ struct BenchOptions : MeasureOptions {
 /// Seconds. LRB-reps of large bodies take longer than queries.
 constexpr double kLeastBuildTimeout = 120;
 
-/// Returns true for lrbscope and for engines that answer the same query.
-bool is_peer(const workers::WorkerMethod& m) {
-  return !m.info.has(methods::Trait::approximate) && !m.info.has(methods::Trait::convex) &&
-         m.info.role != methods::Role::no_peer;
+/// Returns lrbscope, with each of its kernels, and engines that answer the same query exactly.
+std::vector<WorkerMethod> peers_for(methods::Quantity quantity) {
+  std::vector<WorkerMethod> out;
+  for (WorkerMethod& m : workers::find_methods(quantity)) {
+    const bool is_other = quantity != methods::Quantity::pairs && m.info.role == methods::Role::ours_other;
+    if (is_other || m.info.has(methods::Trait::approximate) || m.info.has(methods::Trait::convex) ||
+        m.info.role == methods::Role::no_peer)
+      continue;
+    m.info.settings.clear();  // exact
+    out.push_back(m);
+    if (m.info.role != methods::Role::ours) continue;
+    m.info.role = methods::Role::ours_other;
+    for (const std::string simd : {"avx2", "baseline"}) {  // chosen when a process first asks for its kernels
+      WorkerMethod& older = out.emplace_back(m);
+      older.info.name += "-" + simd;
+      older.info.title += ", limited to " + simd;
+      older.command.insert(older.command.begin(), {"/usr/bin/env", "LRB_SIMD=" + simd});
+    }
+  }
+  return out;
 }
 
 /// The option --build.
@@ -43,7 +60,8 @@ int run_build_survey(const BenchOptions& o, std::vector<speed::BodyPair> bodies,
                      std::vector<workers::WorkerMethod> methods, const Globals& globals) {
   // lrbscope's methods differ in their queries; speed::own_structures() are what it builds.
   std::erase_if(methods, [](const workers::WorkerMethod& m) {
-    return !m.info.present || m.info.has(methods::Trait::own_rep);
+    return !m.info.present || m.info.has(methods::Trait::own_rep) ||
+           m.info.quantity != methods::Quantity::pairs;
   });
   const report::Folder folder(o.folder);
   const speed::BuildResults results = speed::survey_builds(
@@ -98,8 +116,8 @@ int run_percentiles(const BenchOptions& o, const Globals& globals) {
 
 int run_bench(const BenchOptions& o, const Globals& globals) {
   if (!o.percentiles.empty()) return run_percentiles(o, globals);
-  std::vector<workers::WorkerMethod> methods = workers::find_methods();
-  std::erase_if(methods, [](const workers::WorkerMethod& m) { return !is_peer(m); });
+  std::vector<WorkerMethod> methods = peers_for(methods::Quantity::pairs);
+  for (WorkerMethod& m : peers_for(methods::Quantity::distance)) methods.push_back(std::move(m));
   methods = chosen_methods(methods, o.methods);
   std::vector<speed::BodyPair> pairs;
   if (!o.models.empty()) pairs = speed::pairs_of_models(o.models);
@@ -112,34 +130,48 @@ int run_bench(const BenchOptions& o, const Globals& globals) {
   if (o.build) return run_build_survey(o, std::move(pairs), std::move(methods), globals);
   make_folder(o.folder);
   const io::FolderLock lock(o.folder);
-  speed::SurveyOptions survey_options;
-  survey_options.folder = o.folder;
-  survey_options.timeout = o.timeout;
-  survey_options.contestants = speed::contestants(methods);
-  {
-    Progress bar("bodies", pairs.size(), globals.quiet);
-    for (const speed::BodyPair& p : pairs) {
-      bar.set(survey_options.sets.size(), p.what);
-      survey_options.sets.push_back(speed::make_data_set(p, o.set, o.folder));
+  std::string text = speed::machine() + "; built with " + speed::build_flags() + "\n\n";
+  report::Table cells;
+  std::vector<std::string> files = {"/peers.txt", "/peers.csv", "/records.jsonl"};
+  for (const auto& [quantity, of_quantity] :
+       {std::pair{methods::Quantity::pairs, pairs},
+        std::pair{methods::Quantity::distance, speed::interlocked_pairs(o.faces.front())}}) {
+    speed::SurveyOptions survey_options;
+    survey_options.folder = o.folder;
+    survey_options.timeout = o.timeout;
+    for (const WorkerMethod& m : methods)
+      if (m.info.quantity == quantity && m.info.present) survey_options.contestants.push_back({m, {}});
+    if (survey_options.contestants.empty() || of_quantity.empty()) continue;
+    speed::SetOptions set = o.set;
+    set.quantity = quantity;
+    {
+      Progress bar("bodies", of_quantity.size(), globals.quiet);
+      for (const speed::BodyPair& p : of_quantity) {
+        bar.set(survey_options.sets.size(), p.what);
+        survey_options.sets.push_back(speed::make_data_set(p, set, o.folder));
+      }
+    }
+    Progress bar("bench", 0, globals.quiet);
+    const std::vector<speed::Record> records = speed::survey(survey_options, bar.setter());
+    bar.finish();
+    std::vector<methods::MethodInfo> infos = workers::infos_of(methods);
+    std::erase_if(infos, [&](const methods::MethodInfo& m) { return m.quantity != quantity; });
+    const speed::PeerTable table = speed::peer_table(survey_options.sets, infos, records);
+    text += speed::in_brief(table);
+    report::Table part = speed::table_of_cells(table);
+    cells.columns = part.columns;
+    std::move(part.rows.begin(), part.rows.end(), std::back_inserter(cells.rows));
+    if (!o.tex || quantity != methods::Quantity::pairs) continue;
+    for (const auto& [mode, name] :
+         {std::pair{Mode::all_pairs, "/all_pairs.tex"}, std::pair{Mode::first_pair, "/first_pair.tex"}}) {
+      io::write_text(o.folder + name, report::booktabs(speed::table_of_ratios(table, mode)));
+      files.emplace_back(name);
     }
   }
-  Progress bar("bench", 0, globals.quiet);
-  const std::vector<speed::Record> records = speed::survey(survey_options, bar.setter());
-  bar.finish();
-  const speed::PeerTable table = speed::peer_table(survey_options.sets, workers::infos_of(methods), records);
-  const std::string head = speed::machine() + "; built with " + speed::build_flags() + "\n\n";
-  print(head + speed::in_brief(table));
-  const report::Table cells = speed::table_of_cells(table);
-  io::write_text(o.folder + "/peers.txt",
-                 head + speed::in_brief(table) + "\n" + report::in_columns(cells, 4));
+  print(text);
+  io::write_text(o.folder + "/peers.txt", text + "\n" + report::in_columns(cells, 4));
   io::write_text(o.folder + "/peers.csv", report::csv(cells));
-  print(o.folder + "/peers.txt\n" + o.folder + "/peers.csv\n" + o.folder + "/records.jsonl\n");
-  if (!o.tex) return kOk;
-  for (const auto& [mode, name] :
-       {std::pair{Mode::all_pairs, "/all_pairs.tex"}, std::pair{Mode::first_pair, "/first_pair.tex"}}) {
-    io::write_text(o.folder + name, report::booktabs(speed::table_of_ratios(table, mode)));
-    print(o.folder + name + "\n");
-  }
+  for (const std::string& file : files) print(o.folder + file + "\n");
   return kOk;
 }
 

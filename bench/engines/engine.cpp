@@ -26,7 +26,7 @@ class WorkerEngine : public Engine {
       : name_(method.info.name),
         bodies_{{"bodies", {a, b}}},
         limit_(limit),
-        worker_({method.program, "--method", name_},
+        worker_(method.command,
                 {bodies_.dump(), kBuild, "method '" + name_ + "': cannot build the two bodies: "}) {}
 
   std::string name() const override { return name_; }

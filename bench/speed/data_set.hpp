@@ -41,6 +41,7 @@ enum class PoseClass : std::uint8_t {
   near_1000th,  ///< near pairs; B is half of the distance away, along some direction
   near_100th,
   near_20th,
+  interlocked,  ///< distance of bodies that reach through each other
 };
 struct PoseInfo {
   PoseClass value;
@@ -64,7 +65,8 @@ inline constexpr auto kPoseInfos =
                              {PoseClass::past, "past", "past, 1 % away", -0.01},
                              {PoseClass::near_1000th, "near_1000th", "within 0.1 %", -0.0005, 0.001},
                              {PoseClass::near_100th, "near_100th", "within 1 %", -0.005, 0.01},
-                             {PoseClass::near_20th, "near_20th", "within 5 %", -0.025, 0.05}});
+                             {PoseClass::near_20th, "near_20th", "within 5 %", -0.025, 0.05},
+                             {PoseClass::interlocked, "interlocked", "interlocked", 0}});
 constexpr auto enum_names(PoseClass) {
   std::array<EnumName<PoseClass>, kPoseInfos.size()> out{};
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = {kPoseInfos[i].value, kPoseInfos[i].name};

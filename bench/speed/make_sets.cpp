@@ -68,7 +68,7 @@ std::uint32_t whole_root(double x) {
 class Maker {
  public:
   Maker(const BodyPair& pair, const SetOptions& options, const std::string& folder)
-      : o_(options), folder_(folder) {
+      : o_(options), folder_(folder), pose_b_(pair.pose_b) {
     set_.name = pair.name;
     set_.what = pair.what;
     set_.folder = folder;
@@ -86,6 +86,10 @@ class Maker {
   }
 
   DataSet make() {
+    if (pose_b_) {
+      add_interlocked();
+      return std::move(set_);
+    }
     for (const PoseClass c : classes_of(o_.quantity)) {
       if (o_.quantity != Quantity::pairs)
         add_posed(c);
@@ -117,6 +121,21 @@ class Maker {
     q.pose_b = pose_b;
     q.expected = exact_pairs(reps_[a], pose_a, reps_[b], pose_b);
     set_.questions.push_back(std::move(q));
+  }
+
+  /// Adds B near its pose, turned and moved by little enough to stay apart from A.
+  void add_interlocked() {
+    constexpr double kTurn = 0.02, kShift = 0.03;
+    shapes::RandomEngine random(o_.seed);
+    for (int i = 0; i < o_.poses; ++i) {
+      Question q;
+      q.pose_class = PoseClass::interlocked;
+      q.b = 1;
+      const Eigen::Vector3d axis = shapes::random_direction(random);
+      q.pose_b.r = deterministic::rotation(axis, shapes::uniform(random, -kTurn, kTurn)) * pose_b_->r;
+      q.pose_b.t = pose_b_->t + shapes::uniform(random, 0, kShift) * shapes::random_direction(random);
+      set_.questions.push_back(std::move(q));
+    }
   }
 
   /// Adds B at one pose, or on a straight motion that is two diagonals long and starts at a random distance,
@@ -162,6 +181,7 @@ class Maker {
 
   SetOptions o_;
   std::string folder_;
+  std::optional<Pose> pose_b_;
   DataSet set_;
   std::vector<LrbRep> reps_;
 };
@@ -191,6 +211,18 @@ std::vector<BodyPair> generated_pairs(std::uint32_t faces) {
       {"balls-" + size, "two balls" + about, maker("ball", {{"frequency", frequency}}, 1),
        maker("ball", {{"frequency", frequency}}, 1)},
   };
+}
+
+std::vector<BodyPair> interlocked_pairs(std::uint32_t faces) {
+  constexpr double kCoarsest = 252;  // faces of the smallest body
+  std::vector<BodyPair> pairs;
+  if (faces == 0) return pairs;
+  const int fine = static_cast<int>(std::ceil(std::sqrt(faces / kCoarsest)));
+  for (const generators::Interlocked& p : generators::interlocked(fine))
+    pairs.push_back({p.name + "-" + std::to_string(faces),
+                     p.name + ", interlocked, of at least " + std::to_string(faces) + " faces",
+                     [a = p.a] { return a; }, [b = p.b] { return b; }, p.pose_b});
+  return pairs;
 }
 
 std::vector<BodyPair> pairs_of_models(const std::string& folder) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,11 +48,14 @@ class Approaches {
 struct BodyPair {
   std::string name, what;
   std::function<Mesh()> a, b;
+  std::optional<Pose> pose_b = {};  ///< of interlocked bodies; A's is the identity
 };
 
 /// Returns pairs of generated bodies of about `faces` real faces each: two rocks, a knot and a gear, two
 /// balls.
 std::vector<BodyPair> generated_pairs(std::uint32_t faces);
+/// Returns the pairs of generators::interlocked(), of at least about `faces` real faces a body; none for 0.
+std::vector<BodyPair> interlocked_pairs(std::uint32_t faces);
 /// Returns each mesh or LRB-rep of a folder, in order of names, paired with the next. Throws InputError if
 /// there are fewer than two.
 std::vector<BodyPair> pairs_of_models(const std::string& folder);

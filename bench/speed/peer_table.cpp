@@ -37,7 +37,15 @@ namespace {
 
 using methods::Role;
 
-constexpr Mode kModes[] = {Mode::all_pairs, Mode::first_pair};
+std::string mode_name(const PeerTable& t, Mode mode, const char* all, const char* first,
+                      const char* number = ", distance: ") {
+  return t.quantity != Quantity::pairs ? number : mode == Mode::all_pairs ? all : first;
+}
+
+std::vector<Mode> modes_of(Quantity quantity) {
+  if (quantity == Quantity::pairs) return {Mode::all_pairs, Mode::first_pair};
+  return {Mode::all_pairs};
+}
 
 const Reply& reply(const Record& r, Mode mode) {
   return mode == Mode::all_pairs ? r.all : r.first;
@@ -65,6 +73,13 @@ std::string method_in(const std::vector<methods::MethodInfo>& methods, Role role
 
 using Key = std::tuple<std::string, std::string, std::uint64_t>;
 
+/// Returns true if a number is not within a billionth of the size of the right one.
+bool is_off(const DataSet& set, const Question& q, const Reply& answer) {
+  const double allowed = 1e-9 * set.diagonal;
+  return q.number && !(answer.upper.value_or(-1) >= q.number->least - allowed &&
+                       answer.lower.value_or(-1) <= q.number->most + allowed);
+}
+
 PeerCell cell_of(const DataSet& set, const std::string& method, const std::string& ours_name, PoseClass c,
                  Mode mode, const std::map<Key, const Record*>& by_key) {
   PeerCell cell;
@@ -87,7 +102,7 @@ PeerCell cell_of(const DataSet& set, const std::string& method, const std::strin
     hot.push_back(answer.hot_us);
     cold.push_back(answer.cold_us);
     cell.pairs += static_cast<double>(answer.count);
-    cell.missed += answer.missed;
+    cell.missed += answer.missed + is_off(set, set.questions[q], answer);
     cell.extra += answer.extra;
     const auto ours = by_key.find({set.name, ours_name, q});
     if (ours == by_key.end() || ours->second->outcome != Outcome::answered) continue;
@@ -113,14 +128,14 @@ std::string ratio_text(const PeerCell* c, double ratio) {
 }  // namespace
 
 report::Table table_of_ratios(const PeerTable& t, Mode mode) {
-  report::Table table{mode == Mode::all_pairs ? "ALL PAIRS. lrbscope's time in microseconds, hot; then the "
-                                                "others' times relative to it, hot"
-                                              : "FIRST PAIR (boolean). As above",
-                      {"bodies", "pose", "pairs", "ours us", "p95"}};
+  const std::string what = mode_name(t, mode, "ALL PAIRS", "FIRST PAIR (boolean)", "DISTANCE");
+  report::Table table{
+      what + ". lrbscope's time in microseconds, hot; then the others' times relative to it, hot",
+      {"bodies", "pose", "pairs", "ours us", "p95"}};
   for (const methods::MethodInfo& m : t.methods)
     if (m.role != Role::ours && m.present) table.columns.push_back(m.name);
   for (const std::string& set : t.sets)
-    for (const PoseClass c : classes_of(Quantity::pairs)) {
+    for (const PoseClass c : t.classes) {
       const PeerCell* ours = t.find(set, method_in(t.methods, Role::ours), c, mode);
       if (ours == nullptr || ours->questions == 0) continue;
       table.rows.push_back({set, info_of(c).title, text("%.0f", ours->pairs), text("%.1f", ours->hot),
@@ -146,16 +161,26 @@ double mean_ratio(const PeerTable& t, const std::string& method, Mode mode, bool
 }
 
 std::string means_of(const PeerTable& t) {
-  std::vector<std::vector<std::string>> rows = {
-      {"", "all pairs", "cold", "boolean", "cold", "apart", "cold", "missed", "extra"}};
+  struct Column {
+    const char* title;
+    Mode mode;
+    bool apart;
+  };
+  std::vector<Column> columns = {{"distance", Mode::all_pairs, false}};
+  if (t.quantity == Quantity::pairs)
+    columns = {{"all pairs", Mode::all_pairs, false},
+               {"boolean", Mode::first_pair, false},
+               {"apart", Mode::all_pairs, true}};
+  std::vector<std::vector<std::string>> rows(1, {""});
+  for (const Column& c : columns) rows[0].insert(rows[0].end(), {c.title, "cold"});
+  rows[0].insert(rows[0].end(), {"missed", "extra"});
   for (const methods::MethodInfo& m : t.methods) {
     rows.push_back({m.name});
     if (!m.present) {
       rows.back().push_back("absent: " + m.remark);
       continue;
     }
-    for (const auto& [mode, apart] : {std::pair{Mode::all_pairs, false}, std::pair{Mode::first_pair, false},
-                                      std::pair{Mode::all_pairs, true}})
+    for (const auto& [title, mode, apart] : columns)
       for (const bool cold : {false, true}) {
         const Mode compared = apart && !m.pairs ? Mode::first_pair : mode;
         const double mean = mean_ratio(t, m.name, compared, apart, cold);
@@ -181,8 +206,8 @@ std::string ahead_of(const PeerTable& t) {
   std::string out;
   std::size_t compared = 0, behind = 0;
   for (const std::string& set : t.sets)
-    for (const PoseClass c : classes_of(Quantity::pairs))
-      for (const Mode mode : kModes) {
+    for (const PoseClass c : t.classes)
+      for (const Mode mode : modes_of(t.quantity)) {
         std::string peers;
         for (const methods::MethodInfo& m : t.methods) {
           const PeerCell* cell = t.find(set, m.name, c, mode);
@@ -197,49 +222,13 @@ std::string ahead_of(const PeerTable& t) {
           if (cell->missed + cell->extra > 0) peers += ", not exact";
         }
         if (!peers.empty())
-          out += "    " + set + ", " + info_of(c).title +
-                 (mode == Mode::all_pairs ? ", all pairs: " : ", boolean: ") + peers + "\n";
+          out += "    " + set + ", " + info_of(c).title + mode_name(t, mode, ", all pairs: ", ", boolean: ") +
+                 peers + "\n";
       }
   if (compared == 0) return "  No other engine was measured.\n";
   if (out.empty()) return text("  No other engine is faster in any of %zu cells, hot or cold.\n", compared);
   return text("CELLS IN WHICH ANOTHER ENGINE IS FASTER (%zu of %zu), and by how much\n", behind, compared) +
          out;
-}
-
-std::string targets_of(const PeerTable& t) {
-  const std::string fcl = method_in(t.methods, Role::aim);
-  std::string out = "AIMED AT, against FCL compiled with our flags, hot\n";
-  const auto is_present = [&](const methods::MethodInfo& m) { return m.name == fcl && m.present; };
-  const std::string why = fcl.empty() ? "the method is not among those of --method"
-                          : std::any_of(t.methods.begin(), t.methods.end(), is_present) ? "no such poses"
-                                                                                        : "FCL is absent";
-  const auto line = [&](const char* what, double reached, double aim) {
-    out += reached <= 0 ? text("  %-42s not measured: %s\n", what, why.c_str())
-                        : text("  %-42s %.2fx, aim %.0fx: %s\n", what, reached, aim,
-                               reached >= aim ? "reached" : "NOT reached");
-  };
-  line("all pairs, intersecting bodies", mean_ratio(t, fcl, Mode::all_pairs, false, false), 6);
-  line("boolean, intersecting bodies", mean_ratio(t, fcl, Mode::first_pair, false, false), 6);
-  line("0.5 % apart", mean_ratio(t, fcl, Mode::all_pairs, true, false), 4);
-  return out + ahead_of(t) + "\n";
-}
-
-std::string price_of(const PeerTable& t) {
-  std::vector<double> ordinary;
-  std::string identical;
-  const std::string in_doubles = method_in(t.methods, Role::ours_double);
-  for (const PeerCell& c : t.cells) {
-    if (c.method != in_doubles || c.ratio <= 0) continue;
-    if (c.pose_class != PoseClass::identical)
-      ordinary.push_back(1 / c.ratio);
-    else if (c.mode == Mode::all_pairs)
-      identical += text("%s%.2f", identical.empty() ? "" : ", ", 1 / c.ratio);
-  }
-  if (ordinary.empty()) return "";
-  return text(
-      "COST OF EXACTNESS: %.3f times the time without the exact fallback on ordinary poses (geometric mean; "
-      "aim: at most 1.10);\n  identical poses, all pairs: %s\n",
-      geometric_mean(ordinary), identical.c_str());
 }
 
 }  // namespace
@@ -258,11 +247,15 @@ PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods
   const std::string ours_name = method_in(methods, Role::ours);
   PeerTable t;
   t.methods = methods;
+  if (!sets.empty()) t.quantity = sets.front().quantity;
+  t.classes = {PoseClass::interlocked};
+  if (const auto classes = classes_of(t.quantity); t.quantity == Quantity::pairs)
+    t.classes.assign(classes.begin(), classes.end());
   for (const DataSet& set : sets) {
     t.sets.push_back(set.name);
     for (const methods::MethodInfo& m : methods)
-      for (const PoseClass c : classes_of(Quantity::pairs))
-        for (const Mode mode : kModes)
+      for (const PoseClass c : t.classes)
+        for (const Mode mode : modes_of(t.quantity))
           if (m.present && (m.pairs || mode == Mode::first_pair))  // a method without a list answers less
             t.cells.push_back(cell_of(set, m.name, ours_name, c, mode, by_key));
   }
@@ -271,11 +264,11 @@ PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods
 
 std::string in_brief(const PeerTable& t) {
   std::string out;
-  for (const Mode mode : kModes) {
+  for (const Mode mode : modes_of(t.quantity)) {
     const report::Table table = table_of_ratios(t, mode);
     out += table.title + "\n" + report::in_columns(table, 2) + "\n";
   }
-  return out + means_of(t) + targets_of(t) + price_of(t);
+  return out + means_of(t) + ahead_of(t) + "\n";
 }
 
 report::Table table_of_cells(const PeerTable& t) {
@@ -285,7 +278,7 @@ report::Table table_of_cells(const PeerTable& t) {
   for (const PeerCell& c : t.cells) {
     if (c.questions == 0) continue;
     table.rows.push_back(
-        {c.set, info_of(c.pose_class).title, c.mode == Mode::all_pairs ? "all" : "first", c.method});
+        {c.set, info_of(c.pose_class).title, mode_name(t, c.mode, "all", "first", "distance"), c.method});
     std::vector<std::string>& row = table.rows.back();
     if (c.answered > 0) {
       for (const double x : {c.hot, c.hot_p95, c.cold, c.cold_p95}) row.push_back(text("%.1f", x));

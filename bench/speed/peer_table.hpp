@@ -28,19 +28,22 @@ struct PeerCell {
 };
 
 struct PeerTable {
+  methods::Quantity quantity = methods::Quantity::pairs;
   std::vector<std::string> sets;             ///< names
+  std::vector<PoseClass> classes;            ///< of poses
   std::vector<methods::MethodInfo> methods;  ///< in the order of columns; lrbscope first
   std::vector<PeerCell> cells;
 
   const PeerCell* find(const std::string& set, const std::string& method, PoseClass c, Mode mode) const;
 };
 
-/// Returns the table. Ratios are relative to the method whose role is `ours`.
+/// Returns the table. All sets and methods are of one quantity: pairs, or distances, whose only mode is
+/// all_pairs. Ratios are relative to the method whose role is `ours`.
 PeerTable peer_table(const std::vector<DataSet>& sets, const std::vector<methods::MethodInfo>& methods,
                      const std::vector<Record>& records);
 
-/// Returns the text for stdout: ratios, their geometric means compared to the targets, where another engine
-/// is faster, the cost of exactness, and the methods that were exact.
+/// Returns the text for stdout: ratios, their geometric means, the methods that were exact, and where another
+/// engine is faster.
 std::string in_brief(const PeerTable& table);
 /// Returns lrbscope's times in one mode, and the ratios of all other methods to them.
 report::Table table_of_ratios(const PeerTable& table, Mode mode);

@@ -83,6 +83,7 @@ class Survey {
     task.limit = std::chrono::duration<double>(o_.timeout);
     task.on_line = [&](std::uint64_t, const std::string& line) {
       Record r = record_from(nlohmann::json::parse(line));
+      r.method = c.method.info.name;
       r.round = round;
       keep(std::move(r));
       notify(what);
@@ -94,7 +95,7 @@ class Survey {
       keep(std::move(r));
       notify(what);
     };
-    workers::Worker({c.method.program, "--method", c.method.info.name}).run(std::move(task));
+    workers::Worker(c.method.command).run(std::move(task));
   }
 
   void keep(Record r) {

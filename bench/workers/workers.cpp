@@ -372,6 +372,7 @@ std::vector<WorkerMethod> methods_of(const std::string& program, const std::vect
     WorkerMethod m;
     m.info = method_info_from(value);
     m.program = program;
+    m.command = {program, "--method", m.info.name};
     methods.push_back(m);
   }
   if (lines.empty())

@@ -171,8 +171,9 @@ class Worker {
 void wait_for_news(std::span<Worker* const> workers);
 
 struct WorkerMethod {
-  std::string program;       ///< path of the worker with this method
-  methods::MethodInfo info;  ///< the worker's description of it
+  std::string program;                    ///< path of the worker with this method
+  methods::MethodInfo info;               ///< the worker's description of it
+  std::vector<std::string> command = {};  ///< starts the worker with it
 };
 
 /// Queries the workers in the folder of the running program, or in the folder named by the environment

@@ -273,7 +273,8 @@ class Batch::Work {
 
  private:
   /// The number of poses that are proven apart at once, and the fewest for which this is tried. After
-  /// kMaxMisses attempts in a row that proved nothing for these poses, each is queried on its own.
+  /// kMaxMisses attempts in a row that proved nothing for these poses, each is queried on its own. One thread
+  /// tries all ranges of kTogether poses: 3 to 60 us in all, for which two threads are not faster.
   static constexpr std::size_t kTogether = 64, kFewest = 4, kMaxMisses = 7;
   struct Range {
     std::size_t begin, end;

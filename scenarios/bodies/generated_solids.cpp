@@ -367,4 +367,45 @@ Mesh ball(const GeneratorValues& v, std::uint64_t) {
   return StarSurface(static_cast<int>(v.at("frequency")), at).take();
 }
 
+std::vector<Interlocked> interlocked(int fine) {
+  const auto mapped = [](Mesh mesh, const auto& move) {
+    for (Eigen::Vector3d& v : mesh.vertices) v = move(v);
+    return mesh;
+  };
+  const auto stretched = [&](const Mesh& mesh, const Eigen::Vector3d& by) {
+    return mapped(mesh, [&](const Eigen::Vector3d& v) { return v.cwiseProduct(by); });
+  };
+  // Waves in the radii about the z axis, which move up as one turns.
+  const auto threaded = [&](const Mesh& mesh) {
+    return mapped(mesh, [](Eigen::Vector3d v) {
+      const double radius = std::hypot(v.x(), v.y()), turn = std::atan2(v.y(), v.x());
+      if (radius > 0.5) v.head<2>() *= 1 + 0.05 * deterministic::sin(turn + 5 * v.z()) / radius;
+      return v;
+    });
+  };
+  // The z axis becomes an arc.
+  const auto bent = [&](const Mesh& mesh) {
+    return mapped(mesh, [](const Eigen::Vector3d& v) {
+      constexpr double kRadius = 4;
+      const double r = kRadius + v.x(), angle = v.z() / kRadius;
+      return Eigen::Vector3d{r * deterministic::cos(angle) - kRadius, v.y(), r * deterministic::sin(angle)};
+    });
+  };
+  const Mesh ring = shapes::torus(18 * fine, 8 * fine, 1, 0.2),
+             tube = stretched(shapes::torus(18 * fine, 10 * fine, 1.3, 0.25), {1, 1, 4}),
+             shaft = stretched(shapes::uv_sphere(18 * fine, 8 * fine), {0.9, 0.9, 1.5});
+  // A chain of four links, of which A has every second one.
+  const auto two_links = [&](double at) {
+    return shapes::several(
+        {shapes::translated(ring, {at, 0, 0}), shapes::translated(ring, {at + 2.6, 0, 0})});
+  };
+  const Eigen::Matrix3d upright = deterministic::rotation(Eigen::Vector3d::UnitX(), 1.6);
+  return {{"rings", ring, ring, {upright, {1, 0.03, 0.02}}},
+          {"chain", two_links(0), two_links(1.3), {upright, {0, 0.02, 0.01}}},
+          {"shaft", tube, shaft, Pose::translation({0.01, 0.02, 0.1})},
+          {"thread", threaded(tube), threaded(shaft), Pose::translation({0, 0.02, 0.05})},
+          {"cable", bent(stretched(tube, {1, 1, 3})), bent(stretched(shaft, {1, 1, 3})),
+           Pose::translation({0.01, 0, 0.02})}};
+}
+
 }  // namespace lrb::generators

@@ -10,6 +10,7 @@
 
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/mesh.hpp>
+#include <lrbscope/pose.hpp>
 
 namespace lrb::generators {
 
@@ -63,6 +64,18 @@ inline void add_triangle(Mesh& mesh, VertexId a, VertexId b, VertexId c) {
   const VertexId corners[3] = {a, b, c};
   mesh.add_face(corners);
 }
+
+/// Two bodies that reach through each other, at distances far below their sizes, as in fit checks of CAD.
+struct Interlocked {
+  std::string name;
+  Mesh a, b;
+  Pose pose_b;  ///< A's is the identity
+};
+
+/// Makes two linked rings, a chain, a shaft in a sleeve, a thread, and a cable in a bent duct. Their rows
+/// have `fine` times as many faces as the coarsest ones: about 290 fine^2 faces a body, of the chain twice as
+/// many.
+std::vector<Interlocked> interlocked(int fine);
 
 // The fractal bodies of the paper's section 4: a basic shape with repeated local detail, as dents under lids.
 // The regions are known by construction, without a builder.

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "scenarios/bodies/generators.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
 #include "tests/support/bodies.hpp"
@@ -116,37 +117,7 @@ void check_budgets(const LrbRep& a, const LrbRep& b, const Pose& pose, const Dis
 struct DistantBodies {
   const char* name;
   LrbRep a, b;
-  Pose pose = {};  ///< of B
 };
-
-/// Adds a thread: waves in the radii about the z axis, which move up as one turns.
-Mesh threaded(Mesh mesh) {
-  for (Eigen::Vector3d& v : mesh.vertices) {
-    const double radius = std::hypot(v.x(), v.y()), turn = std::atan2(v.y(), v.x());
-    if (radius > 0.5) v.head<2>() *= 1 + 0.05 * std::sin(turn + 5 * v.z()) / radius;
-  }
-  return mesh;
-}
-
-/// Bodies that reach through each other, at distances far below their sizes.
-std::vector<DistantBodies> interlocked_bodies() {
-  const Mesh ring = shapes::torus(18, 8, 1, 0.2),
-             tube = test::stretched(shapes::torus(18, 10, 1.3, 0.25), {1, 1, 4}),
-             shaft = test::stretched(shapes::uv_sphere(18, 8), {0.9, 0.9, 1.5});
-  // A chain of four links, of which A has every second one.
-  const auto two_links = [&](double at) {
-    return shapes::several(
-        {shapes::translated(ring, {at, 0, 0}), shapes::translated(ring, {at + 2.6, 0, 0})});
-  };
-  const Eigen::Matrix3d upright = deterministic::rotation(Eigen::Vector3d::UnitX(), 1.6);
-  std::vector<DistantBodies> list;
-  list.push_back({"rings", closed(ring), closed(ring), {upright, {1, 0.03, 0.02}}});
-  list.push_back({"chain", closed(two_links(0)), closed(two_links(1.3)), {upright, {0, 0.02, 0.01}}});
-  list.push_back({"shaft in sleeve", closed(tube), closed(shaft), Pose::translation({0.01, 0.02, 0.1})});
-  list.push_back(
-      {"thread", closed(threaded(tube)), closed(threaded(shaft)), Pose::translation({0, 0.02, 0.05})});
-  return list;
-}
 
 std::vector<DistantBodies> distant_bodies() {
   std::vector<DistantBodies> list;
@@ -183,11 +154,12 @@ TEST_CASE("the interval contains the rational distance, from enclosed to distant
 TEST_CASE("the interval contains the rational distance of interlocked bodies") {
   RandomEngine random(23);
   DistanceTally t;
-  for (const DistantBodies& pair : interlocked_bodies()) {
+  for (const generators::Interlocked& pair : generators::interlocked(1)) {
     CAPTURE(pair.name);
-    const Pose pose = test::nudged(random, pair.pose, 0.02, 0.03, 3);
-    check(pair.a, Pose{}, pair.b, pose, t);
-    CHECK(distance(pair.a, Pose{}, pair.b, pose).counters.steps > 32);  // with more than one descent
+    const LrbRep a = closed(pair.a), b = closed(pair.b);
+    const Pose pose = test::nudged(random, pair.pose_b, 0.02, 0.03, 3);
+    check(a, Pose{}, b, pose, t);
+    CHECK(distance(a, Pose{}, b, pose).counters.steps > 32);  // with more than one descent
   }
   CHECK(t.apart > 2);
 }
@@ -310,6 +282,8 @@ TEST_CASE("a tolerance and a budget only widen the interval, and more steps only
     }
     check_budgets(a, b, pose, exact);
   }
-  for (const DistantBodies& pair : interlocked_bodies())
-    check_budgets(pair.a, pair.b, pair.pose, distance(pair.a, Pose{}, pair.b, pair.pose));
+  for (const generators::Interlocked& pair : generators::interlocked(1)) {
+    const LrbRep outer = closed(pair.a), inner = closed(pair.b);
+    check_budgets(outer, inner, pair.pose_b, distance(outer, Pose{}, inner, pair.pose_b));
+  }
 }
