@@ -1,4 +1,3 @@
-#include <map>
 #include <random>
 #include <set>
 
@@ -8,6 +7,7 @@
 #include "engine/construct/convex_hull.hpp"
 #include "engine/exact/predicates.hpp"
 #include "scenarios/bodies/shapes.hpp"
+#include <lrbscope/mesh_check.hpp>
 
 namespace lrb::construct {
 namespace {
@@ -23,21 +23,11 @@ std::vector<Vector3> random_points(int count, std::uint64_t seed, const Vector3&
   return points;
 }
 
-void check_closed(const Mesh& mesh) {
-  std::map<std::pair<VertexId, VertexId>, int> balance;
-  for (FaceId f = 0; f < mesh.face_count(); ++f)
-    for (int i = 0; i < 3; ++i) {
-      const VertexId a = mesh.face(f)[i], b = mesh.face(f)[(i + 1) % 3];
-      balance[std::minmax(a, b)] += a < b ? 1 : -1;
-    }
-  for (const auto& [edge, sum] : balance) CHECK(sum == 0);
-}
-
 TEST_CASE("the convex hull is closed and no point is in front of a face") {
   for (int round = 0; round < 20; ++round) {
     const auto points = random_points(20 + 20 * round, round, {1, 1, round % 2 ? 1e-6 : 1});
     const Mesh hull = convex_hull_mesh(points);
-    check_closed(hull);
+    CHECK(check_mesh(hull, false).closed);
     CHECK(hull.face_count() == 2 * hull.vertices.size() - 4);
     for (FaceId f = 0; f < hull.face_count(); ++f) {
       const auto at = [&](int i) { return hull.vertices[hull.face(f)[i]].data(); };
@@ -124,7 +114,7 @@ TEST_CASE(
     const Mesh polytope = enclosing_polytope(c.mesh.vertices, 20, 0.005, workers);
     REQUIRE(polytope.face_count() > 0);
     CHECK(polytope.face_count() <= 20);
-    check_closed(polytope);
+    CHECK(check_mesh(polytope, false).closed);
     for (const Vector3& p : c.mesh.vertices) REQUIRE(holds(polytope, p));
     CHECK(volume_of(polytope) <= c.ratio * volume_of(convex_hull_mesh(c.mesh.vertices)));
   }

@@ -103,31 +103,12 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
 }
 
 /// A plate [-2, 2]^2 below z = 0, with n x n squares on top, moved up and down by `bump`.
-Mesh fine_plate(std::uint32_t n, double bump = 0) {
-  Mesh mesh;
-  const auto height = [&](std::uint32_t i, std::uint32_t j) {
-    return i % n == 0 || j % n == 0 ? 0 : bump * std::sin(1.3 * i) * std::cos(0.9 * j);
-  };
-  for (int low = 0; low < 2; ++low)
-    for (std::uint32_t j = 0; j <= n; ++j)
-      for (std::uint32_t i = 0; i <= n; ++i)
-        mesh.vertices.push_back({-2 + 4.0 * i / n, -2 + 4.0 * j / n, low == 1 ? -0.5 : height(i, j)});
-  const auto at = [&](std::uint32_t low, std::uint32_t i, std::uint32_t j) {
-    return VertexId((low * (n + 1) + j) * (n + 1) + i);
-  };
-  const auto add = [&](VertexId p, VertexId q, VertexId r, VertexId s) {
-    mesh.add_face(std::array{p, q, r});
-    mesh.add_face(std::array{p, r, s});
-  };
-  for (std::uint32_t k = 0; k < n; ++k) {
-    for (std::uint32_t i = 0; i < n; ++i) {
-      add(at(0, i, k), at(0, i + 1, k), at(0, i + 1, k + 1), at(0, i, k + 1));
-      add(at(1, i, k), at(1, i, k + 1), at(1, i + 1, k + 1), at(1, i + 1, k));
-    }
-    add(at(0, k, 0), at(1, k, 0), at(1, k + 1, 0), at(0, k + 1, 0));
-    add(at(0, n, k), at(1, n, k), at(1, n, k + 1), at(0, n, k + 1));
-    add(at(0, k + 1, n), at(1, k + 1, n), at(1, k, n), at(0, k, n));
-    add(at(0, 0, k + 1), at(1, 0, k + 1), at(1, 0, k), at(0, 0, k));
+Mesh fine_plate(int n, double bump = 0) {
+  Mesh mesh = shapes::voxels(n, n, 1, [](int, int, int) { return true; });
+  for (Vector3d& x : mesh.vertices) {
+    const int i = static_cast<int>(x.x()), j = static_cast<int>(x.y());
+    const double height = i % n == 0 || j % n == 0 ? 0 : bump * std::sin(1.3 * i) * std::cos(0.9 * j);
+    x = {-2 + 4 * x.x() / n, -2 + 4 * x.y() / n, x.z() == 1 ? height : -0.5};
   }
   return mesh;
 }

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include "engine/exact/predicates.hpp"
-#include "tests/support/meet_roles.hpp"
 #include "tests/support/random_simplices.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include <lrbscope/contact.hpp>
@@ -12,15 +11,36 @@
 using namespace lrb;
 using lrb::test::Kind;
 
+namespace {
+
+/// One rotation, one reflection, one exchange. `expected`: an exact::Meet.
+bool triangles_meet_as(const test::SimplexPair& s, int expected) {
+  const auto a = s.a(), b = s.b();
+  const double* const turned[3] = {a[1], a[2], a[0]};
+  const double* const reflected[3] = {b[0], b[2], b[1]};
+  return static_cast<int>(exact::meet_triangles(a.data(), b.data())) == expected &&
+         static_cast<int>(exact::meet_triangles(b.data(), turned)) == expected &&
+         static_cast<int>(exact::meet_triangles(turned, reflected)) == expected;
+}
+
+bool segments_meet_as(const test::SimplexPair& s, int expected) {
+  const auto a = s.a(), b = s.b();
+  const double* const flipped[2] = {a[1], a[0]};
+  return static_cast<int>(exact::meet_segments(a.data(), b.data())) == expected &&
+         static_cast<int>(exact::meet_segments(b.data(), flipped)) == expected;
+}
+
+}  // namespace
+
 TEST_CASE("intersections of triangles agree with the rational oracle") {
   test::for_each_kind(11, 1500, 30, [](test::Rng&, const test::SimplexPair& s, Kind) {
-    return test::triangles_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 3));
+    return triangles_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 3));
   });
 }
 
 TEST_CASE("intersections of 2D segments agree with the rational oracle") {
   test::for_each_kind(12, 1500, 20, [](test::Rng&, const test::SimplexPair& s, Kind) {
-    return test::segments_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 2));
+    return segments_meet_as(s, oracle::meet_of_simplices(s.a().data(), s.b().data(), 2));
   });
 }
 

@@ -14,7 +14,7 @@
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/record/engine_run.hpp"
 #include "tests/matrix/bodies.hpp"
-#include "tests/support/bodies.hpp"
+#include "tests/support/faulty_meshes.hpp"
 #include "tests/support/toy_engine.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace_json.hpp>
@@ -40,12 +40,7 @@ std::vector<capture::Mesh> meshes_of_all_kinds() {
   degenerate.triangles.insert(degenerate.triangles.begin(), {2, 2, 3});
   degenerate.triangles.push_back({1, 1, 1});
   out.push_back(degenerate);
-  Mesh soup;
-  for (const auto& corners : captured(shapes::box()).triangles) {
-    const auto x = [&](std::size_t i) { return shapes::box().vertices[corners[i]]; };
-    add_loose(soup, {x(0), x(1), x(2)});
-  }
-  out.push_back(captured(soup, "soup"));
+  out.push_back(captured(as_soup(shapes::box()), "soup"));
   return out;
 }
 

@@ -22,13 +22,6 @@ using namespace lrb::stability;
 
 namespace {
 
-std::string scratch_folder(const std::string& name) {
-  static const test::Folder all;
-  const auto path = all.path / name;
-  std::filesystem::create_directories(path);
-  return path.string();
-}
-
 /// For one test: another gnuplot, or none.
 struct GnuplotIs {
   explicit GnuplotIs(const char* program) { setenv("LRB_GNUPLOT", program, 1); }
@@ -55,7 +48,8 @@ TEST_CASE("rejections are not failures, and the first failing difficulty is foun
 
 TEST_CASE("without gnuplot the page is written, with one line on the missing program") {
   const GnuplotIs none("lrbscope-has-no-such-program");
-  const std::string folder = scratch_folder("no_gnuplot");
+  const test::Folder files;
+  const std::string folder = files.path.string();
   const report::Document page = write_stability_report(made_up_grid(), folder);
   CHECK(page.written() == std::vector<std::string>{"index.html", "grid.csv"});
   REQUIRE(page.notes().size() == 1);
@@ -67,7 +61,8 @@ TEST_CASE("without gnuplot the page is written, with one line on the missing pro
 
 TEST_CASE("charts are drawn, and their texts are not run as commands" *
           doctest::skip(!report::has_gnuplot())) {
-  const std::string folder = scratch_folder("charts");
+  const test::Folder files;
+  const std::string folder = files.path.string();
   Grid grid = made_up_grid();
   grid.methods[0].title = "it's `touch " + folder + "/ran` <& @x $y \\n \"q\" ";
   grid.families[0].name = "`touch " + folder + "/ran`'; system('touch " + folder + "/ran')";
@@ -81,7 +76,8 @@ TEST_CASE("charts are drawn, and their texts are not run as commands" *
 }
 
 TEST_CASE("gnuplot's error is reported in one line" * doctest::skip(!report::has_gnuplot())) {
-  const std::string path = scratch_folder("complaint") + "/chart.svg";
+  const test::Folder files;
+  const std::string path = files / "chart.svg";
   report::Gnuplot chart;
   chart.script = "plot nonsense(\n";
   try {

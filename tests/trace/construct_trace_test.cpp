@@ -11,7 +11,7 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/trace_schema.hpp"
-#include <lrbscope/build.hpp>
+#include "tests/trace/runs.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/counters.hpp>
 #include <lrbscope/trace/divergence.hpp>
@@ -22,23 +22,9 @@
 using namespace lrb;
 using namespace lrb::trace;
 using Json = nlohmann::json;
+using runs::build, runs::Built;
 
 namespace {
-
-struct Built {
-  LrbRep rep;
-  Trace trace;
-};
-
-Built build(const Mesh& mesh, unsigned threads = 1, RecorderSettings settings = {},
-            BuildOptions options = {}) {
-  ConstructRecorder recorder(settings);
-  options.threads = threads;
-  options.probe = &recorder;
-  LrbRep rep = build_lrb(mesh, options);
-  Trace trace = recorder.take(rep, {});
-  return {std::move(rep), std::move(trace)};
-}
 
 /// Bodies of one component and of several, crossing, and with voids that leave thin gaps; in the plane.
 std::vector<Mesh> meshes() {
@@ -56,13 +42,6 @@ std::vector<Mesh> meshes() {
 const Built& rock() {
   static const Built built = build(shapes::bumpy_sphere(3, 7, 0.3));
   return built;
-}
-
-EventId find(const Trace& t, EventKind kind) {
-  for (EventId i = 0; i < t.events.size(); ++i)
-    if (t.events[i].kind == kind) return i;
-  FAIL("no such event");
-  return kNull;
 }
 
 std::string complaint(const Trace& trace) {
@@ -103,11 +82,13 @@ TEST_CASE(
     CAPTURE(mesh.name);
     BuildOptions options;
     options.merge_planes = &mesh == &bodies.back();
-    const Built built = build(mesh, 1, {}, options);
+    options.threads = 1;
+    const Built built = build(mesh, options);
     check_passes(built);
     CHECK((passes_of(built.trace).front().stage == BuildStage::merge) == options.merge_planes);
     CHECK(built.rep.hash() == build_lrb(mesh, options).hash());
-    const Built on_threads = build(mesh, 4, {}, options);
+    options.threads = 4;
+    const Built on_threads = build(mesh, options);
     CHECK(on_threads.rep.hash() == built.rep.hash());
     CHECK((on_threads.trace == built.trace));
     for (const PassSummary& p : passes_of(built.trace)) {
@@ -153,7 +134,7 @@ TEST_CASE(
       settings.event_cap = cap;
       settings.clock = clock;
       settings.scenario = "rock";
-      const Trace t = build(mesh, 1, settings).trace;
+      const Trace t = build(mesh, {}, settings).trace;
       CHECK(t.events.size() == cap);
       CHECK(t.events_seen == events);
       CHECK(complaint(t) == "");
@@ -249,7 +230,7 @@ TEST_CASE("summaries contain reasons of rejected caps, and no refinements") {
 TEST_CASE("damaged constructions are rejected") {
   const auto rejected = [](EventKind kind, auto change) {
     Trace t = rock().trace;
-    change(t, t.events[find(t, kind)]);
+    change(t, t.events[runs::first_of(t, kind)]);
     CHECK_THROWS_AS(check_trace(t, "t.json"), InputError);
   };
   check_trace(rock().trace, "t.json");

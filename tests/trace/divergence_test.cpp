@@ -6,6 +6,7 @@
 
 using namespace lrb;
 using namespace lrb::trace;
+using runs::first_of;
 
 namespace {
 
@@ -14,13 +15,6 @@ Trace diverging_run(const std::vector<Eigen::Vector3d>& poses = runs::kBoxPoses,
   RecorderSettings settings;
   settings.clock = clock;
   return runs::record(box, box, poses, settings).trace;
-}
-
-EventId first_of(const Trace& t, EventKind kind) {
-  for (EventId e = 0; e < t.events.size(); ++e)
-    if (t.events[e].kind == kind) return e;
-  FAIL("no such event");
-  return kNull;
 }
 
 std::string difference(const Trace& x, const Trace& y) {

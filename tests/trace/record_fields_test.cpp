@@ -18,19 +18,14 @@
 using namespace lrb;
 using namespace lrb::trace;
 using Json = nlohmann::json;
+using test::words;
+using namespace nlohmann::literals;
 
 namespace {
 
 Json resolved(const Json& node) {
   if (!node.contains("$ref")) return node;
   return test::trace_schema().at(Json::json_pointer(node.at("$ref").get<std::string>().substr(1)));
-}
-
-template <class Enum>
-Json words() {
-  Json out = Json::array();
-  for (const EnumName<Enum>& entry : kEnumNames<Enum>) out.push_back(entry.name);
-  return out;
 }
 
 /// The schema of a field, by its type.
@@ -189,4 +184,19 @@ TEST_CASE("every changed field of an answer is detected and read back") {
     CHECK_FALSE(x == y);
     CHECK(read_back(y) == y);
   });
+}
+
+TEST_CASE("reasons of undecided clashes are those of the schema, which may be words of earlier versions") {
+  Json run = Json::parse(trace_to_json(runs::record(runs::box(), runs::box(), runs::kBoxPoses).trace));
+  Json::json_pointer place(
+      "/definitions/time_step/properties/result/properties/clash/properties/reason/enum");
+  std::set<ClashReason> seen;
+  for (const Json& word : test::trace_schema()[place]) {
+    Json& clash = run["metadata"]["steps"][0]["result"]["clash"];
+    clash = R"({"kind": "undecided", "shares_faces": false, "distance": [0, 0], "course": []})"_json;
+    clash["reason"] = word;
+    CHECK(test::trace_faults(run) == "");
+    seen.insert(trace_from_json(run.dump(), "old").steps[0].result.clash.value().reason);
+  }
+  CHECK(seen.size() == kEnumNames<ClashReason>.size() - 1);  // all but none
 }

@@ -8,6 +8,7 @@
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/lrb_shapes.hpp"
+#include <lrbscope/build.hpp>
 #include <lrbscope/trace/recorder.hpp>
 
 namespace lrb::trace::runs {
@@ -19,6 +20,12 @@ inline const LrbRep& plate() {
 inline const LrbRep& box() {
   static const LrbRep rep(toy::dented_box());
   return rep;
+}
+
+inline EventId first_of(const Trace& t, EventKind kind) {
+  EventId e = 0;
+  while (t.events.at(e).kind != kind) ++e;
+  return e;
 }
 
 struct Snapshot {
@@ -78,6 +85,19 @@ inline Run record(const LrbRep& a, const LrbRep& b, const std::vector<Eigen::Vec
   }
   run.trace = recorder.take();
   return run;
+}
+
+/// A body, and how it was built.
+struct Built {
+  LrbRep rep;
+  Trace trace;
+};
+inline Built build(const Mesh& mesh, BuildOptions options = {}, const RecorderSettings& settings = {}) {
+  ConstructRecorder recorder(settings);
+  options.probe = &recorder;
+  LrbRep rep = build_lrb(mesh, options);
+  Trace trace = recorder.take(rep, {});
+  return {std::move(rep), std::move(trace)};
 }
 
 /// Two bodies, and their queries at random poses, recorded.

@@ -2,8 +2,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <random>
@@ -13,6 +11,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/mesh/io/encode.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/text.hpp"
 #include "tests/trace/runs.hpp"
@@ -26,6 +25,7 @@ using namespace std::string_literals;
 namespace fs = std::filesystem;
 using runs::box;
 using runs::plate;
+using test::load_bytes;
 
 namespace {
 
@@ -33,11 +33,6 @@ Trace ordered_box_run(Clock clock = Clock::event) {
   RecorderSettings settings;
   settings.clock = clock;
   return runs::record(box(), box(), runs::kBoxPoses, settings).trace;
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -88,11 +83,11 @@ TEST_CASE("files: plain, compressed, the same bytes each time, replaced whole, o
   save_trace(t, gz);
   CHECK(load_trace(plain) == t);
   CHECK(load_trace(gz) == t);
-  CHECK(bytes_of(plain) == trace_to_json(ordered_box_run()));
+  CHECK(load_bytes(plain) == trace_to_json(ordered_box_run()));
   save_trace(ordered_box_run(), folder / "again.json.gz");
-  CHECK(bytes_of(folder / "again.json.gz") == bytes_of(gz));
+  CHECK(load_bytes(folder / "again.json.gz") == load_bytes(gz));
   fs::remove(folder / "again.json.gz");
-  CHECK(bytes_of(gz).substr(0, 2) == "\x1f\x8b");
+  CHECK(load_bytes(gz).substr(0, 2) == "\x1f\x8b");
   CHECK(4 * fs::file_size(gz) < fs::file_size(plain));
   CHECK(folder.tree().size() == 2);
   CHECK_THROWS_AS(save_trace(t, folder / "no/such/folder.json"), InputError);

@@ -11,11 +11,13 @@
 #include "scenarios/golden/check.hpp"
 #include "scenarios/golden/golden_report.hpp"
 #include "tests/support/program.hpp"
+#include "tests/trace/runs.hpp"
 #include <lrbscope/render/image.hpp>
 
 namespace fs = std::filesystem;
 using namespace lrb;
 using namespace lrb::test;
+using trace::runs::first_of;
 
 namespace {
 
@@ -83,13 +85,6 @@ void lose(trace::Trace& t, trace::EventId lost) {
     if (s.first_event > lost) --s.first_event;
   --t.steps[step].events_seen;
   --t.events_seen;
-}
-
-trace::EventId first_of(const trace::Trace& t, EventKind kind) {
-  const auto it = std::find_if(t.events.begin(), t.events.end(),
-                               [kind](const trace::Event& e) { return e.kind == kind; });
-  REQUIRE(it != t.events.end());
-  return static_cast<trace::EventId>(it - t.events.begin());
 }
 
 }  // namespace

@@ -18,6 +18,17 @@ bool same(const Pose& x, const Pose& y) {
   return x.r == y.r && x.t == y.t;
 }
 
+/// Checks that a text is rejected with a message, in the form of its file.
+void check_error(const std::string& file, const std::string& text, const char* message) {
+  CAPTURE(text);
+  const auto parse = [&] {
+    if (file == "p.txt") io::parse_poses(text, file);
+    if (file == "p.csv") io::parse_pose_table(text, file);
+    if (file == "p.json") io::parse_pose_json(text, file);
+  };
+  CHECK_THROWS_WITH_AS(parse(), message, InputError);
+}
+
 }  // namespace
 
 TEST_CASE("poses: blank lines, comments, commas, CRLF, plus signs") {
@@ -32,17 +43,16 @@ TEST_CASE("poses: blank lines, comments, commas, CRLF, plus signs") {
 }
 
 TEST_CASE("poses: errors report file and line") {
-  const auto fails = [](const std::string& text, const char* message) {
-    CAPTURE(text);
-    CHECK_THROWS_WITH_AS(io::parse_poses(text, "p.txt"), message, InputError);
-  };
-  fails("1 0 0 5  0 1 0 6  0 0 1 7\n\n1 2 3", "p.txt:3: expected 12 numbers (a row-major 3x4 pose), found 3");
-  fails("1 0 0 x 0 1 0 0 0 0 1 0", "p.txt:1: \"x\" is not a number: expected 12 numbers per line");
-  fails("1 0 0 nan 0 1 0 0 0 0 1 0", "p.txt:1: \"nan\" is not finite; every number must be finite");
-  fails("1 0 0 1e999 0 1 0 0 0 0 1 0", "p.txt:1: \"1e999\" exceeds the range of a double");
-  fails("", "p.txt: no poses: expected lines of 12 numbers (row-major 3x4)");
-  fails(std::string("1 0 0 \0 0 1 0 0 0 0 1 0", 23),
-        "p.txt:1: \"?\" is not a number: expected 12 numbers per line");
+  check_error("p.txt", "1 0 0 5  0 1 0 6  0 0 1 7\n\n1 2 3",
+              "p.txt:3: expected 12 numbers (a row-major 3x4 pose), found 3");
+  check_error("p.txt", "1 0 0 x 0 1 0 0 0 0 1 0",
+              "p.txt:1: \"x\" is not a number: expected 12 numbers per line");
+  check_error("p.txt", "1 0 0 nan 0 1 0 0 0 0 1 0",
+              "p.txt:1: \"nan\" is not finite; every number must be finite");
+  check_error("p.txt", "1 0 0 1e999 0 1 0 0 0 0 1 0", "p.txt:1: \"1e999\" exceeds the range of a double");
+  check_error("p.txt", "", "p.txt: no poses: expected lines of 12 numbers (row-major 3x4)");
+  check_error("p.txt", std::string("1 0 0 \0 0 1 0 0 0 0 1 0", 23),
+              "p.txt:1: \"?\" is not a number: expected 12 numbers per line");
 }
 
 TEST_CASE("parse_vector() accepts three finite numbers only") {
@@ -71,23 +81,21 @@ TEST_CASE("poses in CSV: rows of 12 and 16, named columns in any order among oth
 }
 
 TEST_CASE("poses in CSV: errors report file and line") {
-  const auto fails = [](const std::string& text, const char* message) {
-    CAPTURE(text);
-    CHECK_THROWS_WITH_AS(io::parse_pose_table(text, "p.csv"), message, InputError);
-  };
-  fails("1,2,3\n", "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 3");
-  fails("1,2,3,4,5,6,7,8,9,10,11,12,0,0,0,2\n",
-        "p.csv:1: expected 0, 0, 0, 1 as the last row of the 4x4 pose");
-  fails("1,,3,4,5,6,7,8,9,10,11,12\n", "p.csv:1: cell 2 is empty: expected a number");
-  fails(
-      "1;2;3;4;5;6;7;8;9;10;11;12\n",
+  check_error("p.csv", "1,2,3\n", "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 3");
+  check_error("p.csv", "1,2,3,4,5,6,7,8,9,10,11,12,0,0,0,2\n",
+              "p.csv:1: expected 0, 0, 0, 1 as the last row of the 4x4 pose");
+  check_error("p.csv", "1,,3,4,5,6,7,8,9,10,11,12\n", "p.csv:1: cell 2 is empty: expected a number");
+  check_error(
+      "p.csv", "1;2;3;4;5;6;7;8;9;10;11;12\n",
       "p.csv:1: expected 12 numbers (a row-major 3x4 pose) or 16 (4x4), found 1; in a .csv file, commas separate "
       "them");
-  fails("r00,r01\n1,2\n",
-        "p.csv:1: missing column r02: expected r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz in any order");
-  fails("r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz\n1,2\n",
-        "p.csv:2: expected 12 cells, as in the first line, found 2");
-  fails("1,2,3,4,5,6,x,8,9,10,11,12\n", "p.csv:1: \"x\" is not a number: expected 12 numbers per line");
+  check_error(
+      "p.csv", "r00,r01\n1,2\n",
+      "p.csv:1: missing column r02: expected r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz in any order");
+  check_error("p.csv", "r00,r01,r02,tx,r10,r11,r12,ty,r20,r21,r22,tz\n1,2\n",
+              "p.csv:2: expected 12 cells, as in the first line, found 2");
+  check_error("p.csv", "1,2,3,4,5,6,x,8,9,10,11,12\n",
+              "p.csv:1: \"x\" is not a number: expected 12 numbers per line");
 }
 
 TEST_CASE("poses in JSON: flat or in rows, 3x4 or 4x4, alone or under \"poses\"") {
@@ -103,22 +111,22 @@ TEST_CASE("poses in JSON: flat or in rows, 3x4 or 4x4, alone or under \"poses\""
 }
 
 TEST_CASE("poses in JSON: errors report file, line and column") {
-  const auto fails = [](const std::string& text, const char* message) {
-    CAPTURE(text);
-    CHECK_THROWS_WITH_AS(io::parse_pose_json(text, "p.json"), message, InputError);
-  };
-  fails("{}", "p.json:1:1: expected an array of poses, or an object with such an array as \"poses\"");
-  fails("[]", "p.json:1:1: expected at least 1 items, found 0");
-  fails("[\n [1,2]]", "p.json:2:2: /0: expected a pose of 12 numbers (3x4, row by row) or 16 (4x4), found 2");
-  fails("[[[1,2,3,4],[5,6,7,8],[9,10,11]]]", "p.json:1:23: /0/2: expected 4 numbers, found 3");
-  fails("[[1,2,3,4,5,6,7,8,9,10,11,12,0,0,1,1]]",
-        "p.json:1:2: /0: expected 0, 0, 0, 1 as the last row of the 4x4 pose");
-  fails("[[1,2,3,4,5,6,7,8,9,10,11,\"x\"]]", "p.json:1:27: /0/11: expected a number, found string");
-  fails("{\"poses\": 7}", "p.json:1:11: /poses: expected an array, found number");
-  fails("{\"poses\":\n[[1,2,3,4,5,6,7,8,9,10,11,12]], \"poses\": []}",
-        "p.json:2:33: the key /poses occurs twice; keep one");
-  fails("[[1,2,3,4,5,6,7,8,9,10,11,12]] 5",
-        "p.json:1:32: not JSON: value - unexpected number literal; expected end of input");
+  check_error("p.json", "{}",
+              "p.json:1:1: expected an array of poses, or an object with such an array as \"poses\"");
+  check_error("p.json", "[]", "p.json:1:1: expected at least 1 items, found 0");
+  check_error("p.json", "[\n [1,2]]",
+              "p.json:2:2: /0: expected a pose of 12 numbers (3x4, row by row) or 16 (4x4), found 2");
+  check_error("p.json", "[[[1,2,3,4],[5,6,7,8],[9,10,11]]]",
+              "p.json:1:23: /0/2: expected 4 numbers, found 3");
+  check_error("p.json", "[[1,2,3,4,5,6,7,8,9,10,11,12,0,0,1,1]]",
+              "p.json:1:2: /0: expected 0, 0, 0, 1 as the last row of the 4x4 pose");
+  check_error("p.json", "[[1,2,3,4,5,6,7,8,9,10,11,\"x\"]]",
+              "p.json:1:27: /0/11: expected a number, found string");
+  check_error("p.json", "{\"poses\": 7}", "p.json:1:11: /poses: expected an array, found number");
+  check_error("p.json", "{\"poses\":\n[[1,2,3,4,5,6,7,8,9,10,11,12]], \"poses\": []}",
+              "p.json:2:33: the key /poses occurs twice; keep one");
+  check_error("p.json", "[[1,2,3,4,5,6,7,8,9,10,11,12]] 5",
+              "p.json:1:32: not JSON: value - unexpected number literal; expected end of input");
 }
 
 TEST_CASE("poses in JSON: other members are skipped, whatever they contain") {

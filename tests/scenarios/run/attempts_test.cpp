@@ -12,27 +12,18 @@
 
 #include "scenarios/bodies/shapes.hpp"
 #include "scenarios/compare/compare.hpp"
-#include <lrbscope/build.hpp>
+#include "tests/trace/runs.hpp"
 #include <lrbscope/trace/counters.hpp>
-#include <lrbscope/trace/recorder.hpp>
 
 using namespace lrb;
+using trace::runs::Built;
 
 namespace {
 
-struct Built {
-  LrbRep rep;
-  trace::Trace trace;
-};
-
 Built build_recorded(const Mesh& mesh, std::uint32_t patch) {
-  trace::ConstructRecorder recorder(trace::RecorderSettings{});
   BuildOptions options;
   options.patch_interior = patch;
-  options.probe = &recorder;
-  LrbRep rep = build_lrb(mesh, options);
-  trace::Trace trace = recorder.take(rep, {});
-  return {std::move(rep), std::move(trace)};
+  return trace::runs::build(mesh, options);
 }
 
 std::vector<Mesh> bodies_to_build() {

@@ -11,6 +11,7 @@
 #include "scenarios/spec/scenario.hpp"
 #include "tests/support/approach.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/trace/runs.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace_json.hpp>
@@ -102,11 +103,8 @@ TEST_CASE("a run whose trace names an invalid vertex is rejected") {
   const auto write = [&] { trace::save_trace(r.trace, folder / "trace.json"); };
   write();
   CHECK(record::open_run(folder.path.string()).trace == r.trace);
-  const auto point = std::find_if(r.trace.events.begin(), r.trace.events.end(),
-                                  [](const trace::Event& e) { return e.kind == EventKind::point; });
-  REQUIRE(point != r.trace.events.end());
-  point->a =
-      static_cast<std::uint32_t>(r.bodies[static_cast<std::size_t>(point->side)].rep.vertices().size());
+  trace::Event& point = r.trace.events[trace::runs::first_of(r.trace, EventKind::point)];
+  point.a = static_cast<std::uint32_t>(r.bodies[static_cast<std::size_t>(point.side)].rep.vertices().size());
   write();
   CHECK_THROWS_AS(record::open_run(folder.path.string()), InputError);
 }

@@ -14,6 +14,7 @@
 
 using namespace lrb;
 using nlohmann::json;
+using test::words;
 
 namespace {
 
@@ -34,13 +35,6 @@ std::string with(const std::string& pointer, const json& value) {
   json s = good();
   s[json::json_pointer(pointer)] = value;
   return s.dump(1);
-}
-
-template <class Enum>
-json words() {
-  json out = json::array();
-  for (const EnumName<Enum>& entry : kEnumNames<Enum>) out.push_back(entry.name);
-  return out;
 }
 
 }  // namespace
