@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <random>
 #include <string>
-#include <vector>
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <doctest/doctest.h>

@@ -1,6 +1,4 @@
 // Ten million pairs of triangles, about five minutes: LRB_EXACT_EFFORT=60 exact_tests -tc='triangles meet*'
-#include <cstdint>
-
 #include <doctest/doctest.h>
 
 #include "engine/exact/predicates.hpp"

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <random>
 #include <set>
 
@@ -50,19 +49,8 @@ ClosedHoles close(const Mesh& m) {
   return out;
 }
 
-/// Faces all of whose corners satisfy this are left out.
-template <class Where>
-Mesh without(const Mesh& m, Where where) {
-  std::set<FaceId> gone;
-  for (FaceId f = 0; f < m.face_count(); ++f) {
-    const auto c = m.face(f);
-    if (std::all_of(c.begin(), c.end(), [&](VertexId v) { return where(m.vertices[v]); })) gone.insert(f);
-  }
-  return without_faces(m, gone);
-}
-
 Mesh open_box(const Point3& low, const Point3& high) {
-  return without(box(low, high), [&](const Point3& x) { return x.z() == high.z(); });
+  return without_faces_at(box(low, high), [&](const Point3& x) { return x.z() == high.z(); });
 }
 
 Mesh with_random_holes(const Mesh& m, double share, unsigned seed) {
@@ -92,7 +80,7 @@ TEST_CASE("a boundary loop is found completely and measured") {
     CHECK(rim.box.sizes().z() == 0);
   }
   const auto bent =
-      loops_of(without(open_box({0, 0, 0}, {1, 1, 1}), [](const Point3& x) { return x.x() == 1; }));
+      loops_of(without_faces_at(open_box({0, 0, 0}, {1, 1, 1}), [](const Point3& x) { return x.x() == 1; }));
   REQUIRE(bent.size() == 1);
   CHECK_FALSE(bent[0].planar);
 }
@@ -145,8 +133,8 @@ TEST_CASE("flat holes are closed, also with collinear corners") {
   const ClosedHoles tube = close(open_cylinder(30));
   CHECK(tube.new_faces == 2 * 28);
   CHECK(check_mesh(tube.mesh).buildable());
-  const Mesh cells = without(voxels(4, 3, 2, [](int x, int y, int) { return x != 2 || y == 1; }),
-                             [](const Point3& x) { return x.z() == 2; });
+  const Mesh cells = without_faces_at(voxels(4, 3, 2, [](int x, int y, int) { return x != 2 || y == 1; }),
+                                      [](const Point3& x) { return x.z() == 2; });
   const ClosedHoles shaft = close(cells);
   CHECK(shaft.new_vertices == 0);
   CHECK(check_mesh(shaft.mesh).buildable());
@@ -197,8 +185,8 @@ TEST_CASE("a fill that would intersect the surface is rejected, and the face in 
 TEST_CASE("two nested loops in one plane are closed by the ring between them") {
   for (const int holes : {1, 2}) {
     const Mesh walls =
-        without(voxels(2 * holes + 1, 3, 1, [](int x, int y, int) { return y != 1 || x % 2 == 0; }),
-                [](const Point3& x) { return x.z() == 1; });
+        without_faces_at(voxels(2 * holes + 1, 3, 1, [](int x, int y, int) { return y != 1 || x % 2 == 0; }),
+                         [](const Point3& x) { return x.z() == 1; });
     const ClosedHoles out = close(walls);
     REQUIRE(out.holes.size() == static_cast<std::size_t>(holes + 1));
     for (const Hole& hole : out.holes) CHECK(hole.state == HoleState::closed_as_ring);
@@ -208,7 +196,7 @@ TEST_CASE("two nested loops in one plane are closed by the ring between them") {
     CHECK(volume(out.mesh) == doctest::Approx(3 * (2 * holes + 1) - holes));
   }
   // Loops in loops: each is joined to the smallest around it.
-  const ClosedHoles rings = close(without(
+  const ClosedHoles rings = close(without_faces_at(
       voxels(7, 7, 1, [](int x, int y, int) { return std::max(std::abs(x - 3), std::abs(y - 3)) % 2 == 1; }),
       [](const Point3& x) { return x.z() == 1; }));
   REQUIRE(rings.holes.size() == 4);
@@ -219,7 +207,7 @@ TEST_CASE("two nested loops in one plane are closed by the ring between them") {
   CHECK(pots.holes[0].state == HoleState::meets_surface);
   CHECK(pots.holes[1].state == HoleState::closed);
   // A sheet with a hole: its rim cannot be closed, for that lid would be its back, but its hole can.
-  Mesh sheet = without(
+  Mesh sheet = without_faces_at(
       voxels(
           3, 3, 1, [](int, int, int) { return true; }, true),
       [](const Point3& x) { return x.z() == 0 || x.x() == 0 || x.x() == 3 || x.y() == 0 || x.y() == 3; });

@@ -9,7 +9,6 @@
 #include <doctest/doctest.h>
 
 #include "engine/exact/predicates.hpp"
-#include "engine/mesh/face_pairs.hpp"
 #include "engine/mesh/polygon_shape.hpp"
 #include "engine/mesh/self_intersections.hpp"
 #include "scenarios/bodies/shapes.hpp"

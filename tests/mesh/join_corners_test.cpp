@@ -1,4 +1,3 @@
-#include <array>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -138,14 +137,8 @@ TEST_CASE("a soup of two touching bodies becomes two bodies, if their other edge
 
 TEST_CASE("coincident boundary loops are merged; faults remain") {
   const auto half = [](bool upper) {  // of a box, cut at z = 1
-    const Mesh b = upper ? box({0, 0, 1}, {1, 1, 2}) : box();
-    std::set<FaceId> gone;
-    for (FaceId f = 0; f < b.face_count(); ++f) {
-      bool flat = true;
-      for (const VertexId v : b.face(f)) flat &= b.vertices[v].z() == 1;
-      if (flat) gone.insert(f);
-    }
-    return without_faces(b, gone);
+    const Mesh whole = upper ? box({0, 0, 1}, {1, 1, 2}) : box();
+    return without_faces_at(whole, [](const Point3& x) { return x.z() == 1; });
   };
   JoinedCorners said;
   CHECK(joined_report(several({half(false), half(true)}), &said).buildable());

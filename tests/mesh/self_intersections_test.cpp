@@ -280,9 +280,8 @@ TEST_CASE(
   const Mesh a = icosphere(2);
   for (const Point3& by : {Point3{0.9, 0.2, 0.1}, Point3{0.05, 0.02, 1.9}}) {
     const Mesh both = several({a, translated(a, by)});
-    const LrbRep rep = LrbRep::without_regions(a, true, false);
-    const CollideResult expected =
-        collide(rep, {}, LrbRep::without_regions(translated(a, by), true, false), {});
+    const LrbRep rep = closed(a);
+    const CollideResult expected = collide(rep, {}, closed(translated(a, by)), {});
     const SelfIntersections found = listed_in(both);
     REQUIRE(found.pairs.size() == expected.pairs.size());
     REQUIRE(!found.pairs.empty());

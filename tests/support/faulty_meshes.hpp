@@ -2,10 +2,10 @@
 /// What real scans suffer from, done to clean meshes.
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <vector>
 
+#include "tests/support/bodies.hpp"
 #include <lrbscope/mesh.hpp>
 
 namespace lrb::test {
@@ -26,6 +26,15 @@ Mesh with_faces(const Mesh& m, Change change) {
 inline Mesh without_faces(const Mesh& m, const std::set<FaceId>& gone) {
   return with_faces(m, [&](Mesh& out, FaceId f, const std::vector<VertexId>& corners) {
     if (!gone.contains(f)) out.add_face(corners);
+  });
+}
+
+/// Without the faces all of whose corners satisfy `where`.
+template <class Where>
+Mesh without_faces_at(const Mesh& m, Where where) {
+  return with_faces(m, [&](Mesh& out, FaceId, const std::vector<VertexId>& corners) {
+    const auto is_there = [&](VertexId v) { return where(m.vertices[v]); };
+    if (!std::all_of(corners.begin(), corners.end(), is_there)) out.add_face(corners);
   });
 }
 
@@ -54,18 +63,15 @@ inline Mesh with_merged(const Mesh& m, VertexId v, VertexId into) {
   });
 }
 
-/// Each face with vertices of its own.
+/// Each face with vertices of its own, as STL files and the seams of textures have them.
 inline Mesh as_soup(const Mesh& m) {
-  Mesh out = with_faces(m, [&](Mesh& soup, FaceId, std::vector<VertexId> corners) {
-    for (VertexId& v : corners) {
-      soup.vertices.push_back(m.vertices[v]);
-      v = static_cast<VertexId>(soup.vertices.size() - 1);
-    }
-    soup.add_face(corners);
-  });
-  const auto old = static_cast<std::uint32_t>(m.vertices.size());
-  out.vertices.erase(out.vertices.begin(), out.vertices.begin() + old);
-  for (VertexId& v : out.face_vertices) v = VertexId(v - old);
+  Mesh out;
+  out.dim = m.dim;
+  for (FaceId f = 0; f < m.face_count(); ++f) {
+    std::vector<Eigen::Vector3d> corners;
+    for (const VertexId v : m.face(f)) corners.push_back(m.vertices[v]);
+    add_loose(out, corners);
+  }
   return out;
 }
 

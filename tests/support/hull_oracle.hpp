@@ -5,7 +5,6 @@
 /// so that no answer depends on rounding. Doubles become integers by an exact power of two per axis.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -58,13 +58,6 @@ inline int rounds_for(Kind k, int standard) {
   return effort(k == Kind::extreme ? (standard + 4) / 5 : standard);
 }
 
-inline std::string name_of(Kind k) {
-  static constexpr const char* kNames[] = {"grid",   "tiny_grid", "collinear", "underflow", "nudged_grid",
-                                           "real",   "shared",    "coplanar",  "far_grid",  "scaled",
-                                           "sliver", "wide",      "extreme"};
-  return kNames[static_cast<int>(k)];
-}
-
 inline double nudge(Rng& rng, double x) {
   const int r = random_int(rng, 0, 5);
   if (r == 0) return std::nextafter(x, std::numeric_limits<double>::infinity());
@@ -72,15 +65,36 @@ inline double nudge(Rng& rng, double x) {
   return x;
 }
 
-inline void fill_grid(Rng& rng, SimplexPair& s, int high) {
-  for (auto& p : s.p) {
-    for (double& x : p) x = random_int(rng, 0, high);
-  }
+template <int kHigh>
+void fill_grid(Rng& rng, SimplexPair& s) {
+  for (auto& p : s.p)
+    for (double& x : p) x = random_int(rng, 0, kHigh);
+}
+
+inline void fill_nudged_grid(Rng& rng, SimplexPair& s) {
+  fill_grid<3>(rng, s);
+  for (auto& p : s.p)
+    for (double& x : p) x = nudge(rng, x);
+}
+
+inline void fill_far_grid(Rng& rng, SimplexPair& s) {
+  fill_grid<3>(rng, s);
+  const double far = random_int(rng, 0, 1) == 0 ? 1e8 : 1e16;
+  for (auto& p : s.p)
+    for (double& x : p) x = nudge(rng, x * 2 + far);
 }
 
 inline void fill_real(Rng& rng, SimplexPair& s) {
-  for (auto& p : s.p) {
+  for (auto& p : s.p)
     for (double& x : p) x = random_unit(rng);
+}
+
+inline void fill_scaled(Rng& rng, SimplexPair& s) {
+  fill_nudged_grid(rng, s);
+  if (random_int(rng, 0, 1) == 0) fill_real(rng, s);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double factor = std::ldexp(1.0, random_int(rng, -498, 498));
+    for (auto& p : s.p) p[k] *= factor;
   }
 }
 
@@ -94,6 +108,11 @@ inline void share_corners(Rng& rng, SimplexPair& s) {
     for (std::size_t k = 0; k < 3; ++k)
       s.p[j][k] = s.p[0][k] + u * (s.p[1][k] - s.p[0][k]) + v * (s.p[2][k] - s.p[0][k]);
   }
+}
+
+inline void fill_shared(Rng& rng, SimplexPair& s) {
+  fill_real(rng, s);
+  share_corners(rng, s);
 }
 
 inline void fill_coplanar(Rng& rng, SimplexPair& s) {
@@ -118,7 +137,7 @@ inline void fill_sliver(Rng& rng, SimplexPair& s) {
 }
 
 inline void fill_collinear(Rng& rng, SimplexPair& s) {
-  fill_grid(rng, s, 2);
+  fill_grid<2>(rng, s);
   for (std::size_t first : {std::size_t{0}, std::size_t{3}}) {
     if (random_int(rng, 0, 3) == 0) continue;
     const int t = random_int(rng, -1, 2);
@@ -128,18 +147,18 @@ inline void fill_collinear(Rng& rng, SimplexPair& s) {
   }
 }
 
-inline void scale_to_underflow(Rng& rng, SimplexPair& s) {
+inline void fill_underflow(Rng& rng, SimplexPair& s) {
+  fill_grid<3>(rng, s);
   if (random_int(rng, 0, 1) == 0) fill_real(rng, s);
   share_corners(rng, s);
   const bool in_plane = random_int(rng, 0, 1) == 0;  // then products of two factors are
   const double factor = std::ldexp(1.0, random_int(rng, 0, 18) - (in_plane ? 541 : 361));
-  for (auto& p : s.p) {
+  for (auto& p : s.p)
     for (double& x : p) x = nudge(rng, x) * factor;
-  }
 }
 
 inline void fill_wide(Rng& rng, SimplexPair& s) {
-  fill_grid(rng, s, 2);
+  fill_grid<2>(rng, s);
   for (auto& p : s.p) {
     for (double& x : p) {
       if (x == 0) x = random_int(rng, 0, 2) * 1e-17;
@@ -158,61 +177,25 @@ inline void fill_extreme(Rng& rng, SimplexPair& s) {
   }
 }
 
+/// Each kind in the order of Kind.
+struct KindEntry {
+  const char* name;
+  void (*fill)(Rng& rng, SimplexPair& s);
+};
+inline constexpr KindEntry kKinds[] = {
+    {"grid", fill_grid<3>},        {"tiny_grid", fill_grid<1>},       {"collinear", fill_collinear},
+    {"underflow", fill_underflow}, {"nudged_grid", fill_nudged_grid}, {"real", fill_real},
+    {"shared", fill_shared},       {"coplanar", fill_coplanar},       {"far_grid", fill_far_grid},
+    {"scaled", fill_scaled},       {"sliver", fill_sliver},           {"wide", fill_wide},
+    {"extreme", fill_extreme}};
+
+inline std::string name_of(Kind k) {
+  return kKinds[static_cast<int>(k)].name;
+}
+
 inline SimplexPair random_pair(Rng& rng, Kind kind) {
   SimplexPair s;
-  switch (kind) {
-    case Kind::grid:
-      fill_grid(rng, s, 3);
-      break;
-    case Kind::tiny_grid:
-      fill_grid(rng, s, 1);
-      break;
-    case Kind::real:
-      fill_real(rng, s);
-      break;
-    case Kind::shared:
-      fill_real(rng, s);
-      share_corners(rng, s);
-      break;
-    case Kind::coplanar:
-      fill_coplanar(rng, s);
-      break;
-    case Kind::sliver:
-      fill_sliver(rng, s);
-      break;
-    case Kind::collinear:
-      fill_collinear(rng, s);
-      break;
-    case Kind::underflow:
-      fill_grid(rng, s, 3);
-      scale_to_underflow(rng, s);
-      break;
-    case Kind::wide:
-      fill_wide(rng, s);
-      break;
-    case Kind::extreme:
-      fill_extreme(rng, s);
-      break;
-    case Kind::nudged_grid:
-    case Kind::far_grid:
-    case Kind::scaled:
-    case Kind::count:
-      fill_grid(rng, s, 3);
-      break;
-  }
-  if (kind == Kind::scaled && random_int(rng, 0, 1) == 0) fill_real(rng, s);
-  if (kind == Kind::nudged_grid || kind == Kind::far_grid || kind == Kind::scaled) {
-    const double far = random_int(rng, 0, 1) == 0 ? 1e8 : 1e16;
-    for (auto& p : s.p) {
-      for (double& x : p) x = nudge(rng, kind == Kind::far_grid ? x * 2 + far : x);
-    }
-  }
-  if (kind == Kind::scaled) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double factor = std::ldexp(1.0, random_int(rng, -498, 498));
-      for (auto& p : s.p) p[k] *= factor;
-    }
-  }
+  kKinds[static_cast<int>(kind)].fill(rng, s);
   return s;
 }
 
