@@ -19,9 +19,6 @@
 namespace lrb::tools {
 namespace {
 
-using namespace lrb::speed;
-using workers::WorkerMethod;
-
 struct BenchOptions : MeasureOptions {
   BenchOptions() { folder = folder_help = "out/bench"; }
   std::vector<std::uint32_t> faces = {20000, 100000};

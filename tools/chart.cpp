@@ -18,9 +18,6 @@
 namespace lrb::tools {
 namespace {
 
-using namespace lrb::speed;
-using workers::WorkerMethod;
-
 struct ChartOptions : MeasureOptions {
   ChartOptions() {
     folder_help = "out/chart, or out/chart-QUANTITY";

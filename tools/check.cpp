@@ -123,13 +123,11 @@ std::string text_of(const std::vector<profile::Check>& checks) {
   return out;
 }
 
-void write_page(const std::vector<profile::Check>& checks, const std::string& path, const std::string& up,
-                const Globals& globals) {
+void write_page(const std::vector<profile::Check>& checks, bool wrong, const std::string& path,
+                const std::string& up, const Globals& globals) {
   const report::Folder folder(path);
   report::Document page("Answers and visits of " + std::string(checks.size() == 1 ? "an engine" : "engines"),
                         "An exact query checks each answer. Prices of visits: needed, proof, or waste.");
-  const bool wrong =
-      std::any_of(checks.begin(), checks.end(), [](const profile::Check& c) { return c.is_wrong(); });
   page.verdict(wrong ? "wrong answers" : "no wrong answers", !wrong).command(globals.command_line);
   note(globals, profile::add_checks(page, checks, view_with(up).up));
   page.write(folder);
@@ -156,13 +154,12 @@ int run_check(CheckOptions o, const Globals& globals) {
   for (const profile::Check& c : checks) ++captures[c.engine];
   for (std::size_t i = 0; i < checks.size(); ++i)
     if (captures[checks[i].engine] > 1) checks[i].engine = printable_name(o.inputs[i]);
+  const bool wrong = std::ranges::any_of(checks, &profile::Check::is_wrong);
   if (!o.json) print(text_of(checks));
   if (!o.folder.empty()) {
-    write_page(checks, o.folder, o.up, globals);
+    write_page(checks, wrong, o.folder, o.up, globals);
     if (!o.json) print(o.folder + "/index.html\n");
   }
-  const bool wrong =
-      std::any_of(checks.begin(), checks.end(), [](const profile::Check& c) { return c.is_wrong(); });
   return wrong ? kMismatch : kOk;
 }
 

@@ -37,11 +37,6 @@ struct ExportOptions {
 /// Kind of the input.
 enum class Input : std::uint8_t { body, run, scenario, poses };
 
-bool ends_with(const std::string& text, std::string_view ending) {
-  return text.size() >= ending.size() &&
-         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 /// Returns true if a JSON text appears to have this member (a text search).
 bool mentions(const std::string& text, std::string_view key) {
   return text.find("\"" + std::string(key) + "\"") != std::string::npos;
@@ -51,9 +46,8 @@ Input kind_of(const ExportOptions& o) {
   std::error_code error;
   if (std::filesystem::is_directory(o.input, error)) return Input::run;
   if (!std::filesystem::exists(o.input, error)) return Input::scenario;
-  const bool json = ends_with(o.input, ".json");
-  const std::string text =
-      json || ends_with(o.input, ".gz") ? trace::load_trace_text(o.input) : std::string();
+  const bool json = o.input.ends_with(".json");
+  const std::string text = json || o.input.ends_with(".gz") ? trace::load_trace_text(o.input) : std::string();
   if (mentions(text, "traceEvents")) return Input::run;
   if (json && mentions(text, "bodies")) return Input::scenario;
   return o.asks_for("poses") ? Input::poses : Input::body;
