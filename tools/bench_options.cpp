@@ -87,7 +87,7 @@ void write_scenario(const Contest& contest, const std::array<std::string, 2>& fi
 
 void print_rows(const std::string& title, const engines::Rows& rows, bool json) {
   if (!json) return print(title + "\n" + rows.table);
-  for (const std::string& line : rows.lines) print(line + "\n");
+  for (const std::string& line : rows.lines) print(line);
 }
 
 }  // namespace lrb::tools

@@ -25,13 +25,10 @@ namespace {
 
 using methods::Answer;
 using nlohmann::ordered_json;
+using workers::line_of;
 
 constexpr std::size_t kMaxShown = 8;
 const Engine::Progress kSilent = [](std::size_t) {};
-
-std::string line_of(const ordered_json& value) {
-  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
 
 /// Adds the tests of an answer, as far as they are known.
 void add_tests(ordered_json& line, const Answer& answer) {
@@ -98,8 +95,7 @@ Samples samples_of(const capture::Capture& capture, const std::string& file) {
     Answer answer = answer_of(q, capture.names, false);
     if (is_new) {
       rounds.push_back(1);
-      const Eigen::Matrix3d back = q.poses[0].r.transpose();
-      out.poses.push_back({back * q.poses[1].r, back * (q.poses[1].t - q.poses[0].t)});
+      out.poses.push_back(methods::relative(q.poses[0], q.poses[1]));
       out.answers.push_back(std::move(answer));
       continue;
     }

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bench/methods/triangles.hpp"
 #include "bench/workers/worker_json.hpp"
 #include "scenarios/io/poses.hpp"
 #include "scenarios/profile/check.hpp"
@@ -160,9 +161,8 @@ class CommandEngine : public Engine {
     if (!q.ended) complain(query + "expected LRBCAP_END, found the end of the capture");
     if (q.kind != capture::QueryKind::all_pairs && q.kind != capture::QueryKind::any)
       complain(query + "expected a query for all pairs, found another kind");
-    const Eigen::Matrix3d back = q.poses[0].r.transpose();
-    const Eigen::Vector3d t = back * (q.poses[1].t - q.poses[0].t);
-    if ((back * q.poses[1].r - pose.r).norm() > kAlike || (t - pose.t).norm() > kAlike * (1 + pose.t.norm()))
+    const Pose found = methods::relative(q.poses[0], q.poses[1]);
+    if ((found.r - pose.r).norm() > kAlike || (found.t - pose.t).norm() > kAlike * (1 + pose.t.norm()))
       complain(query + "expected the pose of line " + std::to_string(q.number) +
                ", found another; are matrices given row by row, and queries in the order of the poses?");
   }

@@ -185,12 +185,10 @@ class OursCoarse : public OurMethod {
   /// Returns corners of the intersection; for faces within rounding of each other, the midpoint.
   static void add_points(const Posed& a, const Posed& b, const SimplexPair& pair,
                          std::vector<Eigen::Vector3d>& points) {
-    const auto p = corners_of(a.body.rep, a.pose, pair.a), q = corners_of(b.body.rep, b.pose, pair.b);
-    const double* const pp[3] = {p[0].data(), p[1].data(), p[2].data()};
-    const double* const qq[3] = {q[0].data(), q[1].data(), q[2].data()};
-    const exact::PairContact c = exact::contact_of_triangles(pp, qq);
+    const WorldTriangle p(a.body.rep, a.pose, pair.a), q(b.body.rep, b.pose, pair.b);
+    const exact::PairContact c = exact::contact_of_triangles(p.corners().data(), q.corners().data());
     for (std::uint8_t i = 0; i < c.corner_count; ++i) points.push_back(c.corners[i].x);
-    if (c.corner_count == 0) points.push_back((p[0] + p[1] + p[2] + q[0] + q[1] + q[2]) / 6);
+    if (c.corner_count == 0) points.push_back((p.x[0] + p.x[1] + p.x[2] + q.x[0] + q.x[1] + q.x[2]) / 6);
   }
 
   Content content_;
@@ -301,35 +299,24 @@ std::vector<MethodEntry> ours_methods() {
 namespace {
 
 struct PlainBody : MethodBody {
-  int dim = 3;
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<VertexId> corners;  ///< (|simplices| x dim)
+  explicit PlainBody(const LrbRep& rep) : mesh(simplices_of(rep)) {}
+  Mesh mesh;
 };
 
 /// Returns the corners in world coordinates, simplex by simplex.
 std::vector<Eigen::Vector3d> in_world(const PlainBody& body, const Pose& pose) {
   std::vector<Eigen::Vector3d> moved, out;
-  for (const Eigen::Vector3d& v : body.vertices) moved.push_back(pose.apply(v));
-  for (const VertexId v : body.corners) out.push_back(moved[v]);
+  for (const Eigen::Vector3d& v : body.mesh.vertices) moved.push_back(pose.apply(v));
+  for (const VertexId v : body.mesh.face_vertices) out.push_back(moved[v]);
   return out;
 }
 
 class PlainDouble : public MethodOf<PlainBody, false> {
  public:
-  std::unique_ptr<MethodBody> build(const LrbRep& rep) override {
-    auto body = std::make_unique<PlainBody>();
-    body->dim = rep.dim();
-    body->vertices.assign(rep.vertices().begin(), rep.vertices().end());
-    VertexId v[3];
-    for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
-      rep.simplex(s, v);
-      body->corners.insert(body->corners.end(), v, v + rep.simplex_size());
-    }
-    return body;
-  }
+  std::unique_ptr<MethodBody> build(const LrbRep& rep) override { return std::make_unique<PlainBody>(rep); }
 
   Answer ask(const Posed& a, const Posed& b, Mode mode) override {
-    const std::size_t n = static_cast<std::size_t>(a.body.dim);
+    const std::size_t n = static_cast<std::size_t>(a.body.mesh.dim);
     Answer answer;
     const Stopwatch watch;
     const std::vector<Eigen::Vector3d> p = in_world(a.body, a.pose), q = in_world(b.body, b.pose);

@@ -112,12 +112,6 @@ Answer our_self_intersections(const Question& q, Setting) {
 
 using Triangle = std::array<Vector3d, 3>;
 
-Triangle triangle(const LrbRep& rep, SimplexId s) {
-  VertexId v[3] = {};
-  rep.simplex(s, v);
-  return {rep.vertices()[v[0]], rep.vertices()[v[1]], rep.vertices()[v[2]]};
-}
-
 double point_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
   const Vector3d d = b - a;
   const double length_sq = d.squaredNorm();
@@ -174,7 +168,7 @@ Answer plain_near_pairs(const Question& q, Setting) {
   const auto faces_of = [](const LrbRep& rep) {
     std::vector<Face> out;
     for (SimplexId s = 0; s < rep.real_simplex_count(); ++s)
-      out.push_back({triangle(rep, s), box_of(triangle(rep, s))});
+      out.push_back({corners_of(rep, Pose{}, s), box_of(corners_of(rep, Pose{}, s))});
     return out;
   };
   Answer out;
@@ -200,7 +194,7 @@ Answer plain_self_intersections(const Question& q, Setting) {
       body.simplex(i, v);
       body.simplex(j, w);
       if (std::find_first_of(v, v + 3, w, w + 3) != v + 3) continue;
-      const Triangle s = triangle(body, i), t = triangle(body, j);
+      const Triangle s = corners_of(body, Pose{}, i), t = corners_of(body, Pose{}, j);
       if (plain_triangles_meet(s.data(), t.data())) out.pairs.push_back({i, j});
     }
   out.microseconds = watch.microseconds();

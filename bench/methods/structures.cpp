@@ -24,11 +24,6 @@ std::size_t size_of(const List& list) {
   return list.size() * sizeof(*list.data());
 }
 
-/// Returns the pose of B in A's frame.
-Pose relative(const Pose& a, const Pose& b) {
-  return {a.r.transpose() * b.r, a.r.transpose() * (b.t - a.t)};
-}
-
 /// Asks a structure, with B's pose in A's frame, and takes the time.
 template <class Body>
 class Structure : public MethodOf<Body> {

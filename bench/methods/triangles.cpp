@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/error.hpp>
 
 namespace lrb::methods {
@@ -39,46 +40,54 @@ void check_rigid(const Pose& pose) {
     throw InputError("skipped: a pose that is not a rigid motion");
 }
 
-Mesh real_mesh(const LrbRep& rep) {
-  Mesh m;
-  m.dim = rep.dim();
-  m.name = rep.name();
-  std::vector<VertexId> renamed(rep.vertices().size(), kNull);
+Mesh part_of(const Mesh& mesh, const std::function<bool(FaceId)>& keep) {
+  Mesh out;
+  out.dim = mesh.dim;
+  out.name = mesh.name;
+  std::vector<VertexId> renamed(mesh.vertices.size(), kNull);
   std::vector<VertexId> corners;
-  for (FaceId f = 0; f < rep.real_face_count(); ++f) {
+  for (FaceId f = 0; f < mesh.face_count(); ++f) {
+    if (!keep(f)) continue;
     corners.clear();
-    for (const VertexId v : rep.face(f)) {
+    for (const VertexId v : mesh.face(f)) {
       if (renamed[v] == kNull) {
-        renamed[v] = static_cast<VertexId>(m.vertices.size());
-        m.vertices.push_back(rep.vertices()[v]);
+        renamed[v] = static_cast<VertexId>(out.vertices.size());
+        out.vertices.push_back(mesh.vertices[v]);
       }
       corners.push_back(renamed[v]);
     }
-    m.add_face(corners);
+    out.add_face(corners);
   }
-  return m;
+  return out;
+}
+
+Mesh real_mesh(const LrbRep& rep) {
+  return part_of(rep.real_mesh(), [](FaceId) { return true; });
+}
+
+Mesh simplices_of(const LrbRep& rep) {
+  Mesh out;
+  out.dim = rep.dim();
+  out.vertices.assign(rep.vertices().begin(), rep.vertices().end());
+  VertexId v[3] = {};
+  for (SimplexId s = 0; s < rep.real_simplex_count(); ++s) {
+    rep.simplex(s, v);
+    out.add_face({v, static_cast<std::size_t>(out.dim)});
+  }
+  return out;
+}
+
+Mesh at_pose(Mesh mesh, const Pose& pose) {
+  for (Eigen::Vector3d& v : mesh.vertices) v = pose.apply(v);
+  return mesh;
 }
 
 LrbRep at_pose(const LrbRep& rep, const Pose& pose) {
-  Mesh m = real_mesh(rep);
-  for (Eigen::Vector3d& v : m.vertices) v = pose.apply(v);
-  return LrbRep::without_regions(m, rep.closed(), rep.self_intersecting());
+  return LrbRep::without_regions(at_pose(real_mesh(rep), pose), rep.closed(), rep.self_intersecting());
 }
 
 Mesh joined(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  Mesh out;
-  out.dim = a.dim();
-  for (const auto& [rep, pose] : {std::pair{&a, &pose_a}, std::pair{&b, &pose_b}}) {
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    for (const Eigen::Vector3d& v : rep->vertices()) out.vertices.push_back(pose->apply(v));
-    for (SimplexId s = 0; s < rep->real_simplex_count(); ++s) {
-      VertexId v[3] = {};
-      rep->simplex(s, v);
-      for (VertexId& corner : v) corner = VertexId(first + corner);
-      out.add_face({v, static_cast<std::size_t>(out.dim)});
-    }
-  }
-  return out;
+  return shapes::several({at_pose(simplices_of(a), pose_a), at_pose(simplices_of(b), pose_b)});
 }
 
 LrbRep union_of(const Question& question) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,10 +31,21 @@ void check_fits_float(const Triangles& t);
 /// Throws InputError unless the pose is a rotation and a translation, as most engines require.
 void check_rigid(const Pose& pose);
 
+/// Returns the pose of B in A's frame.
+inline Pose relative(const Pose& a, const Pose& b) {
+  return {a.r.transpose() * b.r, a.r.transpose() * (b.t - a.t)};
+}
+
+/// Returns the mesh with the faces that `keep` accepts, and without unused vertices. Vertices are numbered in
+/// the order of their use.
+Mesh part_of(const Mesh& mesh, const std::function<bool(FaceId)>& keep);
 /// Returns the real faces in their order, with the vertices that they use.
 Mesh real_mesh(const LrbRep& rep);
+/// Returns all vertices, and the real simplices as faces of the same numbers.
+Mesh simplices_of(const LrbRep& rep);
 
-/// Returns the body with its world coordinates as its own. It has no regions.
+/// Returns the mesh or the body with its world coordinates as its own. The body has no regions.
+Mesh at_pose(Mesh mesh, const Pose& pose);
 LrbRep at_pose(const LrbRep& rep, const Pose& pose);
 
 /// Returns one mesh of the real simplices of two posed bodies, A's first.
@@ -43,6 +55,13 @@ LrbRep union_of(const Question& question);
 
 /// Returns the corners of a real triangle in the world.
 std::array<Eigen::Vector3d, 3> corners_of(const LrbRep& rep, const Pose& pose, SimplexId s);
+
+/// A triangle of a posed body, as input of the exact predicates.
+struct WorldTriangle {
+  WorldTriangle(const LrbRep& rep, const Pose& pose, SimplexId s) : x(corners_of(rep, pose, s)) {}
+  std::array<const double*, 3> corners() const { return {x[0].data(), x[1].data(), x[2].data()}; }
+  std::array<Eigen::Vector3d, 3> x;  ///< world frame
+};
 
 /// Sorts pairs and removes duplicates.
 void sort_pairs(std::vector<SimplexPair>& pairs);

@@ -195,8 +195,7 @@ int run_worker(int argc, char** argv) {
   std::FILE* out = fdopen(dup(STDOUT_FILENO), "w");
   dup2(STDERR_FILENO, STDOUT_FILENO);
   const auto write_line = [out](const ordered_json& value) {
-    const std::string line = value.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-    if (out == nullptr || std::fputs(line.c_str(), out) < 0 || std::fflush(out) != 0)
+    if (out == nullptr || std::fputs(workers::line_of(value).c_str(), out) < 0 || std::fflush(out) != 0)
       std::_Exit(1);  // the reader has closed the channel
   };
   try {

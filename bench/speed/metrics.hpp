@@ -104,12 +104,7 @@ struct RegionError {
   double depth = 0;                    ///< over the diagonal
 };
 
-/// A triangle of a posed body, as input of the exact predicates.
-struct WorldTriangle {
-  WorldTriangle(const LrbRep& rep, const Pose& pose, SimplexId s) : x(methods::corners_of(rep, pose, s)) {}
-  std::array<const double*, 3> corners() const { return {x[0].data(), x[1].data(), x[2].data()}; }
-  std::array<Eigen::Vector3d, 3> x;  ///< world frame
-};
+using methods::WorldTriangle;
 
 /// Returns the region of pairs of two bodies at given poses. Pairs that do not intersect contribute only to
 /// the points, by the centroids of their triangles.

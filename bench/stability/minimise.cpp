@@ -17,6 +17,7 @@ namespace lrb::stability {
 namespace {
 
 using Eigen::Vector3d;
+using methods::part_of;
 
 bool crosses(const cases::Case& c, const SimplexPair& pair) {
   return PosedPair(c, pair).contact().meet == exact::Meet::cross;
@@ -49,30 +50,6 @@ Mesh simplices_of(const Mesh& mesh) {
   return out;
 }
 
-/// Returns the mesh with the faces that `keep` accepts, and without unused vertices. Vertices are numbered in
-/// the order of their use; those with equal coordinates are joined, unless a face would lose a corner.
-template <class Keep>
-Mesh part_of(const Mesh& mesh, const Keep& keep) {
-  Mesh out;
-  out.dim = mesh.dim;
-  out.name = mesh.name;
-  std::vector<VertexId> renamed(mesh.vertices.size(), kNull);
-  std::vector<VertexId> corners;
-  for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    if (!keep(f)) continue;
-    corners.clear();
-    for (const VertexId v : mesh.face(f)) {
-      if (renamed[v] == kNull) {
-        renamed[v] = static_cast<VertexId>(out.vertices.size());
-        out.vertices.push_back(mesh.vertices[v]);
-      }
-      corners.push_back(renamed[v]);
-    }
-    out.add_face(corners);
-  }
-  return out;
-}
-
 bool has_repeated_corner(std::span<const VertexId> corners) {
   return std::set<VertexId>(corners.begin(), corners.end()).size() < corners.size();
 }
@@ -88,16 +65,10 @@ bool turns_grid(const Pose& pose) {
   return (pose.r.cwiseAbs().array() == 0 || pose.r.cwiseAbs().array() == 1).all();
 }
 
-/// Returns the mesh at its pose.
-Mesh in_world(Mesh mesh, const Pose& pose) {
-  for (Vector3d& v : mesh.vertices) v = pose.apply(v);
-  return mesh;
-}
-
 /// Returns the number of faces without area (2D: length) in the world.
 std::uint64_t degenerate_faces(const CaseMeshes& c) {
   std::uint64_t n = 0;
-  for (const Mesh& m : {in_world(c.a, c.pose_a), in_world(c.b, c.pose_b)})
+  for (const Mesh& m : {methods::at_pose(c.a, c.pose_a), methods::at_pose(c.b, c.pose_b)})
     n += check_mesh(m, false)[MeshFault::zero_area_face].count;
   return n;
 }
@@ -227,7 +198,7 @@ class Shrinking {
       CaseMeshes c = now_;
       for (std::size_t side = 0; side < 2; ++side) {
         if (!(side == 0 ? of_a : of_b)) continue;
-        mesh(c, side) = in_world(mesh(c, side), pose(c, side));
+        mesh(c, side) = methods::at_pose(mesh(c, side), pose(c, side));
         pose(c, side) = Pose{};
       }
       return c;

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "trace/json_records.hpp"
+#include "bench/workers/worker_json.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 
@@ -172,8 +172,7 @@ Record record_from(const json& value) {
 
 std::string to_lines(const std::vector<Record>& records) {
   std::string out;
-  for (const Record& r : records)
-    out += to_json(r).dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  for (const Record& r : records) out += workers::line_of(to_json(r));
   return out;
 }
 

@@ -46,6 +46,10 @@ static_assert(kFieldCount<methods::MethodInfo> + 1 == detail::member_count<metho
 
 namespace lrb::workers {
 
+std::string line_of(const nlohmann::ordered_json& value) {
+  return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 nlohmann::ordered_json to_json(const methods::MethodInfo& info) {
   nlohmann::ordered_json out = io::record_to_json(info);
   for (const auto& trait : kEnumNames<methods::Trait>) out[std::string(trait.name)] = info.has(trait.value);

@@ -15,6 +15,9 @@
 
 namespace lrb::workers {
 
+/// Returns JSON as a line. Text that is not UTF-8 is replaced.
+std::string line_of(const nlohmann::ordered_json& value);
+
 nlohmann::ordered_json to_json(const methods::MethodInfo& info);
 /// Reads a line. Throws InputError, which describes the error in the line, if it is invalid.
 methods::MethodInfo method_info_from(const nlohmann::json& value);
