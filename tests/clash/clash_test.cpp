@@ -9,7 +9,6 @@
 #include <doctest/doctest.h>
 
 #include "bench/stability/rational_oracles.hpp"
-#include "engine/clash/surface_pieces.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/bodies.hpp"

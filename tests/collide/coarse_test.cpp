@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include "engine/collide/collide_into.hpp"
-#include "engine/exact/locate.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/affine_maps.hpp"
 #include "tests/support/coarse_checks.hpp"
@@ -26,16 +25,13 @@ struct CoarseBodies {
 };
 
 std::vector<CoarseBodies> coarse_bodies() {
-  std::vector<CoarseBodies> list;
-  list.push_back(
-      {"bumps", build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))});
-  list.push_back({"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.5))});
-  list.push_back({"tori", build_lrb(shapes::torus(16, 10)), build_lrb(shapes::torus(14, 8, 1, 0.25))});
-  list.push_back({"comb, no regions", build_lrb(shapes::comb(5)),
-                  LrbRep::without_regions(shapes::icosphere(1, 0.5), true, false)});
-  list.push_back({"gears 2D", build_lrb(shapes::gear(24)), build_lrb(shapes::gear(19, 0.9, 0.6))});
-  list.push_back({"ring 2D", build_lrb(shapes::ring_2d(40)), build_lrb(shapes::star(7, 0.4, 0.15))});
-  return list;
+  return {{"bumps", build_lrb(shapes::bumpy_sphere(2, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))},
+          {"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.5))},
+          {"tori", build_lrb(shapes::torus(16, 10)), build_lrb(shapes::torus(14, 8, 1, 0.25))},
+          {"comb, no regions", build_lrb(shapes::comb(5)),
+           LrbRep::without_regions(shapes::icosphere(1, 0.5), true, false)},
+          {"gears 2D", build_lrb(shapes::gear(24)), build_lrb(shapes::gear(19, 0.9, 0.6))},
+          {"ring 2D", build_lrb(shapes::ring_2d(40)), build_lrb(shapes::star(7, 0.4, 0.15))}};
 }
 
 Pose pose_around(RandomEngine& random, const CoarseBodies& pair) {

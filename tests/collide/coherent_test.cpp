@@ -12,6 +12,7 @@
 
 using namespace lrb;
 using shapes::RandomEngine;
+using test::closed, test::open_body;
 
 namespace {
 
@@ -20,24 +21,16 @@ struct CoherentBodies {
   LrbRep a, b;
 };
 
-LrbRep bare(const Mesh& mesh, bool closed = true) {
-  return LrbRep::without_regions(mesh, closed, false);
-}
-
 std::vector<CoherentBodies> coherent_bodies() {
-  std::vector<CoherentBodies> list;
-  list.push_back(
-      {"bumps", build_lrb(shapes::bumpy_sphere(3, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))});
-  list.push_back({"ball in bowl", build_lrb(shapes::bowl(24, 12)), bare(shapes::icosphere(2, 0.5))});
-  list.push_back({"tori", build_lrb(shapes::torus(24, 16)), bare(shapes::torus(20, 12, 1, 0.3))});
-  list.push_back({"combs", bare(shapes::comb(5)), bare(shapes::comb(4))});
-  list.push_back(
-      {"quads in a void", bare(shapes::box_with_void()), bare(shapes::quad_torus(8, 6, 0.2, 0.1))});
-  list.push_back({"open", bare(shapes::open_cylinder(24), false), bare(shapes::icosphere(1, 0.4))});
-  list.push_back({"far", bare(shapes::translated(shapes::icosphere(2), {1e7, -2e7, 3e6})),
-                  bare(shapes::icosphere(1, 0.6))});
-  list.push_back({"gears 2D", build_lrb(shapes::gear(24)), bare(shapes::gear(19, 0.9, 0.6))});
-  return list;
+  return {{"bumps", build_lrb(shapes::bumpy_sphere(3, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3))},
+          {"ball in bowl", build_lrb(shapes::bowl(24, 12)), closed(shapes::icosphere(2, 0.5))},
+          {"tori", build_lrb(shapes::torus(24, 16)), closed(shapes::torus(20, 12, 1, 0.3))},
+          {"combs", closed(shapes::comb(5)), closed(shapes::comb(4))},
+          {"quads in a void", closed(shapes::box_with_void()), closed(shapes::quad_torus(8, 6, 0.2, 0.1))},
+          {"open", open_body(shapes::open_cylinder(24)), closed(shapes::icosphere(1, 0.4))},
+          {"far", closed(shapes::translated(shapes::icosphere(2), {1e7, -2e7, 3e6})),
+           closed(shapes::icosphere(1, 0.6))},
+          {"gears 2D", build_lrb(shapes::gear(24)), closed(shapes::gear(19, 0.9, 0.6))}};
 }
 
 /// Products of rotations drift away from rotations; this brings them back.
@@ -191,7 +184,7 @@ TEST_CASE(
 TEST_CASE(
     "coherent queries detect a small body that passes through a surface in one step, and slides of any step") {
   RandomEngine random(12);
-  const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), small = bare(shapes::icosphere(0, 0.01)),
+  const LrbRep a = build_lrb(shapes::bumpy_sphere(3, 5, 0.2)), small = closed(shapes::icosphere(0, 0.01)),
                b = build_lrb(shapes::bumpy_sphere(2, 6, 0.2));
   CoherentTally through, slides;
   for (const double step : {0.03, 0.05, 0.07, 0.11, 0.13})
@@ -209,8 +202,8 @@ TEST_CASE(
 TEST_CASE("coherent queries of bodies that leave the range of doubles") {
   using Eigen::Vector3d;
   const double size = 1e300, step = 4e307;
-  const LrbRep a = bare(shapes::scaled(shapes::icosphere(2), size)),
-               b = bare(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size));
+  const LrbRep a = closed(shapes::scaled(shapes::icosphere(2), size)),
+               b = closed(shapes::scaled(shapes::bumpy_sphere(2, 6, 0.2), size));
   // Eight steps on, along a course, or off a place in any direction, end beyond the largest double.
   const std::vector<Vector3d> on_course = {{-2 * step, size, 0}, {-step, size, 0}, {0, size, 0}};
   const std::vector<Vector3d> on_none = {{step, 0, 0},    {0, step, 0}, {0, 0, step / 2},   {size, size, 0},

@@ -37,9 +37,7 @@ bool near(const Eigen::Vector3d& x, const Eigen::Vector3d& y, double by = 1e-12)
 
 TEST_CASE("coincident vertices are one: contacts across seams are connected") {
   const Mesh ball = shapes::icosphere(2), box = shapes::box({-1, -1, -1}, {1, 1, 1});
-  const auto open = [](const Mesh& mesh) {
-    return LrbRep::without_regions(test::as_soup(mesh), false, false);
-  };
+  const auto open = [](const Mesh& mesh) { return test::open_body(test::as_soup(mesh)); };
   for (const auto& [x, y, by] : {std::tuple{ball, ball, Eigen::Vector3d(1.3, 0.2, 0.1)},
                                  std::tuple{box, ball, Eigen::Vector3d(0.9, 0.8, 0.7)},
                                  std::tuple{box, box, Eigen::Vector3d(0.5, 0.25, 2)}}) {

@@ -1,7 +1,6 @@
 // Explanations against the query itself, brute force and distances from another source.
 #include <algorithm>
 #include <limits>
-#include <string>
 
 #include <doctest/doctest.h>
 

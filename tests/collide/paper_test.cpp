@@ -46,8 +46,8 @@ TEST_CASE(
 }
 
 TEST_CASE("without regions the paper's query is brute force and finds all pairs") {
-  const LrbRep a = LrbRep::without_regions(shapes::icosphere(1), true, false);
-  const LrbRep b = LrbRep::without_regions(shapes::comb(3), true, false);
+  const LrbRep a = test::closed(shapes::icosphere(1));
+  const LrbRep b = test::closed(shapes::comb(3));
   shapes::RandomEngine random(3);
   for (int i = 0; i < 20; ++i) {
     const Pose p = shapes::random_pose(random, a, b, 0.4);
@@ -65,7 +65,7 @@ TEST_CASE(
   const LrbRep a = shapes::dented_box();
   // In the dent, below the lid at z = 2, its corner through the dent's floor at z = 1: the lid is not
   // touched.
-  const LrbRep pebble = LrbRep::without_regions(shapes::box({1.6, 1.7, 0.9}, {2.1, 2.2, 1.5}), true, false);
+  const LrbRep pebble = test::closed(shapes::box({1.6, 1.7, 0.9}, {2.1, 2.2, 1.5}));
   const CollideResult complete = ask(a, pebble, Pose{}, Recursion::complete);
   CHECK(complete.relation == Relation::crossing);
   CHECK(complete.opened[0] == std::vector<RegionId>{0});

@@ -72,15 +72,13 @@ struct SeparateBodies {
 };
 
 std::vector<SeparateBodies> separate_bodies() {
-  std::vector<SeparateBodies> list;
-  list.push_back(
-      {"bumps", build_lrb(shapes::bumpy_sphere(3, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3)), 0.6});
-  list.push_back({"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.3)), 0.3});
-  list.push_back({"tori", build_lrb(shapes::torus(16, 10)), build_lrb(shapes::torus(14, 8, 1, 0.25)), 0.4});
-  list.push_back({"void", build_lrb(shapes::box_with_void()), build_lrb(shapes::icosphere(1, 0.2)), 0.1});
-  list.push_back({"gears 2D", build_lrb(shapes::gear(24)), build_lrb(shapes::gear(19, 0.9, 0.6)), 0.65});
-  list.push_back({"comb 2D", build_lrb(shapes::comb_2d(6)), build_lrb(shapes::star(7, 0.3, 0.15)), 0.3});
-  return list;
+  return {
+      {"bumps", build_lrb(shapes::bumpy_sphere(3, 7, 0.3)), build_lrb(shapes::bumpy_sphere(2, 8, 0.3)), 0.6},
+      {"ball in bowl", build_lrb(shapes::bowl(16, 8)), build_lrb(shapes::icosphere(2, 0.3)), 0.3},
+      {"tori", build_lrb(shapes::torus(16, 10)), build_lrb(shapes::torus(14, 8, 1, 0.25)), 0.4},
+      {"void", build_lrb(shapes::box_with_void()), build_lrb(shapes::icosphere(1, 0.2)), 0.1},
+      {"gears 2D", build_lrb(shapes::gear(24)), build_lrb(shapes::gear(19, 0.9, 0.6)), 0.65},
+      {"comb 2D", build_lrb(shapes::comb_2d(6)), build_lrb(shapes::star(7, 0.3, 0.15)), 0.3}};
 }
 
 }  // namespace

@@ -110,19 +110,6 @@ TEST_CASE(
   CHECK(all.apart > 500);
 }
 
-TEST_CASE("a body that jumps in and out of another has the right relation") {
-  const LrbRep a = closed(shapes::icosphere(2)), b = closed(shapes::icosphere(1, 0.2));
-  CoherentDistance follows(a, b);
-  CoherentDistanceTally t;
-  for (int i = 0; i < 20; ++i) {
-    const double at = 0.01 * i + (i % 4 < 2 ? 0 : 1.5);
-    const PosePair poses{Pose{}, Pose::translation({at, 0, 0})};
-    check_same(a, b, poses, follows.distance(poses.a, poses.b), t);
-  }
-  CHECK(t.inside == 10);
-  CHECK(t.apart == 10);
-}
-
 TEST_CASE("the bound on the approach between two poses is valid and tight") {
   RandomEngine random(32);
   const LrbRep a = closed(shapes::bumpy_sphere(1, 7, 0.3)), b = closed(shapes::torus(6, 5));

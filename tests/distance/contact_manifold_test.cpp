@@ -1,8 +1,6 @@
 // Contact manifolds: known contacts, and the guarantees for all kinds of bodies.
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <numbers>
 #include <set>
 
@@ -14,7 +12,7 @@
 #include "tests/support/simplex_distance.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/workspace.hpp>
+#include <lrbscope/world_box.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -44,8 +42,7 @@ double distance_to_feature(const LrbRep& rep, const Pose& pose, const SurfaceFea
 }
 
 double size_of(const LrbRep& rep, const Pose& pose) {
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& x : rep.vertices()) box.extend(pose.apply(x));
+  const Eigen::AlignedBox3d box = world_box(rep, pose);
   return std::max(box.sizes().norm(),
                   box.corner(box.BottomLeftFloor).norm() + box.corner(box.TopRightCeil).norm());
 }
@@ -243,7 +240,7 @@ TEST_CASE("manifolds have all pairs and points on both surfaces, for all kinds o
       closed(shapes::box_with_void(), 0.3),
       closed(hard::cog(12)),
       closed(hard::nested(3)),
-      LrbRep::without_regions(shapes::open_cylinder(8), false, false),
+      test::open_body(shapes::open_cylinder(8)),
       LrbRep::without_regions(
           shapes::several({shapes::quad_box(), shapes::translated(shapes::quad_box(), {0.5, 0.25, 0.125})}),
           true, true)};
@@ -285,8 +282,8 @@ ManifoldsSeen check_manifold_grids(int queries) {
   for (int i = 0; i < queries; ++i) {
     CAPTURE(i);
     const int dim = i % 4 == 0 ? 2 : 3;
-    const LrbRep a = LrbRep::without_regions(test::grid_soup(random, 3, dim, i % 2 * 5), false, false),
-                 b = LrbRep::without_regions(test::grid_soup(random, 3, dim), false, false);
+    const LrbRep a = test::open_body(test::grid_soup(random, 3, dim, i % 2 * 5)),
+                 b = test::open_body(test::grid_soup(random, 3, dim));
     const double margin = std::sqrt(std::floor(shapes::uniform(random, 0, 4)));
     check(a, {}, b, Pose::translation({std::floor(shapes::uniform(random, 0, 4)), 0, 0}), margin, seen);
   }

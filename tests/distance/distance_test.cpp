@@ -1,7 +1,6 @@
 // The distance of two bodies against rational brute force.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <doctest/doctest.h>
 
@@ -12,7 +11,7 @@
 #include "tests/support/rational.hpp"
 #include <lrbscope/collide.hpp>
 #include <lrbscope/distance.hpp>
-#include <lrbscope/error.hpp>
+#include <lrbscope/world_box.hpp>
 
 using namespace lrb;
 using oracle::Rational;
@@ -23,12 +22,7 @@ namespace {
 using test::closed;
 
 double size_of(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pose_b) {
-  const auto of = [](const LrbRep& rep, const Pose& pose) {
-    Eigen::AlignedBox3d box;
-    for (const VertexId v : rep.data().face_vertices) box.extend(pose.apply(rep.vertices()[v]));
-    return box.diagonal().norm();
-  };
-  return std::max(of(a, pose_a), of(b, pose_b));
+  return std::max(world_box(a, pose_a).diagonal().norm(), world_box(b, pose_b).diagonal().norm());
 }
 
 struct DistanceTally {
@@ -120,17 +114,15 @@ struct DistantBodies {
 };
 
 std::vector<DistantBodies> distant_bodies() {
-  std::vector<DistantBodies> list;
-  list.push_back({"spheres", closed(shapes::icosphere(1)), closed(shapes::icosphere(1, 0.7))});
-  list.push_back({"bumps", closed(shapes::bumpy_sphere(1, 7, 0.3)), closed(shapes::bumpy_sphere(1, 8, 0.3))});
-  list.push_back({"ball in bowl", closed(shapes::bowl(8, 4)), closed(shapes::icosphere(0, 0.4))});
-  list.push_back({"combs", closed(shapes::comb(3)), closed(shapes::comb(2))});
-  list.push_back({"quads", closed(shapes::quad_box()), closed(shapes::quad_torus(6, 5))});
-  list.push_back({"tiny and large", closed(shapes::bumpy_sphere(1, 9)),
-                  closed(shapes::scaled(shapes::tetrahedron(), 1e-3))});
-  list.push_back({"gears 2D", closed(shapes::gear(9)), closed(shapes::gear(7, 0.9, 0.6))});
-  list.push_back({"ring 2D", closed(shapes::ring_2d(30)), closed(shapes::star(5, 0.3, 0.1))});
-  return list;
+  return {{"spheres", closed(shapes::icosphere(1)), closed(shapes::icosphere(1, 0.7))},
+          {"bumps", closed(shapes::bumpy_sphere(1, 7, 0.3)), closed(shapes::bumpy_sphere(1, 8, 0.3))},
+          {"ball in bowl", closed(shapes::bowl(8, 4)), closed(shapes::icosphere(0, 0.4))},
+          {"combs", closed(shapes::comb(3)), closed(shapes::comb(2))},
+          {"quads", closed(shapes::quad_box()), closed(shapes::quad_torus(6, 5))},
+          {"tiny and large", closed(shapes::bumpy_sphere(1, 9)),
+           closed(shapes::scaled(shapes::tetrahedron(), 1e-3))},
+          {"gears 2D", closed(shapes::gear(9)), closed(shapes::gear(7, 0.9, 0.6))},
+          {"ring 2D", closed(shapes::ring_2d(30)), closed(shapes::star(5, 0.3, 0.1))}};
 }
 
 }  // namespace

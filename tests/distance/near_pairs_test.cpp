@@ -2,7 +2,6 @@
 // where doubles are close to the limit.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <doctest/doctest.h>
 
@@ -11,6 +10,7 @@
 #include "tests/support/rational.hpp"
 #include <lrbscope/distance.hpp>
 #include <lrbscope/near_pairs.hpp>
+#include <lrbscope/world_box.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -34,10 +34,7 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
   REQUIRE(result.found == result.pairs.size());
   const std::vector<test::Points> of_a = test::real_simplices(a, pose_a),
                                   of_b = test::real_simplices(b, pose_b);
-  Eigen::AlignedBox3d box;
-  for (const auto* all : {&of_a, &of_b})
-    for (const test::Points& s : *all)
-      for (const Vector3d& x : s) box.extend(x);
+  const Eigen::AlignedBox3d box = world_box(a, pose_a).merged(world_box(b, pose_b));
   const double rough = 1e-6 * box.diagonal().norm();
   std::size_t next = 0;
   for (SimplexId s = 0; s < a.real_simplex_count(); ++s)
@@ -79,7 +76,7 @@ TEST_CASE("near pairs are those that brute force finds, for all kinds of bodies,
   RandomEngine random(1);
   const LrbRep solids[] = {
       closed(shapes::quad_box()), closed(shapes::icosphere(0)), closed(shapes::torus(6, 5)),
-      LrbRep::without_regions(shapes::open_cylinder(8), false, false),
+      test::open_body(shapes::open_cylinder(8)),
       LrbRep::without_regions(
           shapes::several({shapes::quad_box(), shapes::translated(shapes::quad_box(), {0.5, 0.25, 0.125})}),
           true, true)};
@@ -173,8 +170,8 @@ PairsSeen check_near_grids(int queries) {
   RandomEngine random(4);
   PairsSeen seen;
   for (int i = 0; i < queries; ++i) {
-    const LrbRep a = LrbRep::without_regions(test::grid_soup(random, 3), false, false),
-                 b = LrbRep::without_regions(test::grid_soup(random, 3), false, false);
+    const LrbRep a = test::open_body(test::grid_soup(random, 3)),
+                 b = test::open_body(test::grid_soup(random, 3));
     const double squared = std::floor(shapes::uniform(random, 0, 9));
     check(a, {}, b, Pose::translation({std::floor(shapes::uniform(random, 0, 4)), 0, 0}), std::sqrt(squared),
           seen);

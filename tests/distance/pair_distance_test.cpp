@@ -1,7 +1,6 @@
 // Distances of two simplices, in doubles and in integers, against rational arithmetic.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <doctest/doctest.h>
 

@@ -11,6 +11,7 @@
 #include "tests/support/rational.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/point_distance.hpp>
+#include <lrbscope/world_box.hpp>
 
 using namespace lrb;
 using Eigen::Vector3d;
@@ -45,10 +46,7 @@ struct Seen {
 
 void check(const LrbRep& rep, const Pose& pose, const std::vector<Vector3d>& points, Seen& seen) {
   const std::vector<test::Points> simplices = test::real_simplices(rep, pose);
-  Eigen::AlignedBox3d box;
-  for (const test::Points& s : simplices)
-    for (const Vector3d& x : s) box.extend(x);
-  const double size = box.diagonal().norm();
+  const double size = world_box(rep, pose).diagonal().norm();
   const std::vector<PointDistance> found = point_distances(rep, pose, points);
   REQUIRE(found.size() == points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -120,7 +118,7 @@ Seen check_points_by_grids(int bodies) {
   Seen seen;
   for (int i = 0; i < bodies; ++i) {
     CAPTURE(i);
-    const LrbRep body = LrbRep::without_regions(test::grid_soup(random, 4, i % 4 == 0 ? 2 : 3), false, false);
+    const LrbRep body = test::open_body(test::grid_soup(random, 4, i % 4 == 0 ? 2 : 3));
     std::vector<Vector3d> points;
     for (int k = 0; k < 10; ++k) {
       const auto coordinate = [&] { return std::floor(shapes::uniform(random, -2, 10)) / 2; };
@@ -132,33 +130,8 @@ Seen check_points_by_grids(int bodies) {
   return seen;
 }
 
-}  // namespace
-
-TEST_CASE("signed distances of points to triangles on a grid") {
-  CHECK(check_points_by_grids(100).on_surface > 20);
-}
-
-TEST_CASE("signed distances of 100,000 points to triangles on a grid, and to solids" *
-          doctest::test_suite("long")) {
-  CHECK(check_points_by_grids(10'000).on_surface > 2000);
-  RandomEngine random(6);
-  const LrbRep bodies[] = {closed(shapes::quad_box()),  closed(shapes::icosphere(1)),
-                           closed(shapes::torus(8, 6)), closed(shapes::bowl(6, 3)),
-                           closed(shapes::ring_2d(12)), closed(shapes::star(5))};
-  Seen seen;
-  for (int round = 0; round < 300; ++round)
-    for (const LrbRep& body : bodies) {
-      const double turn = shapes::uniform(random, 0, 6);
-      const Pose pose = body.dim() == 2 ? Pose::rotation(Vector3d(0, 0, 1), turn, {0.3, -1.5, 0})
-                                        : Pose{shapes::random_rotation(random), {0.3, -1.5, turn}};
-      check(body, pose, points_about(body, pose, random, 60), seen);
-    }
-  CHECK(seen.points == 108'000);
-  CHECK(seen.inside > 10'000);
-  CHECK(seen.outside > 30'000);
-}
-
-TEST_CASE("signed distances of points agree with rational brute force and with winding numbers") {
+/// Points about solids and other bodies, in `rounds` poses each.
+void check_points_by_bodies(int rounds) {
   RandomEngine random(1);
   // Two boxes that overlap: their common part counts as outside.
   const Mesh two =
@@ -169,24 +142,40 @@ TEST_CASE("signed distances of points agree with rational brute force and with w
                            closed(shapes::torus(8, 6)),
                            closed(shapes::bowl(6, 3)),
                            LrbRep::without_regions(two, true, true),
-                           LrbRep::without_regions(shapes::open_cylinder(8), false, false),
+                           test::open_body(shapes::open_cylinder(8)),
                            closed(shapes::gear(8)),
                            closed(shapes::ring_2d(12)),
                            closed(shapes::star(5))};
   Seen seen;
   for (const LrbRep& body : bodies)
-    for (int round = 0; round < 3; ++round) {
+    for (int round = 0; round < rounds; ++round) {
       CAPTURE(body.real_face_count());
       Pose pose;
       if (round > 0)
         pose = body.dim() == 2 ? Pose::rotation(Vector3d(0, 0, 1), 1.0 * round, {0.3, -1.5, 0})
-                               : Pose{shapes::random_rotation(random), {0.3, -1.5, 1000.0 * (round - 1)}};
+                               : Pose{shapes::random_rotation(random), {0.3, -1.5, 1000.0 * (round % 3 - 1)}};
       check(body, pose, points_about(body, pose, random, 60), seen);
     }
-  CHECK(seen.points == 1800);
-  CHECK(seen.inside > 150);
-  CHECK(seen.outside > 600);
-  CHECK(seen.on_surface > 100);
+  CHECK(seen.points == 600 * rounds);
+  CHECK(seen.inside > 50 * rounds);
+  CHECK(seen.outside > 200 * rounds);
+  CHECK(seen.on_surface > 30 * rounds);
+}
+
+}  // namespace
+
+TEST_CASE("signed distances of points agree with rational brute force and with winding numbers") {
+  check_points_by_bodies(3);
+}
+
+TEST_CASE("signed distances of 208,000 points, to triangles on a grid and to bodies" *
+          doctest::test_suite("long")) {
+  CHECK(check_points_by_grids(10'000).on_surface > 2000);
+  check_points_by_bodies(180);
+}
+
+TEST_CASE("signed distances of points to triangles on a grid") {
+  CHECK(check_points_by_grids(100).on_surface > 20);
 }
 
 TEST_CASE("a tolerance widens the interval of a signed distance") {
@@ -203,7 +192,7 @@ TEST_CASE("a tolerance widens the interval of a signed distance") {
 }
 
 TEST_CASE("signed distances to a body without faces are infinite") {
-  const LrbRep nothing = LrbRep::without_regions(Mesh{}, false, false);
+  const LrbRep nothing = test::open_body(Mesh{});
   const std::vector<Vector3d> points = {{0, 0, 0.5}};
   const PointDistance d = point_distances(nothing, {}, points)[0];
   CHECK(std::isinf(d.lower));

@@ -2,7 +2,6 @@
 /// Trees of any kind of volume over a mesh, in the form of a capture.
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <vector>
 

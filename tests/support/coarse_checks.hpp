@@ -2,7 +2,6 @@
 /// What coarse queries claim, against slow truth.
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 

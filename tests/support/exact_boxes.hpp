@@ -17,7 +17,6 @@
 #include "tests/support/margins.hpp"
 #include "tests/support/rational_oracle.hpp"
 #include "tests/support/simplex_distance.hpp"
-#include "tests/support/tree_content.hpp"
 #include <lrbscope/lrb_rep.hpp>
 
 namespace lrb {
@@ -134,6 +133,17 @@ struct LeafPair {
   }
 };
 
+/// Appends the simplices beneath a node.
+void simplices_under(const ObbTree& t, std::uint32_t node, std::vector<SimplexId>& out) {
+  const TreeNode& n = t.nodes()[node];
+  for (std::uint32_t k = 0; k < n.count; ++k) {
+    if (n.is_leaf)
+      out.push_back(t.blocks()[n.first].simplex[k]);
+    else
+      simplices_under(t, n.first + k, out);
+  }
+}
+
 /// The simplices that each box of a node must hold.
 std::vector<std::vector<SimplexId>> contents(const LrbRep& rep, std::uint32_t node) {
   const TreeNode& n = rep.tree().nodes()[node];
@@ -142,7 +152,7 @@ std::vector<std::vector<SimplexId>> contents(const LrbRep& rep, std::uint32_t no
     if (n.is_leaf)
       r[k].push_back(rep.tree().blocks()[n.first].simplex[k]);
     else
-      test::simplices_under(rep.tree(), n.first + k, r[k]);
+      simplices_under(rep.tree(), n.first + k, r[k]);
   }
   return r;
 }

@@ -2,8 +2,6 @@
 /// Small LRB-reps made by hand, with all regions known.
 
 #include <initializer_list>
-#include <utility>
-#include <vector>
 
 #include <lrbscope/lrb_rep.hpp>
 
