@@ -93,7 +93,7 @@ export class ProofMap {
     this.box = element("div", { style: "display:flex;flex-wrap:wrap;gap:16px" }, this.canvas, side);
     byId("scene").append(element("div", { class: "tab", "data-tab": "Proof map" }, this.box));
     this.redraw = oncePerFrame(() => this.draw());
-    selection.listeners.push((what) => what === "event" && this.redraw());
+    selection.on("event", () => this.redraw());
     new ResizeObserver(this.redraw).observe(this.box);
     const place = (e) => [e.offsetX, e.offsetY].map((x) => x / this.canvas.clientWidth),
       at = (e) => place(e).map((x, i) => this.window[i] + x * this.window[2]);

@@ -191,7 +191,7 @@ class Together {
     this.listening = false; // while applying the other view's state: not to be sent back
     document.documentElement.classList.add("alone");
     view.camera.controls.addEventListener("change", () => this.tell({ camera: view.camera.json() }));
-    selection.listeners.push((what) => what === "event" && this.tell({ step: this.step }));
+    selection.on("event", () => this.tell({ step: this.step }));
     window.addEventListener("message", (e) => e.source === parent && e.data?.lrbscope
         && this.hear(e.data.lrbscope));
     this.tell({ camera: view.camera.json(), step: this.step }); // the view that is created last sets both
@@ -261,10 +261,8 @@ function startScene() {
   byId("scene").classList.toggle("building", Boolean(events.passes));
   const selection = new Selection(events),
     wrappers = complete ? new Wrappers(bodies, events, scene.wrapper) : null;
-  if (wrappers)
-    selection.listeners.push((what) => {
-      if (what !== "look") wrappers.seek(selection.event, selection.resolved);
-    }); // before the listeners that display them
+  if (wrappers) // before the listeners that display them
+    selection.onContent(() => wrappers.seek(selection.event, selection.resolved));
   const timeline = new Timeline(events, selection), panel = new Panel(events, selection, wrappers);
   const filter = new EventFilter(), table = new EventTable(events, selection, filter),
     form = new FilterForm(events, filter, table);
@@ -275,8 +273,8 @@ function startScene() {
     controls = view ? new ViewControls(view, selection) : null;
   byId("thinned").textContent = scene.thinned;
   byId("thinned").hidden = !scene.thinned;
-  selection.listeners.push((what) => {
-    if (what !== "look") byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
+  selection.onContent(() => {
+    byId("view-caption").textContent = eventSentence(events, wrappers, selection.event);
   });
   new RowLinks(events, selection, controls);
   new AnswerLine(scene.answers, events, selection);
@@ -289,9 +287,7 @@ function startScene() {
   if (view) printView(view);
   for (const row of document.querySelectorAll(".tools, .keys, header .numbers")) showMore(row);
   showMore(document.querySelector(".panel"));
-  selection.listeners.push((what) => {
-    if (what === "pick") markAbout(events, selection);
-  });
+  selection.on("pick", () => markAbout(events, selection));
   const loader = new TraceLoader(scene, events, (poses) => {
     if (wrappers) wrappers.at = -1;
     if (view) view.takePoses(poses);
@@ -301,9 +297,7 @@ function startScene() {
     selection.goTo(events.at(shownId));
     if (attempts) selection.pick(selection.picked);
   });
-  selection.listeners.push((what) => {
-    if (what === "event") shownId = events.id(selection.event);
-  });
+  selection.on("event", () => (shownId = events.id(selection.event)));
   const listPicked = () => {
     if (!selection.picked) return;
     form.showPicked(selection.picked);

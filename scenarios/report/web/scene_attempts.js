@@ -155,10 +155,8 @@ export class AttemptPanel {
     Object.assign(this, { attempts, selection, events: attempts.events });
     byId("attempt-before").onclick = () => this.show(this.current, false);
     byId("attempt-after").onclick = () => this.show(this.current, true);
-    selection.listeners.push((what) => {
-      if (what === "pick") this.list();
-      if (what !== "look") this.mark();
-    });
+    selection.on("pick", () => this.list());
+    selection.onContent(() => this.mark());
   }
 
   get here() {

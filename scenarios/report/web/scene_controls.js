@@ -20,9 +20,7 @@ export class Timeline {
       "event-next": () => this.by(1),
     };
     for (const [id, action] of Object.entries(buttons)) byId(id).onclick = () => this.go(action);
-    selection.listeners.push((what) => {
-      if (what === "event") this.show();
-    });
+    selection.on("event", () => this.show());
   }
 
   /** Sets the slider's length to the number of steps. */

@@ -113,10 +113,8 @@ export class EventTable {
       this.selection.goTo(Number(row.dataset.event));
       if (events.attempts) events.attempts.pickPlace(this.selection.event, selection);
     });
-    selection.listeners.push((what) => {
-      if (what === "event") this.follow();
-      if (what === "pick") this.draw();
-    });
+    selection.on("event", () => this.follow());
+    selection.on("pick", () => this.draw());
     new ResizeObserver(oncePerFrame(() => this.resize())).observe(this.box);
     this.refilter();
   }

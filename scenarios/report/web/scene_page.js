@@ -221,9 +221,7 @@ export function stripOfRun(scene, events, selection, ofStep) {
     contactStep: scene.firstContact >= 0
         ? bars.findIndex((b) => b.step === events.stepNumber(events.at(scene.firstContact))) : -1,
   });
-  selection.listeners.push((what) => {
-    if (what === "event" && bars.length) strip.mark(at());
-  });
+  if (bars.length) selection.on("event", () => strip.mark(at()));
   return strip;
 }
 

@@ -54,6 +54,14 @@ export class Selection {
   tell(what) {
     for (const listener of this.listeners) listener(what);
   }
+  /** Adds a listener to one kind of change: "event", "pick" or "look". */
+  on(kind, action) {
+    this.listeners.push((what) => what === kind && action());
+  }
+  /** Adds a listener to all changes but those of the look. */
+  onContent(action) {
+    this.listeners.push((what) => what !== "look" && action());
+  }
 
   /** Moves to an event, by its index; frames and charts are already there. */
   standAt(event) {
@@ -117,9 +125,7 @@ export class AnswerLine {
     this.box = document.querySelector("header .numbers");
     if (!answers || !this.box) return;
     this.ofStep = new Map([...events.stepNumbers].map((number, step) => [number, answers.steps[step]]));
-    selection.listeners.push((what) => {
-      if (what === "event") this.show(events.stepNumber(selection.event));
-    });
+    selection.on("event", () => this.show(events.stepNumber(selection.event)));
   }
 
   show(step) {

@@ -23,10 +23,7 @@ export class WhyPanel {
     this.row = -1; // of the path, whose boxes the view shows
     byId("why-copy").onclick = () => this.copy();
     byId("why-way").addEventListener("click", (e) => this.point(e.target.closest("[data-row]")));
-    if (!explanations.none)
-      selection.listeners.push((what) => {
-        if (what !== "look") this.show();
-      });
+    if (!explanations.none) selection.onContent(() => this.show());
   }
 
   tell() {

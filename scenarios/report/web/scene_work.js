@@ -29,8 +29,7 @@ export class WorkIcicle {
     this.ofStep = WorkIcicle.bySteps(work);
     new ResizeObserver(oncePerFrame(() => this.draw())).observe(this.box);
     form.listeners.push(() => this.draw());
-    selection.listeners.push((what) => {
-      if (what !== "event") return;
+    selection.on("event", () => {
       if (this.scope === "step" && this.shownStep !== events.stepNumber(selection.event)) this.draw();
       else this.mark();
     });
