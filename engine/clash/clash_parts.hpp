@@ -56,20 +56,32 @@ struct UnitBodies {
 /// Returns the bodies with which a context was begun. Both must have faces.
 UnitBodies unit_bodies(QueryContext& context);
 
+/// A norm whose unit ball is a box about 0; by default the largest coordinate.
+struct BoxNorm {
+  Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();  ///< columns: half edges of the box
+  /// The box is { x : |shares x| <= 1 in each coordinate }, whatever the rounding of `edges`.
+  Eigen::Matrix3d shares = Eigen::Matrix3d::Identity();
+  double least_half = 1;  ///< length of the shortest half edge
+
+  double operator()(const Vector3d& x) const { return (shares * x).cwiseAbs().maxCoeff(); }
+};
+
 /// An AABB tree of the triangles of a body, for the distance of a point from its surface.
 class SurfaceDistance {
  public:
   /// Keeps a reference to the body.
   explicit SurfaceDistance(const UnitBody& body);
 
-  /// Returns the clearance of a point whose coordinates are at most 2: the open ball of that radius around it
-  /// is proven to contain no point of the surface. It is less than the distance by kClearanceMargin and
+  /// Returns the clearance of a point whose coordinates are at most 2: the open box of that size around it is
+  /// proven to contain no point of the surface. It is less than the distance by kClearanceMargin and
   /// rounding, independently of the triangulation of the surface. Returns 0, early, if it is at most
-  /// `enough`.
-  double at(const Vector3d& x, double enough = -1) const;
+  /// `enough`. normal: null, or set to that of a plane between the box and the nearest triangle: how much
+  /// each of the box's axes counts for the distance, in sum 1.
+  double at(const Vector3d& x, const BoxNorm& norm, double enough = -1, Vector3d* normal = nullptr) const;
 
  private:
-  double bound(std::uint32_t triangle, const Vector3d& x) const;
+  double bound(std::uint32_t triangle, const Vector3d& x, const BoxNorm& norm, double enough,
+               Vector3d& normal) const;
 
   const UnitBody& body_;
   BoxTree tree_;  ///< of the triangles
@@ -115,38 +127,45 @@ class OverlapProof {
   /// Returns a proven lower bound: after all shorter translations of B the interiors overlap.
   double lower() const { return lower_; }
   /// Returns a translation near the shortest one that is not proven, which may separate the bodies, or 0 if
-  /// no cube is left.
-  Vector3d undecided() const { return cubes_.empty() ? Vector3d(Vector3d::Zero()) : cubes_.front().centre; }
+  /// no cell is left.
+  Vector3d undecided() const { return cells_.empty() ? Vector3d(Vector3d::Zero()) : cells_.front().centre; }
 
  private:
   /// A point of both bodies, for a translation.
   struct Common {
     Vector3d x{0, 0, 0}, of_b{0, 0, 0}, shift{0, 0, 0};  ///< x, x - v and v
-    double clear_a = 0, clear_b = 0;                     ///< of x from A's surface, of x - v from B's
+    double clear_a = 0, clear_b = 0;  ///< of x from A's surface, of x - v from B's, in the cell's norm
+    Vector3d blocked{0, 0, 0};        ///< how much each of the cell's axes counts for these
     double room() const { return clear_a + clear_b; }
   };
-  struct Cube {
-    double least;  ///< lower bound on the length of its translations
-    Vector3d centre;
-    double half;
-    Common near;  ///< of a nearby translation
+  /// The translations of lengths low[0] to high[0] in a rectangle of directions, on a face of a cube about 0.
+  struct Cell {
+    unsigned face;
+    Vector3d low, high;  ///< length, and the two coordinates on the face, from -1 to 1
+    Common near;         ///< of a nearby translation, in its cell's norm
+    Vector3d centre{0, 0, 0};
+    BoxNorm norm;      ///< its unit ball about the centre contains the cell
+    int longer = 1;    ///< the coordinate of the longer side of the rectangle, the box's axis 1
+    double bulge = 0;  ///< extent of the box along the lengths that is due to the range of directions
   };
-  void push(const Vector3d& centre, double half, const Common& near);
-  bool evaluate(const Vector3d& x, const Vector3d& v, const Common& near, const Common& least, Common& out);
-  bool is_in(Side side, const Vector3d& x, double radius, const Vector3d& known, double known_radius);
-  void add_seeds(const Cube& cube, std::vector<Common>& out) const;
-  bool find_room(const Cube& cube, double needed, const Common& seed, Common& best);
-  bool prove(const Cube& cube, Common& best);
-  void climb(double needed, bool thorough, Common& best);
+  void push(Cell cell);
+  void split(const Cell& cell, const Common& near);
+  bool evaluate(const Cell& cell, const Vector3d& x, const Common& near, const Common& least, Common& out);
+  bool is_in(Side side, const Cell& cell, const Vector3d& x, double clear, const Vector3d& known,
+             double known_clear);
+  void add_seeds(const Cell& cell, std::vector<Common>& out) const;
+  bool find_room(const Cell& cell, double needed, const Common& seed, Common& best);
+  bool prove(const Cell& cell, Common& best);
+  void climb(const Cell& cell, double needed, Common& best);
   static bool has_more(const Common& x, const Common& y) { return x.room() > y.room() * (1 + kClearlyMore); }
-  bool is_small(const Cube& cube) const { return cube.half < kSmallCube * (most_ - cube.least); }
+  bool is_small(const Cell& cell) const { return cell.norm.least_half < kSmallCell * (most_ - cell.low[0]); }
 
   const SurfaceDistance &a_, &b_;
   IsInside is_inside_;
-  /// The initial points, followed by those for the centres of the proven cubes.
+  /// The initial points, followed by those for the centres of the proven cells.
   std::vector<Common> found_;
   std::size_t first_ = 0;    ///< number of initial points
-  std::vector<Cube> cubes_;  ///< a min-heap
+  std::vector<Cell> cells_;  ///< a min-heap
   double most_ = 0, lower_ = 0;
   unsigned points_ = 0;
 };

@@ -65,8 +65,10 @@ inline constexpr double kDirectionGrid = 100;
 inline constexpr unsigned kDirectionsInContact = 32, kDirectionsOfFaces = 16;
 /// Number of lengths tried in each direction, and in the requested direction of the depth along it.
 inline constexpr int kDirectionSamples = 16, kWaySamples = 128;
-/// Share by which a direction's translation must be shorter than the best one so far.
-inline constexpr double kDirectionGain = 0x1p-20;
+/// Share by which a direction's translation must be shorter than the best one so far. kSearchShare: to which
+/// lengths are bisected before the last one; less than any gain asked for, so that no better direction is
+/// lost.
+inline constexpr double kDirectionGain = 0x1p-20, kSearchShare = 0x1p-23;
 /// The best direction is refined by rotations of decreasing angle: the first and the last angle, in radians,
 /// and the share of the angle by which a rotation must shorten the translation.
 inline constexpr double kFirstTurn = 0.2, kMinTurn = 1e-5, kTurnGain = 0x1p-6;
@@ -78,10 +80,9 @@ inline constexpr unsigned kMaxSteps = 200;
 /// clearance. A clearance counts as larger only if it is larger by more than rounding (kClearlyMore).
 inline constexpr int kStartGrid = 6, kFinestStartGrid = 24;
 inline constexpr double kStartStep = 0x1p-6, kClearlyMore = 1e-9;
-/// kClearanceMargin: amount by which clearances are less than distances, in units, for 10 u of the product
-/// that bounds them and kUnitRounding in each coordinate of the triangle. kRoomMargin: excess of the radii of
-/// two balls over the translation that they prove, for the rounding of their centres. Smaller than 2^-49: not
-/// proven.
+/// kClearanceMargin: amount by which clearances are less than distances, in units, for kUnitRounding in each
+/// coordinate of the triangle and 75 u of the products that bound them. kRoomMargin: excess of two clearances
+/// over the translations that they prove, for the rounding of their centres. Smaller than 2^-49: not proven.
 inline constexpr double kClearanceMargin = 0x1p-46, kRoomMargin = 0x1p-46;
 /// The proof that bodies overlap after short translations ends when the lower bound is kNarrowDepth of the
 /// upper one, or after kMaxRoomPoints points, which are spent in kRoomLooks rounds. Larger: narrower depth
@@ -91,13 +92,13 @@ inline constexpr unsigned kMaxRoomPoints = 12000, kRoomLooks = 24;
 /// Share of ClashRequest::max_steps after which the search for short translations ends; the rest is left for
 /// that proof. Larger: shorter translations, lower ends nearer to 0.
 inline constexpr double kShareOfSearch = 0.5;
-/// The search for a point with enough clearance for a cube of translations; it proves nothing by itself. It
-/// starts at the points of the kSeeds nearest proven cubes. If the clearance found is less than kNearlyEnough
-/// of that needed, the cube is divided instead of searched further, unless it is smaller than kSmallCube of
-/// the remaining distance to the upper bound; for such a cube 2 kOtherSeeds other points are tried as well.
-/// Steps below kMinClimb of the clearance needed, and cubes below kMinCube, are not tried.
+/// The search for a point with enough clearance for a cell of translations; it proves nothing by itself. It
+/// starts at the points of the kSeeds nearest proven cells. If the clearance found is less than kNearlyEnough
+/// of that needed, the cell is divided instead of searched further, unless it is thinner than kSmallCell of
+/// the remaining distance to the upper bound; for such a cell 2 kOtherSeeds other points are tried as well.
+/// Steps below kMinClimb of the clearance needed, and cells thinner than kMinCell, are not tried.
 inline constexpr unsigned kSeeds = 3, kOtherSeeds = 8;
-inline constexpr double kNearlyEnough = 0.5, kSmallCube = 0x1p-3, kMinClimb = 0x1p-4, kMinCube = 0x1p-30;
+inline constexpr double kNearlyEnough = 0.5, kSmallCell = 0x1p-3, kMinClimb = 0x1p-4, kMinCell = 0x1p-30;
 /// Maximum number of common points from which the depth along a direction is proven in turn, and the share of
 /// each proven length after which the next point is sought.
 inline constexpr unsigned kMaxWaySteps = 40;

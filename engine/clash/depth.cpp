@@ -63,9 +63,8 @@ class DepthFinder {
   std::optional<Vector3d> inside_point(Side side, const Vector3d& unit, const Vector3d& shift);
   std::optional<ConvexPoints> shrunken(Side side);
   Eigen::AlignedBox3d common_box(const Vector3d& shift);
-  static std::vector<Vector3d> starts(const Eigen::AlignedBox3d& box, int grid);
   std::optional<Vector3d> deepest_common(const Vector3d& shift);
-  double common_clearance(const Vector3d& x, const Vector3d& shift);
+  double common_clearance(const Vector3d& x, const Vector3d& shift, double enough);
   std::optional<Common> common_sets(const Vector3d& shift, WholeTriangles whole);
   const SurfaceDistance& surface(Side side);
   double raise_lower(double known, double& best, Vector3d& best_n);
@@ -139,12 +138,6 @@ ConvexPoints moved(ConvexPoints points, const Vector3d& by) {
   return points;
 }
 
-double farthest(const UnitBody& body, const Vector3d& n) {
-  double most = -kInfinity;
-  for (const Vector3d& x : body.points) most = std::max(most, n.dot(x));
-  return most;
-}
-
 DepthFinder::DepthFinder(QueryContext& query, const CollideResult& result, const UnitBodies& bodies,
                          SeparationSearch& penetration, std::uint64_t max_steps, BoundsProbeAdapter* adapter)
     : query_(query),
@@ -192,15 +185,14 @@ std::optional<ConvexPoints> DepthFinder::shrunken(Side side) {
   return inside ? shrunken_body(body, *inside) : std::nullopt;
 }
 
-/// Returns the smaller clearance of a point from both surfaces, or 0 if it is not inside both bodies.
-double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift) {
-  double least = kInfinity;
+/// Returns the smaller clearance of a point from both surfaces, or 0 if it is not inside both bodies or not
+/// more than `enough`.
+double DepthFinder::common_clearance(const Vector3d& x, const Vector3d& shift, double enough) {
   ++located_;
-  for (const Side side : {Side::a, Side::b}) {
-    const std::optional<Vector3d> inside = inside_point(side, x, shift);
-    if (!inside) return 0;
-    least = std::min(least, surface(side).at(*inside));
-  }
+  const double least =
+      std::min(surface(Side::a).at(x, {}, enough), surface(Side::b).at(x - shift, {}, enough));
+  // Exact location is slower than clearances.
+  if (!(least > enough) || !inside_point(Side::a, x, shift) || !inside_point(Side::b, x, shift)) return 0;
   return least;
 }
 
@@ -231,18 +223,6 @@ Eigen::AlignedBox3d DepthFinder::common_box(const Vector3d& shift) {
   return out;
 }
 
-/// Returns the centres of a grid of cells in a box, as starting points of the search for a deep point.
-std::vector<Vector3d> DepthFinder::starts(const Eigen::AlignedBox3d& box, int grid) {
-  std::vector<Vector3d> out;
-  if (box.isEmpty()) return out;
-  for (int i = 0; i < grid * grid * grid; ++i) {
-    const Vector3d share((i % grid + 0.5) / grid, (i / grid % grid + 0.5) / grid,
-                         (i / (grid * grid) + 0.5) / grid);
-    out.push_back(box.min() + share.cwiseProduct(box.sizes()));
-  }
-  return out;
-}
-
 /// Searches for the common point with the largest clearance: on a grid, then by compass search from the best
 /// point.
 std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
@@ -250,10 +230,11 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
   double most = 0;
   const Eigen::AlignedBox3d box = common_box(shift);
   // The grid is refined only while no common point is found.
-  for (int grid = kStartGrid; grid <= kFinestStartGrid && !(most > 0); grid *= 2)
-    for (const Vector3d& x : starts(box, grid)) {
-      if (is_spent()) break;
-      const double clearance = common_clearance(x, shift);
+  for (int grid = kStartGrid; grid <= kFinestStartGrid && !(most > 0) && !box.isEmpty(); grid *= 2)
+    for (int i = 0; i < grid * grid * grid && !is_spent(); ++i) {
+      const Vector3d cell(i % grid, i / grid % grid, i / (grid * grid));
+      const Vector3d x = box.min() + ((cell.array() + 0.5) / grid * box.sizes().array()).matrix();
+      const double clearance = common_clearance(x, shift, 0);
       // Every common point may help the proof of overlap later.
       if (clearance > 0 && shift.isZero(0)) common_.push_back(x);
       // Gains within rounding are ignored: the choice among equally deep points must not depend on it.
@@ -270,7 +251,7 @@ std::optional<Vector3d> DepthFinder::deepest_common(const Vector3d& shift) {
     for (int k = 0; k < 3; ++k)
       for (const double sign : {-1.0, 1.0}) {
         const Vector3d x = best + sign * step * Vector3d::Unit(k);
-        const double clearance = common_clearance(x, shift);
+        const double clearance = common_clearance(x, shift, most);
         ++tries;
         if (!(clearance > most * (1 + kClearlyMore))) continue;
         most = clearance;
@@ -336,7 +317,7 @@ void DepthFinder::find_depth(MinkowskiDifference& difference, unsigned max_steps
 
 double DepthFinder::hull_width(const Vector3d& n) const {
   // Support function of the Minkowski difference: after this translation a plane separates the convex hulls.
-  return farthest(bodies_.body[0], n) + farthest(bodies_.body[1], -n);
+  return n.dot(farthest(bodies_.body[0].points, n)) + (-n).dot(farthest(bodies_.body[1].points, -n));
 }
 
 /// Returns the normals of the faces that intersect the other body, and of the largest faces. B is separated
@@ -363,7 +344,7 @@ void DepthFinder::improve(const Vector3d& n, double& best, Vector3d& best_n) {
   if (!(width > 0)) return;
   // Only translations that are clearly shorter than the best one count.
   const double most = std::min(width, best * (1 - kDirectionGain));
-  const double s = separation_search_.least_separation(n, most, kDirectionSamples);
+  const double s = separation_search_.least_separation(n, most, kDirectionSamples, kSearchShare * most);
   // No sample separates, unless the width itself is the improvement.
   if (s >= most && (most < width || !(width < best))) return;
   best = s;
@@ -385,7 +366,7 @@ void DepthFinder::refine(double& best, Vector3d& best_n) {
       ++tries;
       if (!separation_search_.is_separated(n, s)) continue;
       // Without sampling: bisect below the length that was just found to separate.
-      best = separation_search_.least_separation(n, s, 1);
+      best = separation_search_.least_separation(n, s, 1, kSearchShare * s);
       best_n = n;
       notify(best);
       shorter = true;
@@ -450,6 +431,8 @@ DepthFinder::Depth DepthFinder::depth() {
     if (best < kInfinity) refine(best, best_n);
     lower = raise_lower(lower, best, best_n);
   }
+  // The searches above bisect no more than they compare.
+  if (!convex && best < kInfinity) best = separation_search_.least_separation(best_n, best, 1, 0);
   out.length.lower = bodies_.frame.length_to_world(lower);
   // Step 5: prove the best translation, or else that of the convex hulls, which depends on no sampling.
   std::optional<SeparatingTranslation> move;
@@ -498,7 +481,7 @@ ProvedInterval DepthFinder::along(const Vector3d& n) {
   // hulls.
   std::optional<double> upper = separation_search_.prove_along(n, lower);
   if (!upper && !is_spent())
-    upper = separation_search_.prove_along(n, separation_search_.least_separation(n, width, kWaySamples));
+    upper = separation_search_.prove_along(n, separation_search_.least_separation(n, width, kWaySamples, 0));
   if (!upper) upper = separation_search_.prove_along(n, width);
   const UnitFrame& frame = bodies_.frame;
   return {frame.length_to_world(lower), upper ? frame.length_to_world(*upper) : kInfinity};

@@ -20,7 +20,6 @@
 #include "engine/exact/predicates.hpp"
 
 namespace lrb {
-namespace {
 
 const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
   const Vector3d* best = &points[0];
@@ -36,8 +35,6 @@ const Vector3d& farthest(const ConvexPoints& points, const Vector3d& n) {
   return *best;
 }
 
-}  // namespace
-
 MinkowskiDifference::MinkowskiDifference(const ConvexPoints& a, const ConvexPoints& b) : a_(a), b_(b) {
   solid_ = begin();
 }
@@ -45,10 +42,6 @@ MinkowskiDifference::MinkowskiDifference(const ConvexPoints& a, const ConvexPoin
 Vector3d MinkowskiDifference::support(const Vector3d& n) const {
   // Support point of A - B: A's along n minus B's against n.
   return farthest(a_, n) - farthest(b_, -n);
-}
-
-double MinkowskiDifference::width(const Vector3d& n) const {
-  return n.dot(support(n));
 }
 
 bool MinkowskiDifference::begin() {

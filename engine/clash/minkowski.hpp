@@ -48,6 +48,9 @@ class PointHull {
 
 // The penetration depth of two convex sets.
 
+/// Returns the first of the farthest points along n.
+const Eigen::Vector3d& farthest(const ConvexPoints& points, const Eigen::Vector3d& n);
+
 /// The Minkowski difference A - B of two convex sets: the differences p - q of their points. The interiors of
 /// A and of B moved by d overlap if and only if d is inside it. An inner polytope is known, which is expanded
 /// where its boundary is nearest to the origin (EPA: van den Bergen, "Proximity Queries and Penetration Depth
@@ -74,9 +77,6 @@ class MinkowskiDifference {
   /// or infinity if none was found.
   const Vector3d& direction() const { return direction_; }
   double depth_upper() const { return upper_; }
-  /// Returns the approximate length of the translation of B along a unit direction after which a plane
-  /// separates the sets.
-  double width(const Vector3d& n) const;
 
  private:
   Vector3d support(const Vector3d& n) const;

@@ -90,7 +90,7 @@ std::optional<double> SeparationSearch::prove_along(const Vector3d& n, double s)
   return std::nullopt;
 }
 
-double SeparationSearch::least_separation(const Vector3d& n, double most, int samples) {
+double SeparationSearch::least_separation(const Vector3d& n, double most, int samples, double resolution) {
   // A linear search for the first sample that separates: concave bodies may collide again farther out.
   double met = 0, apart = most;
   for (int i = 1; i < samples; ++i) {
@@ -102,7 +102,7 @@ double SeparationSearch::least_separation(const Vector3d& n, double most, int sa
     met = s;
   }
   // Bisection between the last colliding and the first separating sample.
-  while (apart - met > margin_) {
+  while (apart - met > std::max(margin_, resolution)) {
     const double midpoint = 0.5 * (met + apart);
     // No double lies between the two.
     if (!(midpoint > met && midpoint < apart)) break;

@@ -34,9 +34,9 @@ class SeparationSearch {
   /// Returns that s (units), or nullopt if the proof fails.
   std::optional<double> prove_along(const Vector3d& n, double s);
   /// Returns the least of some sampled lengths along n, up to `most`, at which the bodies are separate,
-  /// refined by bisection, or `most` if no sample separates. Usually, but not always, finds the first
-  /// separation.
-  double least_separation(const Vector3d& n, double most, int samples);
+  /// refined by bisection up to `resolution`, or `most` if no sample separates. Usually, but not always,
+  /// finds the first separation.
+  double least_separation(const Vector3d& n, double most, int samples, double resolution);
   /// Returns the number of queries.
   std::uint64_t query_count() const { return query_count_; }
 

@@ -11,19 +11,11 @@
 #include "engine/clash/clash_tolerances.hpp"
 #include "engine/collide/interiors.hpp"
 #include "engine/core/geometry.hpp"
-#include "engine/mesh/nearest_on_simplex.hpp"
 
 namespace lrb {
 
 // Distance from a point to a surface by a tree traversed depth-first with the nearer child first. Distances
 // of boxes prune; triangles yield proven lower bounds of their distance.
-
-namespace {
-
-/// Covers the roundings in the distance of a box.
-constexpr double kBoxRounding = 1 - 0x1p-48;
-
-}  // namespace
 
 SurfaceDistance::SurfaceDistance(const UnitBody& body) : body_(body) {
   // Halved by the centroids. Three times these suffice for comparison.
@@ -38,23 +30,51 @@ SurfaceDistance::SurfaceDistance(const UnitBody& body) : body_(body) {
   });
 }
 
-/// Along any direction n the triangle is at least as far away as its nearest corner: the least n . (c - x) /
-/// |n|. In the direction of the nearest point this is the distance. If n is inaccurate, it is still a lower
-/// bound.
-double SurfaceDistance::bound(std::uint32_t triangle, const Vector3d& x) const {
+/// In the coordinates of the box, which is then a cube, the triangle is at least as far away as along any
+/// normal: the least n . c over the sum of the |n_k|. One of 13 normals yields the distance: those of the
+/// cube's faces and of the triangle, and the products of their edges. Not all are tried once `enough` is
+/// reached.
+double SurfaceDistance::bound(std::uint32_t triangle, const Vector3d& x, const BoxNorm& norm, double enough,
+                              Vector3d& normal) const {
   const auto& t = body_.triangles[triangle];
-  // Relative to x, which becomes the origin.
-  const Vector3d a = body_.points[t[0]] - x, b = body_.points[t[1]] - x, c = body_.points[t[2]] - x;
-  const SimplexPoint p = nearest_on_triangle(Vector3d::Zero(), a, b, c);
-  const Vector3d n = p.weight[0] * a + p.weight[1] * b + p.weight[2] * c;
-  const double length = n.norm();
-  // Slab bound: a plane through the origin, normal to n, with the triangle in front of it.
-  const double slab = length > 0 ? std::min({n.dot(a), n.dot(b), n.dot(c)}) / length : 0;
-  return slab > kClearanceMargin ? slab - kClearanceMargin : 0;
+  const Vector3d a = norm.shares * (body_.points[t[0]] - x), b = norm.shares * (body_.points[t[1]] - x),
+                 c = norm.shares * (body_.points[t[2]] - x);
+  // The cube's faces.
+  int axis = 0;
+  double best = a.cwiseMin(b).cwiseMin(c).cwiseMax(-a.cwiseMax(b).cwiseMax(c)).maxCoeff(&axis);
+  normal = Vector3d::Unit(axis);
+  // The triangle, by all corners: rounding may tilt the normal of a sliver.
+  if (best < enough) {
+    const Vector3d n = (b - a).cross(c - a);
+    const double at_a = n.dot(a), at_b = n.dot(b), at_c = n.dot(c), size = n.cwiseAbs().sum();
+    const double ahead = std::max(std::min({at_a, at_b, at_c}), -std::max({at_a, at_b, at_c}));
+    if (ahead > best * size) {
+      best = ahead / size;
+      normal = n.cwiseAbs() / size;
+    }
+  }
+  // Edges: n is normal to the edge and to axis k, and its product is the same at both ends.
+  const Vector3d* const corners[5] = {&a, &b, &c, &a, &b};
+  for (int edge = 0; edge < 3 && best < enough; ++edge) {
+    const Vector3d &from = *corners[edge], &opposite = *corners[edge + 2], e = *corners[edge + 1] - from;
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      const double on = e[j] * from[i] - e[i] * from[j], off = e[j] * opposite[i] - e[i] * opposite[j];
+      const double size = std::abs(e[i]) + std::abs(e[j]), ahead = std::min(std::abs(on), std::abs(off));
+      if (!(on * off > 0) || !(ahead > best * size)) continue;
+      best = ahead / size;
+      normal.setZero();
+      normal[i] = std::abs(e[j]) / size;
+      normal[j] = std::abs(e[i]) / size;
+    }
+  }
+  // Rounding of the corners counts most along the shortest half edge.
+  return std::max(0.0, best - kClearanceMargin / norm.least_half);
 }
 
-double SurfaceDistance::at(const Vector3d& x, double enough) const {
+double SurfaceDistance::at(const Vector3d& x, const BoxNorm& norm, double enough, Vector3d* normal) const {
   double least = kInfinity;
+  const Eigen::Matrix3d sizes = norm.shares.cwiseAbs();
   struct Waiting {
     std::uint32_t node;
     double distance;
@@ -63,8 +83,11 @@ double SurfaceDistance::at(const Vector3d& x, double enough) const {
   std::size_t size = 1;
   stack[0] = {0, 0};
   const auto nodes = tree_.nodes();
+  // Along each axis of the norm: the distance of the centre, less half of the extent.
   const auto distance = [&](std::uint32_t i) {
-    return std::sqrt(nodes[i].box.squaredExteriorDistance(x)) * kBoxRounding;
+    const Box& box = nodes[i].box;
+    const Vector3d centre = 0.5 * (box.min() + box.max()) - x, half = 0.5 * (box.max() - box.min());
+    return ((norm.shares * centre).cwiseAbs() - sizes * half).maxCoeff();
   };
   // The nearer child is on top, so that `least` decreases early.
   while (size > 0 && least > enough) {
@@ -73,8 +96,13 @@ double SurfaceDistance::at(const Vector3d& x, double enough) const {
     if (top.distance >= least) continue;
     const BoxTree::Node& node = nodes[top.node];
     if (node.right == 0) {
-      for (std::uint32_t i = node.first; i < node.last; ++i)
-        least = std::min(least, bound(tree_.items()[i], x));
+      for (std::uint32_t i = node.first; i < node.last; ++i) {
+        Vector3d n;
+        const double d = bound(tree_.items()[i], x, norm, least, n);
+        if (!(d < least)) continue;
+        least = d;
+        if (normal != nullptr) *normal = n;
+      }
       continue;
     }
     // The farther child waits below the nearer one.

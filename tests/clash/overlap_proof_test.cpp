@@ -7,7 +7,6 @@
 #include "engine/clash/clash_parts.hpp"
 #include "engine/collide/collide_into.hpp"
 #include "engine/collide/relation.hpp"
-#include "engine/mesh/nearest_on_simplex.hpp"
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/support/bodies.hpp"
 
@@ -18,12 +17,25 @@ namespace {
 
 using test::closed;
 
-double distance_to(const UnitBody& body, const Vector3d& x) {
-  double least = INFINITY;
-  for (const auto& t : body.triangles)
-    least = std::min(
-        least, nearest_on_triangle(x, body.points[t[0]], body.points[t[1]], body.points[t[2]]).distance_sq);
-  return std::sqrt(least);
+/// Divides each triangle into four.
+UnitBody divided(const UnitBody& body) {
+  UnitBody out;
+  for (const auto& t : body.triangles) {
+    const auto first = static_cast<std::uint32_t>(out.points.size());
+    for (std::size_t k = 0; k < 3; ++k) out.points.push_back(body.points[t[k]]);
+    for (std::size_t k = 0; k < 3; ++k)
+      out.points.emplace_back(0.5 * (body.points[t[k]] + body.points[t[(k + 1) % 3]]));
+    for (const auto& [i, j, k] : {std::array{0u, 3u, 5u}, {3u, 1u, 4u}, {5u, 4u, 2u}, {3u, 4u, 5u}})
+      out.triangles.push_back({first + i, first + j, first + k});
+  }
+  return out;
+}
+
+BoxNorm random_norm(RandomEngine& random) {
+  const Eigen::Matrix3d axes = shapes::random_rotation(random);
+  Vector3d half;
+  for (double& h : half) h = std::exp2(shapes::uniform(random, -6, 0));
+  return {axes * half.asDiagonal(), half.cwiseInverse().asDiagonal() * axes.transpose(), half.minCoeff()};
 }
 
 /// Two bodies as the proof sees them.
@@ -58,14 +70,18 @@ TEST_CASE("the clearance of a point is at most its distance to all triangles") {
                            shapes::scaled(shapes::box(), 1e-3)}) {
     const LrbRep a = closed(mesh);
     Pair pair(a, a, Pose::translation({1e-4, 0, 0}));
-    const SurfaceDistance surface(pair.bodies.body[0]);
-    for (int i = 0; i < 200; ++i) {
+    const UnitBody &body = pair.bodies.body[0], once = divided(body), fine = divided(divided(once));
+    const SurfaceDistance surface(body), of_once(once);
+    for (int i = 0; i < 50; ++i) {
       const Vector3d x = shapes::uniform(random, 0, 1) * shapes::random_direction(random);
-      const double distance = distance_to(pair.bodies.body[0], x), proved = surface.at(x);
-      REQUIRE(proved <= distance);
-      REQUIRE(proved >= distance - 1e-12);
+      const BoxNorm norm = i == 0 ? BoxNorm{} : random_norm(random);
+      const double proved = surface.at(x, norm);
+      double nearest = INFINITY;
+      for (const Vector3d& p : fine.points) nearest = std::min(nearest, norm(p - x));
+      REQUIRE(proved <= nearest);
+      REQUIRE(std::abs(proved - of_once.at(x, norm)) < 1e-10);  // whatever the triangles
     }
-    CHECK(surface.at(pair.bodies.body[0].points[0]) == 0);
+    CHECK(surface.at(body.points[0], {}) == 0);
   }
 }
 
