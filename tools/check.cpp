@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -14,7 +13,6 @@
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
-#include <lrbscope/trace/capture.hpp>
 
 namespace lrb::tools {
 namespace {

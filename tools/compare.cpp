@@ -1,6 +1,5 @@
 #include "scenarios/compare/compare.hpp"
 
-#include <array>
 #include <filesystem>
 #include <memory>
 

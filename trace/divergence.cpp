@@ -3,11 +3,10 @@
 // sequence.
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <type_traits>
 
 #include "trace/event_fields.hpp"
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/record_fields.hpp>
@@ -31,8 +30,7 @@ std::string to_text(std::uint64_t value) {
   return std::to_string(value);
 }
 std::string to_text(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+  return io::exact_text(value);
 }
 std::string to_text(const std::string& text) {
   return text.empty() ? "lrbscope" : text;
@@ -62,12 +60,10 @@ requires std::is_enum_v<Enum> std::string to_text(Enum value) {
 
 std::string to_text(const Pose& pose) {
   std::string out = "(";
-  std::array<char, 32> digits{};
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column) {
-      const double x = column < 3 ? pose.r(row, column) : pose.t(row);
       out.append(row + column == 0 ? "" : " ");
-      out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr);
+      out.append(to_text(column < 3 ? pose.r(row, column) : pose.t(row)));
     }
   return out + ")";
 }

@@ -1,7 +1,6 @@
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
-#include <utility>
 
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/recorder.hpp>

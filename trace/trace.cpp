@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <initializer_list>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
+#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/trace.hpp>
 
@@ -22,13 +22,9 @@ std::optional<std::array<double, 2>> ends_of(const std::optional<ProvedInterval>
   return std::array<double, 2>{interval->lower, interval->upper};
 }
 
-std::string digits(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 std::string interval_text(double lower, double upper, std::size_t looks) {
-  return "[" + digits(lower) + ", " + digits(upper) + "] in " + std::to_string(looks) + " steps";
+  return "[" + io::exact_text(lower) + ", " + io::exact_text(upper) + "] in " + std::to_string(looks) +
+         " steps";
 }
 
 }  // namespace
@@ -122,15 +118,16 @@ std::string to_text(const MeasuredClash& m) {
 }
 
 std::string to_text(const MeasuredNearPairs& m) {
-  std::string out = std::to_string(m.found) + " pairs within " + digits(m.within);
+  std::string out = std::to_string(m.found) + " pairs within " + io::exact_text(m.within);
   if (!m.nearest.empty())
-    out += ", nearest [" + digits(m.nearest[0].lower) + ", " + digits(m.nearest[0].upper) + "]";
+    out +=
+        ", nearest [" + io::exact_text(m.nearest[0].lower) + ", " + io::exact_text(m.nearest[0].upper) + "]";
   return out;
 }
 
 std::string to_text(const MeasuredManifolds& m) {
   std::string out = std::to_string(m.manifolds) + " manifolds, " + std::to_string(m.found) + " points";
-  if (!m.contacts.empty()) out += ", the first at depth " + digits(m.contacts[0].depth);
+  if (!m.contacts.empty()) out += ", the first at depth " + io::exact_text(m.contacts[0].depth);
   return out;
 }
 
@@ -138,13 +135,14 @@ std::string to_text(const MeasuredPoints& m) {
   std::string out = std::to_string(m.inside) + " of " + std::to_string(m.count) + " points inside, " +
                     std::to_string(m.on_surface) + " on the surface";
   if (!m.smallest.empty())
-    out += ", smallest distance [" + digits(m.smallest[0].lower) + ", " + digits(m.smallest[0].upper) + "]";
+    out += ", smallest distance [" + io::exact_text(m.smallest[0].lower) + ", " +
+           io::exact_text(m.smallest[0].upper) + "]";
   return out;
 }
 
 std::string to_text(const MeasuredApproach& m) {
   std::string out = std::string(name_of(m.outcome)) + " " + interval_text(m.t0, m.t1, m.history.size());
-  if (m.step) out += ", step " + digits((*m.step)[1]);
+  if (m.step) out += ", step " + io::exact_text((*m.step)[1]);
   return out;
 }
 

@@ -3,10 +3,8 @@
 /// methods in worker programs, and other programs that record captures.
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

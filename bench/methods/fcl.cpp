@@ -4,7 +4,6 @@
 // flags.
 #include "bench/methods/method.hpp"
 #include "bench/methods/triangles.hpp"
-#include <lrbscope/error.hpp>
 
 #ifdef LRB_HAS_FCL
 #include <fcl/config.h>

@@ -6,6 +6,7 @@
 
 #include "bench/methods/method.hpp"
 #include "bench/methods/triangles.hpp"
+#include "scenarios/bodies/shapes.hpp"
 #include <lrbscope/build.hpp>
 #include <lrbscope/coherent.hpp>
 #include <lrbscope/contact.hpp>
@@ -143,12 +144,6 @@ class OursMotion : public OurMethod {
   CollideAnswers answers_;
 };
 
-double diagonal_of(const LrbRep& rep) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& v : rep.vertices()) box.extend(v);
-  return box.diagonal().norm();
-}
-
 /// Stopping criterion of a coarse query.
 enum class Content : std::uint8_t { one_pair, tolerance, tests };
 
@@ -167,7 +162,8 @@ class OursCoarse : public OurMethod {
   Answer ask(const Posed& a, const Posed& b, Mode mode) override {
     CollideRequest request = request_for(mode);
     if (content_ == Content::one_pair) request.mode = Mode::first_pair;
-    if (content_ == Content::tolerance) request.tolerance = setting_ * diagonal_of(a.body.rep);
+    if (content_ == Content::tolerance)
+      request.tolerance = setting_ * shapes::box_of(a.body.rep).diagonal().norm();
     if (content_ == Content::tests) request.max_tests = static_cast<std::uint64_t>(setting_);
     const Stopwatch watch;
     const CollideResult result = result_of(a, b, request, workspace_);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 #include <tuple>
-#include <vector>
 
 #include <Eigen/Geometry>
 

@@ -1,6 +1,5 @@
 #include "bench/speed/metrics.hpp"
 
-#include <algorithm>
 #include <array>
 #include <iterator>
 #include <limits>

@@ -328,7 +328,6 @@ std::string program_text(const Counterexample& c) {
   return "// g++ -std=c++17 -I/usr/include/eigen3 fcl.cpp -lfcl -lccd && ./a.out\n// Expected: " +
          std::to_string(c.found.answer.expected.size()) + R"( contacts.
 #include <cstdio>
-#include <vector>
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>

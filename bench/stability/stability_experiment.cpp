@@ -71,7 +71,6 @@ namespace {
 
 using methods::Answer;
 using methods::MethodInfo;
-using methods::Says;
 
 bool is_inside(Relation r) {
   return r == Relation::a_inside_b || r == Relation::b_inside_a;

@@ -1,7 +1,6 @@
 #pragma once
 /// The stability experiment: runs every method on every case, in worker processes that may crash or hang.
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>

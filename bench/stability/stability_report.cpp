@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "scenarios/report/document.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/overlay.hpp>

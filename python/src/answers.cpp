@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "python/src/pickle.hpp"
-#include "python/src/properties.hpp"
 #include <lrbscope/contact_manifold.hpp>
 #include <lrbscope/parallel.hpp>
 #include <lrbscope/trace/json_write.hpp>

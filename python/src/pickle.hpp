@@ -1,10 +1,8 @@
 #pragma once
 /// Pickles: the members of a value as bytes, for the same version of lrbscope and of the members.
 
-#include <optional>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "python/src/arguments.hpp"
 #include <lrbscope/core/fields.hpp>

@@ -2,7 +2,6 @@
 
 #include <cstring>
 
-#include "python/src/pickle.hpp"
 #include <lrbscope/trace/trace.hpp>
 
 namespace lrb::python {

@@ -1,7 +1,6 @@
 #include "scenarios/paper/paper_pictures.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "render/canvas.hpp"

@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <tuple>
 
 #include <nlohmann/json.hpp>
 

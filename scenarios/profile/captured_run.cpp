@@ -20,7 +20,6 @@
 #include <lrbscope/error.hpp>
 #include <lrbscope/mesh.hpp>
 #include <lrbscope/render/overlay.hpp>
-#include <lrbscope/trace/recorder.hpp>
 
 namespace lrb::profile {
 namespace {
@@ -92,7 +91,6 @@ capture::Capture captured(const record::Recording& recording) {
 }
 
 using render::counted;
-using render::group_digits;
 
 void describe_probes(capture::Capture& capture) {
   std::map<std::vector<double>, std::uint32_t> known;  // tree by that of A and the vertices

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include <lrbscope/distance.hpp>
 #include <lrbscope/near_pairs.hpp>

@@ -1,8 +1,6 @@
 #include "scenarios/profile/query_walk.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "scenarios/profile/captured_run.hpp"
 

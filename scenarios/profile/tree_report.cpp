@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include <lrbscope/core/random.hpp>
-#include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
 #include <lrbscope/trace/work.hpp>
 

@@ -1,12 +1,10 @@
 #pragma once
 /// Figures of a captured tree: quality measures without a query.
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,7 +12,6 @@
 #include "scenarios/profile/query_walk.hpp"
 #include "scenarios/profile/tree_faults.hpp"
 #include "scenarios/profile/volumes.hpp"
-#include <lrbscope/enum_names.hpp>
 #include <lrbscope/ids.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/obb_tree.hpp>

@@ -19,7 +19,6 @@
 #include <lrbscope/trace/counters.hpp>
 #include <lrbscope/trace/json_write.hpp>
 #include <lrbscope/trace/trace.hpp>
-#include <lrbscope/trace/work.hpp>
 
 namespace lrb::run {
 
