@@ -1,7 +1,6 @@
 // The promises of every query of two bodies: the same answer in a workspace, with a probe, on any number of
 // threads and through every door to a body; reported bounds that only narrow; one line for each rejection;
 // and an answer that moves with the world.
-#include <set>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,6 @@
 /// engines in other programs: tests/commands/engines.txt.
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <doctest/doctest.h>
 

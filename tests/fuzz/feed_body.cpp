@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "scenarios/bodies/shapes.hpp"
 #include "tests/fuzz/choices.hpp"

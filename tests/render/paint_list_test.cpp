@@ -1,6 +1,5 @@
 #include "render/paint_list.hpp"
 
-#include <cmath>
 #include <string>
 #include <vector>
 

@@ -2,10 +2,8 @@
 /// check verifies that), and objects in use keep working. A workspace asks for no memory once it has answered
 /// such queries before.
 
-#include <algorithm>
 #include <filesystem>
 #include <new>
-#include <utility>
 
 #include <doctest/doctest.h>
 

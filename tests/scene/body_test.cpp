@@ -1,6 +1,5 @@
 // Bodies made in one call from matrices, arrays, meshes and files: errors and notes.
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>

@@ -1,7 +1,6 @@
 #include "engine/scene/build_cache.hpp"
 
 #include <filesystem>
-#include <fstream>
 
 #include <doctest/doctest.h>
 #include <sys/wait.h>

@@ -3,7 +3,6 @@
 
 #include "bench/stability/minimise.hpp"
 
-#include <cstdlib>
 #include <set>
 
 #include <doctest/doctest.h>

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <string>
 #include <thread>
 #include <vector>
 

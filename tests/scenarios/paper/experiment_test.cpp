@@ -2,7 +2,6 @@
 
 #include "scenarios/paper/experiment.hpp"
 
-#include <memory>
 #include <numeric>
 
 #include <doctest/doctest.h>

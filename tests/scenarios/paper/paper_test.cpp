@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include <doctest/doctest.h>

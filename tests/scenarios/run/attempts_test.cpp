@@ -6,7 +6,6 @@
 #include <functional>
 #include <iterator>
 #include <set>
-#include <string>
 
 #include <doctest/doctest.h>
 
