@@ -121,13 +121,13 @@ std::string text_of(const std::vector<profile::Check>& checks) {
   return out;
 }
 
-void write_page(const std::vector<profile::Check>& checks, bool wrong, const std::string& path,
-                const std::string& up, const Globals& globals) {
-  const report::Folder folder(path);
+void write_page(const std::vector<profile::Check>& checks, bool wrong, const CheckOptions& o,
+                const Globals& globals) {
+  const report::Folder folder(o.folder);
   report::Document page("Answers and visits of " + std::string(checks.size() == 1 ? "an engine" : "engines"),
                         "An exact query checks each answer. Prices of visits: needed, proof, or waste.");
   page.verdict(wrong ? "wrong answers" : "no wrong answers", !wrong).command(globals.command_line);
-  note(globals, profile::add_checks(page, checks, view_with(up).up));
+  note(globals, profile::add_checks(page, checks, view_with(o.up).up));
   page.write(folder);
 }
 
@@ -155,7 +155,7 @@ int run_check(CheckOptions o, const Globals& globals) {
   const bool wrong = std::ranges::any_of(checks, &profile::Check::is_wrong);
   if (!o.json) print(text_of(checks));
   if (!o.folder.empty()) {
-    write_page(checks, wrong, o.folder, o.up, globals);
+    write_page(checks, wrong, o, globals);
     if (!o.json) print(o.folder + "/index.html\n");
   }
   return wrong ? kMismatch : kOk;

@@ -76,13 +76,6 @@ Pose pose_from(const json& value) {
   return io::pose_of(value.get<std::array<double, 12>>());
 }
 
-template <class Enum>
-Enum named(const json& value, const char* what) {
-  const auto word = value.get<std::string>();
-  if (const auto found = from_name<Enum>(word)) return *found;
-  throw InputError("'" + word + "': unknown " + what);
-}
-
 ordered_json vector_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
@@ -108,7 +101,7 @@ ordered_json question_json(const Question& q, Quantity quantity) {
 
 Question question_from(const json& value, Quantity quantity) {
   Question q;
-  q.pose_class = named<PoseClass>(value.at("class"), "class of poses");
+  q.pose_class = io::JsonOf<PoseClass>::read(value.at("class"));
   value.at("a").get_to(q.a);
   value.at("b").get_to(q.b);
   q.pose_a = pose_from(value.at("pose_a"));
@@ -173,7 +166,7 @@ DataSet read_data_set(const std::string& path) {
     for (const json& b : value.at("bodies"))
       set.bodies.push_back({b.at("file").get<std::string>(), b.at("faces").get<std::uint32_t>(),
                             b.at("build_s").get<double>()});
-    if (value.contains("quantity")) set.quantity = named<Quantity>(value.at("quantity"), "quantity");
+    if (value.contains("quantity")) set.quantity = io::JsonOf<Quantity>::read(value.at("quantity"));
     for (const json& q : value.at("questions")) set.questions.push_back(question_from(q, set.quantity));
     return set;
   } catch (const json::exception& e) {

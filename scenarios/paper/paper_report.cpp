@@ -319,7 +319,7 @@ report::Table settings_table(std::span<const Run> settings, const PaperProtocol&
                   {"time step, %", "steps after contact", "last step, %", "minimum", "average", "maximum",
                    "growth of the average"}};
   for (const Run& run : settings) {
-    const RatioBands b = ratios(run);
+    const RatioBands b = ratios({&run, 1});
     const double first = run.rows.front().recursions[kPaper].comparisons.average,
                  last = run.rows.back().recursions[kPaper].comparisons.average;
     t.rows.push_back({io::fixed_text(100 * run.protocol.step, 3),

@@ -136,18 +136,6 @@ Band band_of(std::vector<double> values) {
 
 namespace {
 
-RatioBands bands_of(std::span<const ObjectRow* const> rows) {
-  RatioBands bands;
-  for (std::size_t i = 0; i < bands.size(); ++i) {
-    std::vector<double> values;
-    for (const ObjectRow* row : rows)
-      if (const PublishedRow* p = published(row->object))
-        values.push_back(row->recursions[kPaper].comparisons.*kMeasured[i] / p->*kPublished[i]);
-    bands[i] = band_of(std::move(values));
-  }
-  return bands;
-}
-
 std::string text_of(double x) {
   return nlohmann::json(x).dump();
 }
@@ -155,17 +143,16 @@ std::string text_of(double x) {
 }  // namespace
 
 RatioBands ratios(std::span<const Run> runs, const std::string& object) {
-  std::vector<const ObjectRow*> rows;
-  for (const Run& run : runs)
-    for (const ObjectRow& row : run.rows)
-      if (row.object == object) rows.push_back(&row);
-  return bands_of(rows);
-}
-
-RatioBands ratios(const Run& run) {
-  std::vector<const ObjectRow*> rows;
-  for (const ObjectRow& row : run.rows) rows.push_back(&row);
-  return bands_of(rows);
+  RatioBands bands;
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    std::vector<double> values;
+    for (const Run& run : runs)
+      for (const ObjectRow& row : run.rows)
+        if (const PublishedRow* p = published(row.object); p && (object.empty() || row.object == object))
+          values.push_back(row.recursions[kPaper].comparisons.*kMeasured[i] / p->*kPublished[i]);
+    bands[i] = band_of(std::move(values));
+  }
+  return bands;
 }
 
 std::string table1_csv(std::span<const PaperObject> objects) {

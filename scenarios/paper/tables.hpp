@@ -102,10 +102,8 @@ Band band_of(std::vector<double> values);
 /// Ratios of the measured minimum, average and maximum, by the paper's recursion, to the published ones.
 using RatioBands = std::array<Band, 3>;
 inline constexpr std::array<const char*, 3> kRatioNames = {"minimum", "average", "maximum"};
-/// Over the runs, for one object that is published.
-RatioBands ratios(std::span<const Run> runs, const std::string& object);
-/// Over the published objects of one run.
-RatioBands ratios(const Run& run);
+/// Over the runs, for one object that is published, or for all of them.
+RatioBands ratios(std::span<const Run> runs, const std::string& object = {});
 
 // As CSV, with numbers in full.
 

@@ -35,10 +35,6 @@ class PairMap {
   std::size_t size() const { return size_; }
 
   /// Returns the value of a pair, or nullptr without one. Valid until the next insertion.
-  std::uint32_t* find(std::uint32_t a, std::uint32_t b) {
-    Slot& slot = slots_[place_of(key_of(a, b))];
-    return slot.key == kFree ? nullptr : &slot.value;
-  }
   const std::uint32_t* find(std::uint32_t a, std::uint32_t b) const {
     const Slot& slot = slots_[place_of(key_of(a, b))];
     return slot.key == kFree ? nullptr : &slot.value;
