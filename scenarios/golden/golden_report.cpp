@@ -51,28 +51,24 @@ trace::EventId event_to_show(const trace::Trace& trace, std::size_t step,
   return event ? std::min(*event, last) : last;
 }
 
-/// Returns the places in a picture of the vertex that moved farthest, in each view; empty if no body's mesh
-/// has the same elements at other places.
-std::vector<Eigen::Vector2d> places_of_moved_vertex(const Golden& golden, const GoldenRun& run,
-                                                    const frames::PaintedFrame& frame) {
-  std::vector<Eigen::Vector2d> out;
+/// Returns the place in the first view of the vertex that moved farthest; nullopt if no body's mesh has the
+/// same elements at other places.
+std::optional<Eigen::Vector2d> place_of_moved_vertex(const Golden& golden, const GoldenRun& run,
+                                                     const frames::PaintedFrame& frame) {
   trace::Cursor cursor(run.recording.trace, recorded_run_of(run).reps);
   cursor.seek(frame.event);
-  for (std::size_t i = 0; i < golden.meshes.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(golden.meshes.size(), run.recording.bodies.size()); ++i) {
     const Mesh mesh = run.recording.bodies[i].rep.real_mesh();
     std::optional<std::size_t> vertex;
     if (golden.meshes[i]) mesh_difference(*golden.meshes[i], mesh, &vertex);
     if (!vertex) continue;
     const Eigen::Vector3d x = cursor.pose(static_cast<Side>(i)).apply(mesh.vertices[*vertex]);
-    for (std::size_t view = 0; view < frame.cameras.size(); ++view) {
-      const render::PixelRect& place = frame.places[view];
-      const render::Projection projection(frame.cameras[view], place.width, place.height, {x, x});
-      const Eigen::Vector2d at =
-          projection.to_pixel(x).value_or(Eigen::Vector2d(-1, -1)) + Eigen::Vector2d(place.x, place.y);
-      if (place.contains({static_cast<int>(at.x()), static_cast<int>(at.y()), 1, 1})) out.push_back(at);
-    }
+    const render::PixelRect& view = frame.places[0];
+    const auto at = render::Projection(frame.cameras[0], view.width, view.height, {x, x}).to_pixel(x);
+    if (at && view.contains({view.x + static_cast<int>(at->x()), view.y + static_cast<int>(at->y()), 1, 1}))
+      return *at + Eigen::Vector2d(view.x, view.y);
   }
-  return out;
+  return std::nullopt;
 }
 
 /// One of the two runs, which differ in their traces.
@@ -191,10 +187,10 @@ report::PngBytes png_of(const render::Image& image) {
   return image.empty() ? report::PngBytes() : render::encode_png(image);
 }
 
-/// Returns a part of a picture of differences around the first suspect that is not black, or else the
+/// Returns a part of a picture of differences around the suspect, unless that is black, or else the
 /// brightest; nullopt: all is black.
 std::optional<render::PixelRect> brightest_square(const render::Image& image,
-                                                  std::span<const Eigen::Vector2d> suspects) {
+                                                  const std::optional<Eigen::Vector2d>& suspect) {
   constexpr int kMaxCells = 24, kSide = 3;  // across the picture, and across the square
   render::Image mean = image;
   int cell = 1;
@@ -204,10 +200,10 @@ std::optional<render::PixelRect> brightest_square(const render::Image& image,
     const render::Rgba c = mean.at(std::min(x, mean.width() - 1), std::min(y, mean.height() - 1));
     return c.r + c.g + c.b;
   };
-  std::optional<Eigen::Vector2d> centre;
-  for (const Eigen::Vector2d& at : suspects)
-    if (const Eigen::Vector2i c = (at / cell).cast<int>(); !centre && brightness(c.x(), c.y()) > 0)
-      centre = at;
+  std::optional<Eigen::Vector2d> centre = suspect;
+  if (suspect &&
+      brightness(static_cast<int>(suspect->x()) / cell, static_cast<int>(suspect->y()) / cell) == 0)
+    centre.reset();
   int most = centre ? 3 * 255 : 0;
   for (int y = 0; y < mean.height(); ++y)
     for (int x = 0; x < mean.width(); ++x)
@@ -256,12 +252,12 @@ render::Image thumbnail(const render::Image& expected, const render::Image& actu
 
 void add_comparison(GoldenResult& result, report::Comparison comparison, const render::Image& expected,
                     const render::Image& actual, bool is_best = false,
-                    const std::vector<Eigen::Vector2d>& suspects = {}) {
+                    const std::optional<Eigen::Vector2d>& suspect = {}) {
   render::Image difference =
       expected.empty() || actual.empty() ? render::Image() : render::difference_image(expected, actual);
   std::optional<render::PixelRect> place;
   if (!comparison.passed && !actual.empty() && expected.rect() == actual.rect())
-    place = brightest_square(difference, suspects);
+    place = brightest_square(difference, suspect);
   if (place) circle(difference, *place);
   comparison.pngs = {png_of(expected), png_of(actual), png_of(difference)};
   // A picture of the run, or its proof map, rather than of the first difference, which may only be a number.
@@ -321,8 +317,7 @@ void add_image(GoldenResult& result, const Golden& golden, const GoldenRun& run,
                                       [](const report::Comparison& c) {
                                         return c.id.find("-frame_") != std::string::npos && !c.passed;
                                       }),
-                 v.has_actual ? places_of_moved_vertex(golden, run, run.frames[v.frame])
-                              : std::vector<Eigen::Vector2d>());
+                 v.has_actual ? place_of_moved_vertex(golden, run, run.frames[v.frame]) : std::nullopt);
 }
 
 /// Returns "3 of 3 equal", "2 of 3 differ".
