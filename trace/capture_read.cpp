@@ -14,6 +14,7 @@
 #include <Eigen/LU>
 
 #include "trace/capture_descriptions.hpp"
+#include "trace/json_read.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/error.hpp>
@@ -178,18 +179,11 @@ class Reader : public Descriptions {
 
   Pose read_pose(char side) {
     const std::vector<double> m = numbers<double>(12);
-    Pose rows, columns;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        rows.r(i, j) = m[static_cast<std::size_t>(4 * i + j)];
-        columns.r(i, j) = m[static_cast<std::size_t>(3 * j + i)];
-      }
-      rows.t(i) = m[static_cast<std::size_t>(4 * i + 3)];
-    }
+    const Pose rows = io::pose_of(std::span<const double, 12>(m.data(), 12));
     const std::string pose = std::string("pose of ") + side + ": ";
     const double error = error_as_rotation(rows.r);
     if (!(error <= kRigid)) {
-      const bool by_columns = error_as_rotation(columns.r) <= kRigid;
+      const bool by_columns = error_as_rotation(Eigen::Map<const Eigen::Matrix3d>(m.data())) <= kRigid;
       fail(
           pose + "expected a rotation within 1e-6, found an error of " + io::number_text(error, 3) +
           " (determinant " + io::number_text(rows.r.determinant(), 6) +

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "trace/event_fields.hpp"
+#include "trace/json_read.hpp"
 #include <lrbscope/core/strings.hpp>
 #include <lrbscope/trace/divergence.hpp>
 #include <lrbscope/trace/json_write.hpp>
@@ -59,12 +60,8 @@ requires std::is_enum_v<Enum> std::string to_text(Enum value) {
 }
 
 std::string to_text(const Pose& pose) {
-  std::string out = "(";
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 4; ++column) {
-      out.append(row + column == 0 ? "" : " ");
-      out.append(to_text(column < 3 ? pose.r(row, column) : pose.t(row)));
-    }
+  std::string out;
+  for (const double x : io::rows_of(pose)) out += (out.empty() ? "(" : " ") + to_text(x);
   return out + ")";
 }
 

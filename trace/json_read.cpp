@@ -223,6 +223,24 @@ std::string JsonText::where(const std::string& pointer) const {
 
 // Values.
 
+Pose pose_of(std::span<const double, 12> rows) {
+  Pose pose;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) pose.r(r, c) = rows[static_cast<std::size_t>(4 * r + c)];
+    pose.t[r] = rows[static_cast<std::size_t>(4 * r + 3)];
+  }
+  return pose;
+}
+
+std::array<double, 12> rows_of(const Pose& pose) {
+  std::array<double, 12> out{};
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) out[static_cast<std::size_t>(4 * r + c)] = pose.r(r, c);
+    out[static_cast<std::size_t>(4 * r + 3)] = pose.t[r];
+  }
+  return out;
+}
+
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {

@@ -1,10 +1,12 @@
 #pragma once
 /// Reads JSON by stating the expected type of each value, with its location in the file for messages.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -14,6 +16,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <lrbscope/enum_names.hpp>
+#include <lrbscope/pose.hpp>
 
 namespace lrb::io {
 
@@ -117,6 +120,10 @@ class JsonNode {
   const nlohmann::json* value_;
   std::string pointer_;
 };
+
+/// Convert between a pose and 12 numbers row by row.
+Pose pose_of(std::span<const double, 12> rows);
+std::array<double, 12> rows_of(const Pose& pose);
 
 /// Returns the number of edits (insert, delete, replace, swap neighbours) that transform one word into the
 /// other.

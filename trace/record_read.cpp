@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "trace/json_read.hpp"
 #include "trace/measured_json.hpp"
 #include "trace/trace_node.hpp"
 #include <lrbscope/core/file.hpp>
@@ -232,13 +233,9 @@ MeasuredApproach read_approach(const TraceNode& node) {
 
 Pose read_pose(const TraceNode& node) {
   if (node.array_size() != 12) node.fail("12 numbers (a 3x4 matrix, row by row)");
-  Pose pose;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      pose.r(row, column) = node.at(static_cast<std::size_t>(4 * row + column)).number();
-    pose.t(row) = node.at(static_cast<std::size_t>(4 * row + 3)).number();
-  }
-  return pose;
+  std::array<double, 12> rows{};
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = node.at(i).number();
+  return io::pose_of(rows);
 }
 
 }  // namespace lrb::trace

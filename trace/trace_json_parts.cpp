@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "trace/json_read.hpp"
 #include "trace/measured_json.hpp"
 #include <lrbscope/trace/record_fields.hpp>
 
@@ -133,12 +134,7 @@ template void write_json(JsonWriter&, const MeasuredDistance&);
 template void write_json(JsonWriter&, const MeasuredClash&);
 
 void write_json(JsonWriter& w, const Pose& pose) {
-  w.begin_array();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) w.value(pose.r(row, column));
-    w.value(pose.t(row));
-  }
-  w.end_array();
+  w.value(io::rows_of(pose));
 }
 
 void write_answer(JsonWriter& w, const StepResult& result, const CollideRequest& request) {

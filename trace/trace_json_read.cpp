@@ -23,16 +23,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Returns "line 3, column 17".
-std::string line_and_column(std::string_view text, std::size_t offset) {
-  const std::string_view before = text.substr(0, std::min(offset, text.size()));
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t break_at = before.rfind('\n');
-  const std::size_t column =
-      break_at == std::string_view::npos ? before.size() : before.size() - break_at - 1;
-  return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
-}
-
 /// Maximum depth of nested containers; traces need six levels.
 constexpr std::size_t kMaxDepth = 32;
 
@@ -97,8 +87,9 @@ class EventParser final : public nlohmann::json_sax<Json> {
     std::string what = io::plain_reason(error.what());
     constexpr std::size_t kShown = 160;  // the parser quotes an unfinished string completely
     if (what.size() > kShown) what = what.substr(0, kShown) + "...";
-    throw InputError(name_ + ": " + line_and_column(text_, offset) + ": not valid JSON: " + what +
-                     "; check that the file is a complete trace");
+    const io::TextPosition at = io::position_in(std::string(text_), std::max<std::size_t>(offset, 1) - 1);
+    throw InputError(name_ + ": line " + std::to_string(at.line) + ", column " + std::to_string(at.column) +
+                     ": not valid JSON: " + what + "; check that the file is a complete trace");
   }
 
  private:

@@ -189,11 +189,9 @@ std::string simplices(const Counterexample& c, std::size_t n) {
 }
 
 std::string pose_text(const Pose& pose) {
+  const std::array<double, 12> rows = io::rows_of(pose);
   std::string out;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) out += io::exact_text(pose.r(i, j)) + " ";
-    out += io::exact_text(pose.t[i]) + "\n";
-  }
+  for (std::size_t i = 0; i < rows.size(); ++i) out += io::exact_text(rows[i]) + (i % 4 == 3 ? "\n" : " ");
   return out;
 }
 

@@ -165,24 +165,6 @@ void read_lines(const std::string& text, const std::string& name, std::size_t co
 
 }  // namespace
 
-Pose pose_of(std::span<const double, 12> rows) {
-  Pose pose;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) pose.r(r, c) = rows[static_cast<std::size_t>(4 * r + c)];
-    pose.t[r] = rows[static_cast<std::size_t>(4 * r + 3)];
-  }
-  return pose;
-}
-
-std::array<double, 12> rows_of(const Pose& pose) {
-  std::array<double, 12> out{};
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) out[static_cast<std::size_t>(4 * r + c)] = pose.r(r, c);
-    out[static_cast<std::size_t>(4 * r + 3)] = pose.t[r];
-  }
-  return out;
-}
-
 std::vector<Pose> parse_poses(const std::string& text, const std::string& name,
                               std::vector<std::size_t>* lines) {
   std::vector<Pose> poses;

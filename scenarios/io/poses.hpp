@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "trace/json_read.hpp"
 #include <lrbscope/pose.hpp>
 
 namespace lrb::io {
@@ -51,10 +52,6 @@ std::vector<Pose> parse_pose_table(const std::string& text, const std::string& n
 /// The columns of a pose: its 3x4 matrix row by row.
 inline constexpr std::array<std::string_view, 12> kPoseColumns = {"r00", "r01", "r02", "tx",  "r10", "r11",
                                                                   "r12", "ty",  "r20", "r21", "r22", "tz"};
-
-/// Convert between a pose and 12 numbers row by row.
-Pose pose_of(std::span<const double, 12> rows);
-std::array<double, 12> rows_of(const Pose& pose);
 
 /// The start and end poses of a motion, and their line number.
 struct PosePair {

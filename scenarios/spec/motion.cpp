@@ -107,12 +107,7 @@ Pose then(const Pose& first, const Pose& second) {
 Pose read_pose(const io::JsonNode& node) {
   if (node.is_array()) {
     const std::vector<double> x = node.numbers(12);
-    Pose pose;
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) pose.r(r, c) = x[static_cast<std::size_t>(4 * r + c)];
-      pose.t[r] = x[static_cast<std::size_t>(4 * r + 3)];
-    }
-    return pose;
+    return io::pose_of(std::span<const double, 12>(x.data(), 12));
   }
   node.object({"position", "axis", "degrees"});
   Eigen::Vector3d position(0, 0, 0), axis(0, 0, 1);
