@@ -12,6 +12,7 @@
 #include "scenarios/figure/figure_targets.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/spec/scenario.hpp"
+#include "tests/support/pdf_text.hpp"
 #include "tests/support/text.hpp"
 #include <lrbscope/error.hpp>
 #include <lrbscope/render/image.hpp>
@@ -125,6 +126,7 @@ TEST_CASE("a figure of a 2D body consists of lines and text, without pixels") {
   spec.format = FigureSpec::Format::pdf;
   const Figure pdf = draw_figure(s.run, {}, spec, record::kSilent);
   CHECK(count(pdf.bytes, "/Subtype /Image") == 0);
+  CHECK(count(test::pdf_text(pdf.bytes), "/MediaBox [ 0 0 240.94") == 1);  // 85 mm
   CHECK(pdf.bytes == draw_figure(s.run, {}, spec, record::kSilent).bytes);
 }
 
