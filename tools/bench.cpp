@@ -17,6 +17,9 @@
 #include <lrbscope/trace/capture.hpp>
 
 namespace lrb::tools {
+
+using workers::WorkerMethod;
+
 namespace {
 
 struct BenchOptions : MeasureOptions {
@@ -54,9 +57,9 @@ std::vector<WorkerMethod> peers_for(methods::Quantity quantity) {
 
 /// The option --build.
 int run_build_survey(const BenchOptions& o, std::vector<speed::BodyPair> bodies,
-                     std::vector<workers::WorkerMethod> methods, const Globals& globals) {
+                     std::vector<WorkerMethod> methods, const Globals& globals) {
   // lrbscope's methods differ in their queries; speed::own_structures() are what it builds.
-  std::erase_if(methods, [](const workers::WorkerMethod& m) {
+  std::erase_if(methods, [](const WorkerMethod& m) {
     return !m.info.present || m.info.has(methods::Trait::own_rep) ||
            m.info.quantity != methods::Quantity::pairs;
   });
