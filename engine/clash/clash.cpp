@@ -20,16 +20,13 @@
 namespace lrb {
 namespace {
 
-/// Adapters that forward bounds to a probe, which may be null if no bounds are reported.
-struct GapProbeAdapter final : BoundsProbe {
-  explicit GapProbeAdapter(ClashProbe* p) : probe(p) {}
-  void bounds(const Bounds& known) override { probe->distance(known); }
+/// Forwards bounds to a function of a probe, which may be null if no bounds are reported.
+struct ClashProbeAdapter final : BoundsProbe {
+  using Report = void (ClashProbe::*)(const Bounds&);
+  ClashProbeAdapter(ClashProbe* p, Report function) : probe(p), report(function) {}
+  void bounds(const Bounds& known) override { (probe->*report)(known); }
   ClashProbe* probe;
-};
-struct DepthProbeAdapter final : BoundsProbe {
-  explicit DepthProbeAdapter(ClashProbe* p) : probe(p) {}
-  void bounds(const Bounds& known) override { probe->depth(known); }
-  ClashProbe* probe;
+  Report report;
 };
 
 /// Returns the kind of contact of bodies whose interiors are disjoint but whose surfaces intersect: the
@@ -69,7 +66,7 @@ void measure_gap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pos
                  ClashResult& result) {
   DistanceRequest ask;
   ask.relation = false;
-  GapProbeAdapter adapter(probe);
+  ClashProbeAdapter adapter(probe, &ClashProbe::distance);
   const DistanceResult d =
       distance(a, pose_a, b, pose_b, ask, context, nullptr, probe != nullptr ? &adapter : nullptr);
   result.distance = {d.lower, d.upper};
@@ -129,7 +126,7 @@ void measure_overlap(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const
   // In one common frame, in which no coordinate exceeds 1/2.
   const UnitBodies bodies = unit_bodies(query);
   if (request.depth || request.along) {
-    DepthProbeAdapter on_depth(probe);
+    ClashProbeAdapter on_depth(probe, &ClashProbe::depth);
     BoundsProbeAdapter adapter(on_depth);
     measure_depth(a, pose_a, b, pose_b, request, query, found, bodies, probe != nullptr ? &adapter : nullptr,
                   result);

@@ -163,12 +163,27 @@ struct HalfSpace {
   bool is_nudged = false;  ///< moved once by the amount that rounding may require
 };
 
-/// A part of a triangle that is not excluded by any half-space yet.
-using Part = std::vector<Vector3d>;
+/// A part of a triangle that is not excluded by any half-space yet, with its point nearest to the origin.
+struct Part {
+  ConvexPoints corners;
+  Vector3d nearest{0, 0, 0};
+  double distance_sq = kInfinity;
+
+  explicit Part(ConvexPoints polygon) : corners(std::move(polygon)) {
+    // A clipped part is a convex polygon: visit its triangle fan.
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      const Vector3d x = nearest_point(Vector3d::Zero(), corners[0], corners[i], corners[i + 1]);
+      if (x.squaredNorm() < distance_sq) {
+        distance_sq = x.squaredNorm();
+        nearest = x;
+      }
+    }
+  }
+};
 
 /// Clips a convex polygon to n . x <= most.
-Part clipped(const Part& in, const Vector3d& n, double most) {
-  Part out;
+ConvexPoints clipped(const ConvexPoints& in, const Vector3d& n, double most) {
+  ConvexPoints out;
   clip_polygon(
       in, [&](const Vector3d& x) { return most - n.dot(x); },
       [&](const Vector3d& x, std::size_t, bool, bool) { out.push_back(x); });
@@ -182,7 +197,8 @@ class Inflation {
   Inflation(const UnitBody& body, const Vector3d& seed) : body_(body), seed_(seed) {
     // Coordinates are relative to the seed, which becomes the origin.
     for (const auto& t : body.triangles)
-      parts_.push_back({body.points[t[0]] - seed, body.points[t[1]] - seed, body.points[t[2]] - seed});
+      parts_.emplace_back(
+          ConvexPoints{body.points[t[0]] - seed, body.points[t[1]] - seed, body.points[t[2]] - seed});
   }
 
   std::optional<ConvexPoints> run(WholeTriangles whole) {
@@ -226,26 +242,13 @@ class Inflation {
     return std::nullopt;
   }
 
-  /// Returns the point of all remaining parts that is nearest to the seed.
-  Vector3d nearest() const {
-    Vector3d best = Vector3d::Zero();
-    double least = kInfinity;
-    // A clipped part is a convex polygon: visit its triangle fan.
-    for (const Part& part : parts_)
-      for (std::size_t i = 1; i + 1 < part.size(); ++i) {
-        const Vector3d x = nearest_point(Vector3d::Zero(), part[0], part[i], part[i + 1]);
-        if (x.squaredNorm() < least) {
-          least = x.squaredNorm();
-          best = x;
-        }
-      }
-    return best;
-  }
-
   /// Excludes the nearest point: moves a plane inward if that costs little, otherwise adds one. A plane that
   /// moves by more than rounding moves by the maximum that may be lost, because further moves would follow.
   bool put_plane() {
-    const Vector3d x = nearest();
+    // The point of all remaining parts that is nearest to the seed.
+    const Vector3d x = std::min_element(parts_.begin(), parts_.end(), [](const Part& p, const Part& q) {
+                         return p.distance_sq < q.distance_sq;
+                       })->nearest;
     const double distance = x.norm();
     // The surface is too close to the seed for any proof.
     if (!(distance > kMinClearance)) return false;
@@ -271,13 +274,14 @@ class Inflation {
       moved = &half_spaces_.back();
     }
     // Remove the excluded parts, with a tolerance, so that points on the plane are removed as well.
-    std::vector<Part> left;
-    for (const Part& part : parts_) {
-      Part inside = clipped(part, moved->normal, moved->offset * (1 - kClipShare));
+    const double most = moved->offset * (1 - kClipShare);
+    std::erase_if(parts_, [&](Part& part) {
+      const bool is_behind = std::all_of(part.corners.begin(), part.corners.end(),
+                                         [&](const Vector3d& y) { return moved->normal.dot(y) <= most; });
+      if (!is_behind) part = Part(clipped(part.corners, moved->normal, most));
       // Fewer than three corners have no area.
-      if (inside.size() >= 3) left.push_back(std::move(inside));
-    }
-    parts_ = std::move(left);
+      return part.corners.size() < 3;
+    });
     return true;
   }
 

@@ -36,7 +36,6 @@ class PointHull {
   std::vector<Facet>& facets() { return facets_; }
   const std::vector<Facet>& facets() const { return facets_; }
   const Vector3d& point(std::uint32_t i) const { return points_[i]; }
-  std::size_t point_count() const { return points_.size(); }
 
  private:
   void add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t c);
