@@ -208,16 +208,18 @@ Bytes encode_png(const Image& image, const PngOptions& options) {
   const std::string size = std::to_string(image.width()) + "x" + std::to_string(image.height()) + " pixels";
   if ((std::int64_t{image.width()} * channels + 1) * image.height() > std::numeric_limits<int>::max())
     throw InputError("a picture of " + size + " is too large for a PNG; choose a smaller size");
-  Bytes pixels;
-  pixels.reserve(image.pixels().size() * static_cast<std::size_t>(channels));
-  for (const Rgba& p : image.pixels()) {
-    pixels.insert(pixels.end(), {p.r, p.g, p.b});
-    if (channels == 4) pixels.push_back(p.a);
+  Bytes rgb;
+  if (channels == 3) {
+    rgb.resize(image.pixels().size() * 3);
+    std::uint8_t* to = rgb.data();
+    for (const Rgba& p : image.pixels()) *to++ = p.r, *to++ = p.g, *to++ = p.b;
   }
+  const std::uint8_t* const pixels =
+      channels == 3 ? rgb.data() : reinterpret_cast<const std::uint8_t*>(image.pixels().data());
   stbi_write_force_png_filter = 0;
   int length = 0;
   const std::unique_ptr<unsigned char, decltype(&std::free)> png(
-      stbi_write_png_to_mem(pixels.data(), image.width() * channels, image.width(), image.height(), channels,
+      stbi_write_png_to_mem(pixels, image.width() * channels, image.width(), image.height(), channels,
                             &length),
       &std::free);
   if (!png) throw EnvironmentError("cannot encode a PNG of " + size + ": out of memory");

@@ -134,7 +134,7 @@ class Check final : public nlohmann::json_sax<nlohmann::json> {
 
 }  // namespace
 
-void advance(TextPosition& p, const std::string& text, std::size_t from, std::size_t to) {
+void advance(TextPosition& p, std::string_view text, std::size_t from, std::size_t to) {
   for (std::size_t i = from; i < std::min(to, text.size()); ++i) {
     if (text[i] == '\n') {
       ++p.line;
@@ -145,7 +145,7 @@ void advance(TextPosition& p, const std::string& text, std::size_t from, std::si
   }
 }
 
-TextPosition position_in(const std::string& text, std::size_t offset) {
+TextPosition position_in(std::string_view text, std::size_t offset) {
   TextPosition p;
   advance(p, text, 0, offset);
   return p;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -26,9 +27,9 @@ namespace lrb::io {
 struct TextPosition {
   std::size_t line = 1, column = 1;
 };
-TextPosition position_in(const std::string& text, std::size_t offset);
+TextPosition position_in(std::string_view text, std::size_t offset);
 /// Moves a position from one byte of a text to a later one.
-void advance(TextPosition& position, const std::string& text, std::size_t from, std::size_t to);
+void advance(TextPosition& position, std::string_view text, std::size_t from, std::size_t to);
 
 /// The offset of each value of a JSON text by its JSON pointer (RFC 6901), and of each member's key by the
 /// pointer followed by '#'.

@@ -87,7 +87,7 @@ class EventParser final : public nlohmann::json_sax<Json> {
     std::string what = io::plain_reason(error.what());
     constexpr std::size_t kShown = 160;  // the parser quotes an unfinished string completely
     if (what.size() > kShown) what = what.substr(0, kShown) + "...";
-    const io::TextPosition at = io::position_in(std::string(text_), std::max<std::size_t>(offset, 1) - 1);
+    const io::TextPosition at = io::position_in(text_, std::max<std::size_t>(offset, 1) - 1);
     throw InputError(name_ + ": line " + std::to_string(at.line) + ", column " + std::to_string(at.column) +
                      ": not valid JSON: " + what + "; check that the file is a complete trace");
   }

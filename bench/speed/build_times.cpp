@@ -191,7 +191,7 @@ BuildResults survey_builds(const BuildSurvey& survey, const record::ProgressRepo
   }
   // lrbscope's structures are measured by a worker, too.
   std::vector<workers::WorkerMethod> all;
-  for (const methods::MethodInfo& info : own_structures()) all.push_back({workers::main_worker(), info});
+  for (const methods::MethodInfo& info : own_structures()) all.emplace_back(workers::main_worker(), info);
   all.insert(all.end(), survey.methods.begin(), survey.methods.end());
   out.methods = workers::infos_of(all);
   const std::size_t total = survey.rounds * out.bodies.size() * all.size();
@@ -200,7 +200,7 @@ BuildResults survey_builds(const BuildSurvey& survey, const record::ProgressRepo
       for (const workers::WorkerMethod& m : all) {
         progress("builds", out.times.size(), total);
         workers::WorkerFailure failure;
-        workers::Worker worker({m.program, "--method", m.info.name});
+        workers::Worker worker(m.command);
         BuildTime t;
         if (const auto line =
                 worker.ask(nlohmann::json{{"build", survey.folder + "/" + body.name + ".lrb"}}.dump(),

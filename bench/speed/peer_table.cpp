@@ -1,8 +1,6 @@
 #include "bench/speed/peer_table.hpp"
 
-#include <algorithm>
 #include <cstdarg>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <thread>

@@ -55,7 +55,7 @@ class CaseWorker {
  public:
   /// `timeout`: seconds per case. The method must be present.
   CaseWorker(const workers::WorkerMethod& method, double timeout)
-      : info_(method.info), worker_({method.program, "--method", method.info.name}), timeout_(timeout) {}
+      : info_(method.info), worker_(method.command), timeout_(timeout) {}
 
   /// Returns the judged answer to a case. The right answer is computed in this process, by exact brute force.
   /// The record names no family. Throws InputError if a number of the case is not finite, EnvironmentError if

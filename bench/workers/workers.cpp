@@ -369,11 +369,7 @@ std::vector<WorkerMethod> methods_of(const std::string& program, const std::vect
   for (const std::string& line : lines) {
     const auto value = nlohmann::json::parse(line, nullptr, false);
     if (!value.is_object()) break;
-    WorkerMethod m;
-    m.info = method_info_from(value);
-    m.program = program;
-    m.command = {program, "--method", m.info.name};
-    methods.push_back(m);
+    methods.emplace_back(program, method_info_from(value));
   }
   if (lines.empty())
     throw EnvironmentError(printable_name(program) + ": does not list its methods; rebuild it");

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
@@ -171,9 +172,12 @@ class Worker {
 void wait_for_news(std::span<Worker* const> workers);
 
 struct WorkerMethod {
-  std::string program;                    ///< path of the worker with this method
-  methods::MethodInfo info;               ///< the worker's description of it
-  std::vector<std::string> command = {};  ///< starts the worker with it
+  WorkerMethod(const std::string& path, methods::MethodInfo of)
+      : program(path), info(std::move(of)), command{path, "--method", info.name} {}
+
+  std::string program;               ///< path of the worker with this method
+  methods::MethodInfo info;          ///< the worker's description of it
+  std::vector<std::string> command;  ///< starts the worker with it
 };
 
 /// Queries the workers in the folder of the running program, or in the folder named by the environment

@@ -7,7 +7,6 @@
 /// shrunken_body() begins with step 3, for bodies that are convex themselves.
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Geometry>
 

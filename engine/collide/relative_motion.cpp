@@ -8,7 +8,6 @@
 #include "engine/collide/relative_motion.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <Eigen/LU>

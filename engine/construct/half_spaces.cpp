@@ -4,7 +4,6 @@
 #include "engine/construct/half_spaces.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 

@@ -8,7 +8,6 @@
 #include "engine/distance/manifold_points.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>

@@ -12,7 +12,6 @@
 #include <array>
 #include <optional>
 #include <set>
-#include <span>
 #include <utility>
 #include <vector>
 

@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/collide/tree_query.hpp"
 #include "engine/core/geometry.hpp"

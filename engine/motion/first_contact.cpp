@@ -6,7 +6,6 @@
 /// 3. Derive the outcome from the contact found, or from the ambiguous intervals and the remaining steps.
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>

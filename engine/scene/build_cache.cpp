@@ -1,6 +1,5 @@
 #include "engine/scene/build_cache.hpp"
 
-#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <cstring>

@@ -10,11 +10,8 @@
 //    the boxes of the leaves' vertices in it, quantize them outwards (node_kernel.inl).
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <utility>
 

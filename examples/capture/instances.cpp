@@ -1,6 +1,8 @@
 // instances A.obj RAYS POSES: the first hit of each ray with copies of a mesh, one for each pose, by two
 // levels: a tree of the copies, and the tree of the mesh in each of them.
 #define LRBCAP_IMPLEMENTATION  // in one source file of a program
+#include <algorithm>
+
 #include "bodies.hpp"
 
 /// Traces rays through a tree of instances, and in each of them through the tree of the mesh.
@@ -39,17 +41,16 @@ int main(int, char** argv) {
   const std::vector<Pose> poses = read_poses(argv[3]);
   Tree of_mesh, of_poses;
   of_mesh.add(boxes_of(mesh), 0, mesh.corners.size() / 3);
-  std::vector<double> boxes;
+  std::vector<double> boxes;  // of each copy: least x, y, z, greatest x, y, z
   for (const Pose& pose : poses) {
-    Triangles copy = mesh;
+    double box[6] = {1e300, 1e300, 1e300, -1e300, -1e300, -1e300};
     for (std::size_t v = 0; v < mesh.vertices.size(); v += 3)
       for (std::size_t k = 0; k < 3; ++k) {
-        copy.vertices[v + k] = pose[4 * k + 3];
-        for (std::size_t i = 0; i < 3; ++i) copy.vertices[v + k] += pose[4 * k + i] * mesh.vertices[v + i];
+        double x = pose[4 * k + 3];
+        for (std::size_t i = 0; i < 3; ++i) x += pose[4 * k + i] * mesh.vertices[v + i];
+        box[k] = std::min(box[k], x), box[3 + k] = std::max(box[3 + k], x);
       }
-    Tree whole;  // its root's box is that of the copy
-    whole.add(boxes_of(copy), 0, copy.corners.size() / 3);
-    boxes.insert(boxes.end(), whole.boxes.begin(), whole.boxes.begin() + 6);
+    boxes.insert(boxes.end(), box, box + 6);
   }
   of_poses.add(boxes, 0, poses.size());
   return InstanceTracer(mesh, of_mesh, of_poses, poses).run("rays with instances", argv[1], argv[2]);

@@ -100,11 +100,12 @@ class FrameJob {
   /// Returns each view as SVG (2D).
   std::vector<std::string> svgs(std::size_t i, bool plain = false) {
     const std::vector<render::Camera> all = cameras(i);
+    const std::vector<render::PixelRect> where = places();
     std::vector<std::string> out;
     for (std::size_t view = 0; view < all.size(); ++view) {
       render::SvgOptions options;
-      options.width = places()[view].width;
-      options.height = places()[view].height;
+      options.width = where[view].width;
+      options.height = where[view].height;
       options.title = state.caption();
       options.units_per_pixel = look_.scale();
       options.background = look_.paper();

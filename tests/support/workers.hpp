@@ -1,9 +1,8 @@
 #pragma once
 /// Worker programs of other engines, for tests of the commands that start them.
 
+#include <stdexcept>
 #include <string>
-
-#include <doctest/doctest.h>
 
 #include "bench/workers/workers.hpp"
 #include "tests/support/program.hpp"
@@ -19,8 +18,7 @@ struct WorkerPrograms {
 inline workers::WorkerMethod worker_method(const std::string& name) {
   for (const workers::WorkerMethod& m : workers::find_methods())
     if (m.info.name == name) return m;
-  FAIL("no method " << name);
-  return {};
+  throw std::runtime_error("no method " + name);
 }
 
 }  // namespace lrb::test

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "engine/mesh/io/formats.hpp"
 #include "engine/mesh/io/scan.hpp"
