@@ -36,7 +36,7 @@ FrameState::Moment FrameState::moment() const {
   m.is_step_end = cursor_.position() == record::last_event(trace_, step);
   if (m.is_step_end) {
     if (const auto& results = results_of(run_); step < results.size()) m.result = &results[step];
-    if (run_.wrong != nullptr && step < run_.wrong->size()) m.wrong = (*run_.wrong)[step];
+    if (run_.wrong != nullptr && step < run_.wrong->size()) m.wrong = (*run_.wrong)[step].pairs;
     if (cursor_.step()->finished) add_answer(m);
   }
   add_pass(m);

@@ -21,10 +21,9 @@ struct RecordedRun {
   std::string purpose;  ///< expected content of the pictures; may be empty
   std::vector<const LrbRep*> reps;
   const trace::Trace* trace = nullptr;
-  const std::vector<CollideResult>* results = nullptr;   ///< one for each step, or null
-  const std::vector<trace::TreeShape>* trees = nullptr;  ///< A's and B's, or null: as Recording::trees
-  const std::vector<std::vector<pictures::WrongPair>>* wrong = nullptr;  ///< as Recording::wrong, or null
-  const std::vector<std::optional<std::string>>* distances = nullptr;    ///< as Recording::distances, or null
+  const std::vector<CollideResult>* results = nullptr;      ///< one for each step, or null
+  const std::vector<trace::TreeShape>* trees = nullptr;     ///< A's and B's, or null: as Recording::trees
+  const std::vector<record::WrongAnswer>* wrong = nullptr;  ///< as Recording::wrong, or null
   /// Ends of the scale of colours by value; nullopt: as in the frame.
   std::optional<std::array<double, 2>> value_range = {};
   /// Values to colour A's and B's faces by, instead of those computed for FrameSpec::colour_by, and their

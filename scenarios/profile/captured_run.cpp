@@ -290,6 +290,20 @@ trace::RecorderSettings recorder_settings(const capture::Capture& capture,
   return out;
 }
 
+/// Adds the error of the distance, and takes out the pairs that the engine's precision cannot decide.
+void add_verdict(Checker& checker, const capture::Query& query, const QueryWalk& walk,
+                 const CollideResult& exact, record::WrongAnswer& wrong) {
+  const QueryVerdict verdict = checker.check(query, &walk, &exact.pairs);
+  if (query.value) wrong.distance = verdict.distance;
+  wrong.is_verdict_undecidable = verdict.answer == Judgement::undecidable && verdict.distance.empty();
+  std::erase_if(wrong.pairs, [&](const pictures::WrongPair& w) {
+    const TrianglePair pair{w.pair.a, w.pair.b};
+    if (!checker.is_undecidable(query, walk, pair, w.missed)) return false;
+    ++(w.missed ? wrong.undecidable_missed : wrong.undecidable_false);
+    return true;
+  });
+}
+
 }  // namespace
 
 record::Recording captured_run(const capture::Capture& capture, const TreePair& pair,
@@ -330,16 +344,18 @@ record::Recording captured_run(const capture::Capture& capture, const TreePair& 
         recorder.add(trace::measured(
             distance(out.bodies[0].rep, query.poses[0], out.bodies[1].rep, query.poses[1]), {}));
     }
-    std::optional<std::string>& distance = out.distances.emplace_back();
-    if (settings.check && query.value) {
-      const QueryWalk walk(all, query, all.trees_of(query).value());
-      distance =
-          checker.check(query, &walk, i < out.results.size() ? &out.results[i].pairs : nullptr).distance;
-      if (!distance->empty() && out.notes.size() < 10)
-        out.notes.push_back("query " + std::to_string(query.number) + ": " + *distance);
+    if (i < out.results.size()) {
+      record::WrongAnswer& wrong = out.wrong.emplace_back();
+      wrong.pairs = record::wrong_pairs(answer.pairs, out.results[i].pairs, report);
+      const bool is_verdict_wrong =
+          query.verdict != capture::Verdict::unreported &&
+          (query.verdict == capture::Verdict::intersecting) == out.results[i].pairs.empty();
+      if (query.value || is_verdict_wrong || !wrong.pairs.empty())
+        add_verdict(checker, query, QueryWalk(all, query, all.trees_of(query).value()), out.results[i],
+                    wrong);
+      if (wrong.has_wrong_distance() && out.notes.size() < 10)
+        out.notes.push_back("query " + std::to_string(query.number) + ": " + *wrong.distance);
     }
-    if (i < out.results.size())
-      out.wrong.push_back(record::wrong_pairs(answer.pairs, out.results[i].pairs, report));
     recorder.add(std::move(*report));
     recorder.end_step(answer);
   }

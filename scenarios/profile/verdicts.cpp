@@ -276,6 +276,11 @@ WrongPair Checker::describe(const Posed& posed, const TrianglePair& pair, bool m
   return out;
 }
 
+bool Checker::is_undecidable(const Query& query, const QueryWalk& walk, const TrianglePair& pair,
+                             bool missed) {
+  return describe(posed_bodies(query, walk), pair, missed).undecidable;
+}
+
 void Checker::blame(const Posed& posed, const QueryWalk& walk, bool tested, WrongPair& wrong) {
   const TrianglePair& pair = wrong.triangles;
   if (tested) {

@@ -136,6 +136,10 @@ class Checker {
   QueryVerdict check(const capture::Query& query, const QueryWalk* walk,
                      const std::vector<SimplexPair>* known = nullptr);
 
+  /// Returns true for a wrong pair that arithmetic of the engine's precision cannot decide.
+  bool is_undecidable(const capture::Query& query, const QueryWalk& walk, const TrianglePair& pair,
+                      bool missed);
+
   /// Returns true for each error whose reversal makes the reported pairs of a query the exact ones, up to 1 %
   /// of them. All false if the query reports no pairs.
   std::array<bool, kPoseErrors> explaining_errors(const capture::Query& query, const QueryWalk& walk);

@@ -145,19 +145,20 @@ std::vector<pictures::WrongPair> wrong_pairs(std::span<const SimplexPair> found,
   return out;
 }
 
-AnswerScore score_of(const trace::StepResult& answer, std::span<const pictures::WrongPair> wrong,
-                     const CollideResult& exact) {
+AnswerScore score_of(const trace::StepResult& answer, const WrongAnswer& wrong, const CollideResult& exact) {
   using trace::EngineQuery, trace::EngineVerdict;
   AnswerScore out;
+  out.is_wrong = wrong.has_wrong_distance();
   if (!is_compared(answer.engine)) return out;
-  out.missed = static_cast<std::uint64_t>(
-      std::count_if(wrong.begin(), wrong.end(), [](const pictures::WrongPair& w) { return w.missed; }));
-  out.false_pairs = wrong.size() - out.missed;
-  out.right = answer.pair_count - out.false_pairs;
+  out.missed = static_cast<std::uint64_t>(std::ranges::count_if(wrong.pairs, &pictures::WrongPair::missed));
+  out.false_pairs = wrong.pairs.size() - out.missed;
+  out.undecidable = wrong.undecidable_missed + wrong.undecidable_false;
+  out.right = answer.pair_count - out.false_pairs - wrong.undecidable_false;
   // Whether a body intersects itself is not computed.
   if (answer.engine && answer.engine->verdict != EngineVerdict::unreported &&
-      answer.engine->query != EngineQuery::self)
+      answer.engine->query != EngineQuery::self && !wrong.is_verdict_undecidable)
     out.verdict = (answer.engine->verdict == EngineVerdict::intersecting) == !exact.pairs.empty();
+  out.is_wrong = out.is_wrong || !wrong.pairs.empty() || out.verdict == false;
   return out;
 }
 
@@ -171,22 +172,24 @@ std::string EngineTotals::words() const {
   const auto of = [](std::uint64_t part, std::uint64_t all) {
     return group_digits(part) + " of " + group_digits(all) + " ";
   };
+  const std::string too_close = undecidable == 0 ? ""
+                                                 : "; " + counted(undecidable, "pair", "pairs") +
+                                                       " too close for the engine's precision";
   if (wrong_queries == 0) {
     add(has_pairs, counted(right, "pair", "pairs"));
     add(verdicts > 0, counted(verdicts, "verdict", "verdicts"));
     add(distances > 0, counted(distances, "distance", "distances"));
-    return "no wrong answer in " + counted(queries, "query", "queries") + out;
+    return "no wrong answer in " + counted(queries, "query", "queries") + out + too_close;
   }
   add(missed > 0, of(missed, right + missed) + "intersecting pairs missed");
   add(false_pairs > 0, counted(false_pairs, "false pair", "false pairs"));
   add(wrong_verdicts > 0, of(wrong_verdicts, verdicts) + "verdicts wrong");
   add(wrong_distances > 0, of(wrong_distances, distances) + "distances wrong");
-  return "wrong answers in " + of(wrong_queries, queries) + "queries" + out;
+  return "wrong answers in " + of(wrong_queries, queries) + "queries" + out + too_close;
 }
 
 EngineTotals totals_of(const trace::Trace& trace, const std::vector<CollideResult>* results,
-                       const std::vector<std::vector<pictures::WrongPair>>* wrongs,
-                       const std::vector<std::optional<std::string>>* errors) {
+                       const std::vector<WrongAnswer>* wrongs) {
   EngineTotals out;
   out.queries = trace.steps.size();
   out.checked =
@@ -200,12 +203,12 @@ EngineTotals totals_of(const trace::Trace& trace, const std::vector<CollideResul
     out.face_tests += r.counters.face_tests;
     if (!out.checked) continue;
     const AnswerScore s = score_of(r, (*wrongs)[i], (*results)[i]);
-    const bool has_distance = errors != nullptr && i < errors->size() && (*errors)[i];
-    const bool is_distance_wrong = has_distance && !(*errors)[i]->empty();
     out.right += s.right, out.missed += s.missed, out.false_pairs += s.false_pairs;
+    out.undecidable += s.undecidable;
     out.verdicts += s.verdict.has_value(), out.wrong_verdicts += s.verdict == false;
-    out.distances += has_distance, out.wrong_distances += is_distance_wrong;
-    out.wrong_queries += s.missed + s.false_pairs > 0 || s.verdict == false || is_distance_wrong;
+    out.distances += (*wrongs)[i].distance.has_value();
+    out.wrong_distances += (*wrongs)[i].has_wrong_distance();
+    out.wrong_queries += s.is_wrong;
   }
   return out;
 }
@@ -213,15 +216,15 @@ EngineTotals totals_of(const trace::Trace& trace, const std::vector<CollideResul
 EngineTotals& EngineTotals::operator+=(const EngineTotals& other) {
   using T = EngineTotals;
   for (const auto count : {&T::queries, &T::intersecting, &T::node_pairs, &T::box_tests, &T::face_tests,
-                           &T::right, &T::missed, &T::false_pairs, &T::verdicts, &T::wrong_verdicts,
-                           &T::distances, &T::wrong_distances, &T::wrong_queries})
+                           &T::right, &T::missed, &T::false_pairs, &T::undecidable, &T::verdicts,
+                           &T::wrong_verdicts, &T::distances, &T::wrong_distances, &T::wrong_queries})
     this->*count += other.*count;
   has_pairs |= other.has_pairs, checked |= other.checked;
   return *this;
 }
 
 EngineTotals totals_of(const Recording& run) {
-  return totals_of(run.trace, &run.results, &run.wrong, &run.distances);
+  return totals_of(run.trace, &run.results, &run.wrong);
 }
 
 std::string axis_words(std::uint32_t axis) {

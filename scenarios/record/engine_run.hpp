@@ -49,20 +49,31 @@ std::vector<pictures::WrongPair> wrong_pairs(std::span<const SimplexPair> found,
 /// Returns false for first contacts and shapes, whose answers are not checked.
 bool is_compared(const std::optional<trace::EngineReport>& report);
 
+/// What an engine got wrong in a query.
+struct WrongAnswer {
+  std::vector<pictures::WrongPair> pairs;  ///< first those reported wrongly, then those missed
+  /// Wrong pairs that are not in `pairs`, because arithmetic of the engine's precision cannot decide them.
+  std::uint64_t undecidable_missed = 0, undecidable_false = 0;
+  bool is_verdict_undecidable = false;
+  /// The error of the distance, empty for a right one; nullopt: none was reported. Not in traces.
+  std::optional<std::string> distance;
+
+  bool has_wrong_distance() const { return distance && !distance->empty(); }
+};
+
 /// The answer of an engine to a query, compared with the exact one.
 struct AnswerScore {
-  std::uint64_t right = 0, missed = 0, false_pairs = 0;  ///< pairs
+  std::uint64_t right = 0, missed = 0, false_pairs = 0, undecidable = 0;  ///< pairs
   std::optional<bool> verdict;  ///< its verdict is right; nullopt: it has none that can be compared
+  bool is_wrong = false;        ///< a pair, the verdict or the distance
 };
-/// `wrong`: as returned by wrong_pairs().
-AnswerScore score_of(const trace::StepResult& answer, std::span<const pictures::WrongPair> wrong,
-                     const CollideResult& exact);
+AnswerScore score_of(const trace::StepResult& answer, const WrongAnswer& wrong, const CollideResult& exact);
 
 /// Sums over the queries of an engine's run.
 struct EngineTotals {
   std::uint64_t queries = 0, intersecting = 0;  ///< intersecting: by the engine's verdict
   std::uint64_t node_pairs = 0, box_tests = 0, face_tests = 0;
-  std::uint64_t right = 0, missed = 0, false_pairs = 0;
+  std::uint64_t right = 0, missed = 0, false_pairs = 0, undecidable = 0;
   std::uint64_t verdicts = 0, wrong_verdicts = 0, distances = 0, wrong_distances = 0;
   std::uint64_t wrong_queries = 0;  ///< with a wrong pair, verdict or distance
   bool has_pairs = false;           ///< the tests of some query were captured
@@ -72,10 +83,9 @@ struct EngineTotals {
   /// Returns "wrong answers in 2 of 40 queries: 30 of 732 intersecting pairs missed".
   std::string words() const;
 };
-/// Returns the sums of a run. `distances`: as in Recording; null: not known.
+/// Returns the sums of a run. Null: not known.
 EngineTotals totals_of(const trace::Trace& trace, const std::vector<CollideResult>* results,
-                       const std::vector<std::vector<pictures::WrongPair>>* wrong,
-                       const std::vector<std::optional<std::string>>* distances);
+                       const std::vector<WrongAnswer>* wrong);
 EngineTotals totals_of(const Recording& run);
 
 /// Returns the name of an axis of a test of another engine: see capture::Event::axis.

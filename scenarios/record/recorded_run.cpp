@@ -70,8 +70,8 @@ void add_contacts(Recording& run) {
     if (trace.header.engine.empty()) continue;
     // Pairs of a step whose events were cut are not all known.
     const bool is_whole = step.events_seen == trace.events_of(i).size();
-    run.wrong.push_back(is_whole ? wrong_pairs(found, run.results.back().pairs, report)
-                                 : std::vector<pictures::WrongPair>());
+    run.wrong.emplace_back();
+    if (is_whole) run.wrong.back().pairs = wrong_pairs(found, run.results.back().pairs, report);
   }
 }
 

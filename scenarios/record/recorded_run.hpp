@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "render/pictures/marks.hpp"
 #include "scenarios/bodies/loaded_body.hpp"
+#include "scenarios/record/engine_run.hpp"
 #include "scenarios/spec/scenario.hpp"
 #include <lrbscope/trace/trace.hpp>
 #include <lrbscope/trace/work.hpp>
@@ -27,12 +27,7 @@ struct Recording {
   std::vector<CollideResult> results;  ///< one for each step; empty for one body
   /// The trees of A and B, if pairs of their nodes were recorded.
   std::vector<trace::TreeShape> trees;
-  /// The wrong pairs of another engine, for each step: first those reported wrongly, then those missed. Empty
-  /// if only lrbscope was recorded.
-  std::vector<std::vector<pictures::WrongPair>> wrong;
-  /// By step: the error of the engine's distance, empty for a right one; nullopt: it reported none. Not in
-  /// traces.
-  std::vector<std::optional<std::string>> distances;
+  std::vector<WrongAnswer> wrong;  ///< of another engine, by step; empty if only lrbscope was recorded
   std::vector<std::string> notes;  ///< notes as text
 };
 

@@ -22,19 +22,15 @@ record::AnswerScore score_at(const frames::RecordedRun& p, std::size_t step) {
   return record::score_of(p.trace->steps[step].result, (*p.wrong)[step], (*p.results)[step]);
 }
 
-std::optional<std::string> distance_at(const frames::RecordedRun& p, std::size_t step) {
-  return p.distances != nullptr && step < p.distances->size() ? (*p.distances)[step] : std::nullopt;
-}
-
 }  // namespace
 
 std::string engine_sentence(const frames::RecordedRun& p) {
-  return record::totals_of(*p.trace, p.results, p.wrong, p.distances).words() + ".";
+  return record::totals_of(*p.trace, p.results, p.wrong).words() + ".";
 }
 
 void add_engine_answer(report::Document& doc, const frames::RecordedRun& p) {
   using render::counted, render::group_digits;
-  const record::EngineTotals t = record::totals_of(*p.trace, p.results, p.wrong, p.distances);
+  const record::EngineTotals t = record::totals_of(*p.trace, p.results, p.wrong);
   if (!t.checked)
     doc.verdict("answers not checked");
   else if (t.wrong_queries == 0)
@@ -131,8 +127,7 @@ report::Table engine_table(const frames::RecordedRun& p) {
   const bool has_threads = any([&](const auto& r) { return r.thread != first->thread; });
   const bool has_times = any([](const auto& r) { return r.duration_ns > 0; });
   const bool checked = is_checked(p);
-  const bool has_distances = p.distances != nullptr &&
-                             std::ranges::any_of(*p.distances, [](const auto& d) { return d.has_value(); });
+  const record::EngineTotals totals = record::totals_of(trace, p.results, p.wrong);
   report::Table t{"Every query", {"query"}};
   // With many queries, the wrong ones are shown, then those with the most tests.
   std::vector<std::size_t> order(trace.steps.size());
@@ -140,9 +135,7 @@ report::Table engine_table(const frames::RecordedRun& p) {
   if (order.size() > kMaxRows) {
     const auto key = [&](std::size_t i) {
       const Counters& c = trace.steps[i].result.counters;
-      const bool is_wrong = checked && (!(*p.wrong)[i].empty() || score_at(p, i).verdict == false ||
-                                        !distance_at(p, i).value_or("").empty());
-      return std::pair(is_wrong, c.box_tests + c.face_tests);
+      return std::pair(checked && score_at(p, i).is_wrong, c.box_tests + c.face_tests);
     };
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t x, std::size_t y) { return key(x) > key(y); });
@@ -170,11 +163,12 @@ report::Table engine_table(const frames::RecordedRun& p) {
                                       : group_digits((*p.results)[i].pairs.size()) + " pairs"
                                 : "");
     cell(true, "engine's pairs", group_digits(report.pairs));
-    const std::string error = distance_at(p, i).value_or("-");
-    cell(has_distances, "engine's distance", error.empty() ? "right" : error);
+    const std::string error = checked ? (*p.wrong)[i].distance.value_or("-") : "";
+    cell(totals.distances > 0, "engine's distance", error.empty() ? "right" : error);
     cell(checked, "right", number(score.right));
     cell(checked, "missed", number(score.missed));
     cell(checked, "false", number(score.false_pairs));
+    cell(totals.undecidable > 0, "undecidable", number(score.undecidable));
     cell(true, "tests of volumes",
          group_digits(r.counters.box_tests) + (report.complete ? "" : ", incomplete"));
     cell(true, "tests of triangles", group_digits(r.counters.face_tests));
@@ -189,6 +183,8 @@ report::Table engine_table(const frames::RecordedRun& p) {
     t.note +=
         " Right, missed and false pairs of triangles are those of the tests that the engine reported, compared with "
         "exact answers.";
+  if (totals.undecidable > 0)
+    t.note += " Undecidable: wrong pairs that are too close for arithmetic of the engine's precision.";
   if (has_times) t.note += " Times are the engine's own and include the recording.";
   if (order.size() < trace.steps.size())
     t.note += " Of " + group_digits(trace.steps.size()) +

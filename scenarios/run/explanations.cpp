@@ -292,7 +292,7 @@ std::vector<ComparedPair> pairs_of(const frames::RecordedRun& p, const Explained
   }
   if (p.wrong != nullptr && !p.wrong->empty())
     for (const std::uint32_t s : what.steps)
-      for (const pictures::WrongPair& w : (*p.wrong)[s]) out.push_back({s, w.pair, w.missed});
+      for (const pictures::WrongPair& w : (*p.wrong)[s].pairs) out.push_back({s, w.pair, w.missed});
   std::sort(out.begin(), out.end(), [](const ComparedPair& x, const ComparedPair& y) {
     if (!x.same_pair(y)) return x.step != y.step ? x.step < y.step : x.pair < y.pair;
     return x.meets > y.meets;

@@ -47,7 +47,6 @@ frames::RecordedRun recorded_run_of(const std::string& title, const std::string&
   p.results = &recording.results;
   p.trees = &recording.trees;
   p.wrong = &recording.wrong;
-  p.distances = &recording.distances;
   for (const bodies::LoadedBody& body : recording.bodies) p.reps.push_back(&body.rep);
   return p;
 }

@@ -410,7 +410,7 @@ json wrong_json(const frames::RecordedRun& p, const Numbers& steps) {
   if (p.wrong == nullptr || p.wrong->empty()) return nullptr;
   Numbers step, a, b, missed;
   for (std::uint32_t i = 0; i < steps.size(); ++i)
-    for (const pictures::WrongPair& w : (*p.wrong)[steps[i]]) {
+    for (const pictures::WrongPair& w : (*p.wrong)[steps[i]].pairs) {
       step.push_back(i);
       a.push_back(w.pair.a.value());
       b.push_back(w.pair.b.value());
