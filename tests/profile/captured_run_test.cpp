@@ -87,8 +87,8 @@ TEST_CASE("a mesh without triangles, or with a coordinate that is not finite, is
 }
 
 TEST_CASE("for bodies of any kind, found pairs are right and the others that meet are missed") {
-  std::uint64_t all_right = 0, all_missed = 0,
-                all_undecidable = 0;  // the toy's boxes are rounded: it loses some that touch
+  std::uint64_t all_right = 0,
+                all_undecidable = 0;  // its boxes are rounded: some that touch are lost
   for (const matrix::Cell& cell : kinds_of_bodies().cells) {
     const matrix::Kind &a = kinds_of_bodies().kinds[cell.a], &b = kinds_of_bodies().kinds[cell.b];
     if (!is_of_triangles(a.mesh) || !is_of_triangles(b.mesh)) continue;
@@ -108,10 +108,9 @@ TEST_CASE("for bodies of any kind, found pairs are right and the others that mee
     CHECK(totals.false_pairs == 0);
     CHECK(totals.queries == cell.steps.size());
     all_right += found;
-    all_missed += totals.missed, all_undecidable += totals.undecidable;
+    all_undecidable += totals.undecidable;
   }
   CHECK(all_right > 1000);
-  CHECK(all_missed + all_undecidable > 0);
   CHECK(all_undecidable > 0);
 }
 
