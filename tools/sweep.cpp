@@ -105,8 +105,7 @@ struct SweepQuestion : PosedQuestion {
     if (result.grazing) w.member("grazing", true);
     if (!result.finished) w.member("finished", false);
     if (result.unresolved != Unresolved::nothing) w.member("unresolved", name_of(result.unresolved));
-    if (result.at_begin == Relation::a_inside_b || result.at_begin == Relation::b_inside_a)
-      w.member("inside", to_string(result.at_begin));
+    if (is_inside(result.at_begin)) w.member("inside", to_string(result.at_begin));
     if (request.history) write_history(w, result);
     if (draw.history) trace::write_history(w, reported.history);
     us(w);

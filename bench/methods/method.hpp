@@ -107,17 +107,15 @@ class Traits {
 
 /// Role of a method in comparisons.
 enum class Role : std::uint8_t {
-  peer,         ///< answers the same query as `ours`
-  ours,         ///< the baseline of all comparisons, which must not fail
-  ours_double,  ///< lrbscope without the exact fallback: the cost of exactness
-  ours_other,   ///< lrbscope with another query
-  aim,          ///< the engine that the performance targets refer to
-  no_peer,      ///< answers another query or takes minutes: in no table of engines
+  peer,        ///< answers the same query as `ours`
+  ours,        ///< the baseline of all comparisons, which must not fail
+  ours_other,  ///< lrbscope with another query, or without the exact fallback
+  aim,         ///< the engine that the performance targets refer to
+  no_peer,     ///< answers another query or takes minutes: in no table of engines
 };
 constexpr auto enum_names(Role) {
   return std::to_array<EnumName<Role>>({{Role::peer, "peer"},
                                         {Role::ours, "ours"},
-                                        {Role::ours_double, "ours_double"},
                                         {Role::ours_other, "ours_other"},
                                         {Role::aim, "aim"},
                                         {Role::no_peer, "no_peer"}});

@@ -42,7 +42,7 @@ Answer answer_from(CollideResult result, double microseconds) {
   answer.microseconds = microseconds;
   answer.contact = !result.pairs.empty();
   answer.pairs = std::move(result.pairs);
-  answer.inside = result.relation == Relation::a_inside_b || result.relation == Relation::b_inside_a;
+  answer.inside = is_inside(result.relation);
   answer.relation = result.relation;
   answer.face_tests = result.counters.face_tests;
   return answer;
@@ -218,7 +218,7 @@ std::vector<MethodEntry> ours_methods() {
            .says = Says::relation,
            .traits = kOurHardCases,
            .style = kVariant,
-           .role = Role::ours_double,
+           .role = Role::ours_other,
            .rank = 11}),
       entry_of<Ours, Recursion::paper, Predicates::exact>(
           {.name = "ours-paper",

@@ -340,11 +340,6 @@ report::Chart chart_of(const DataSet& set, PoseClass c, const std::vector<Point>
 
 constexpr int kCsvDigits = 6;
 
-bool is_ours(methods::Role role) {
-  return role == methods::Role::ours || role == methods::Role::ours_double ||
-         role == methods::Role::ours_other;
-}
-
 /// Returns the errors that at least one method provides.
 std::vector<std::size_t> errors_in(const std::vector<Point>& points) {
   std::vector<std::size_t> out;
@@ -402,10 +397,9 @@ std::vector<Setting> settings_of(const DataSet& set, const std::vector<Point>& p
   };
   std::map<std::string, Answers> all;
   for (const Point& p : points) {
-    const auto info = std::find_if(methods.begin(), methods.end(),
-                                   [&](const methods::MethodInfo& m) { return m.name == p.method; });
+    const auto info = std::ranges::find(methods, p.method, &methods::MethodInfo::name);
     if (p.set != set.name || !p.left_out.empty() || info == methods.end()) continue;
-    if (ours && !is_ours(info->role)) continue;
+    if (ours && info->role != methods::Role::ours && info->role != methods::Role::ours_other) continue;
     Answers& s = all[name_of(p.method, p.setting)];
     s.error = std::max(s.error, p.error());
     s.times.push_back(p.median);

@@ -72,16 +72,6 @@ namespace {
 using methods::Answer;
 using methods::MethodInfo;
 
-bool is_inside(Relation r) {
-  return r == Relation::a_inside_b || r == Relation::b_inside_a;
-}
-
-Relation mirrored(Relation r) {
-  if (r == Relation::a_inside_b) return Relation::b_inside_a;
-  if (r == Relation::b_inside_a) return Relation::a_inside_b;
-  return r;
-}
-
 const char* in_brief(bool contact, bool inside) {
   return contact ? "contact" : inside ? "inside" : "separate";
 }

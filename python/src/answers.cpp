@@ -206,7 +206,7 @@ std::vector<Answer> with_results(std::vector<Answer> answers, std::vector<Collid
 }
 
 bool in_contact(const CollideResult& r) {
-  return !r.pairs.empty() || r.relation == Relation::a_inside_b || r.relation == Relation::b_inside_a;
+  return !r.pairs.empty() || is_inside(r.relation);
 }
 
 void find_depths(Answer& answer) {

@@ -49,7 +49,7 @@ std::vector<pictures::WrongPair> wrong_pairs(std::span<const SimplexPair> found,
 /// Returns false for first contacts and shapes, whose answers are not checked.
 bool is_compared(const std::optional<trace::EngineReport>& report);
 
-/// What an engine got wrong in a query.
+/// The errors of an engine's answer to a query.
 struct WrongAnswer {
   std::vector<pictures::WrongPair> pairs;  ///< first those reported wrongly, then those missed
   /// Wrong pairs that are not in `pairs`, because arithmetic of the engine's precision cannot decide them.

@@ -13,9 +13,8 @@
 namespace lrb::run {
 namespace {
 
-bool is_checked(const frames::RecordedRun& p) {
-  return p.results != nullptr && !p.results->empty() && p.wrong != nullptr &&
-         p.wrong->size() == p.results->size();
+record::EngineTotals totals_of(const frames::RecordedRun& p) {
+  return record::totals_of(*p.trace, p.results, p.wrong);
 }
 
 record::AnswerScore score_at(const frames::RecordedRun& p, std::size_t step) {
@@ -25,12 +24,12 @@ record::AnswerScore score_at(const frames::RecordedRun& p, std::size_t step) {
 }  // namespace
 
 std::string engine_sentence(const frames::RecordedRun& p) {
-  return record::totals_of(*p.trace, p.results, p.wrong).words() + ".";
+  return totals_of(p).words() + ".";
 }
 
 void add_engine_answer(report::Document& doc, const frames::RecordedRun& p) {
   using render::counted, render::group_digits;
-  const record::EngineTotals t = record::totals_of(*p.trace, p.results, p.wrong);
+  const record::EngineTotals t = totals_of(p);
   if (!t.checked)
     doc.verdict("answers not checked");
   else if (t.wrong_queries == 0)
@@ -79,7 +78,7 @@ std::vector<report::Chart> engine_charts(const frames::RecordedRun& p) {
     const trace::StepResult& r = steps[i].result;
     return r.engine && !r.engine->complete ? r.engine->pairs : r.pair_count;
   })};
-  if (is_checked(p)) {
+  if (totals_of(p).checked) {
     const auto add_unless_zero = [&](const char* name, std::uint64_t record::AnswerScore::*which) {
       report::Series s = series(name, [&](std::size_t i) { return score_at(p, i).*which; });
       if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; }))
@@ -126,8 +125,8 @@ report::Table engine_table(const frames::RecordedRun& p) {
   const bool has_kinds = any([&](const auto& r) { return r.query != first->query; });
   const bool has_threads = any([&](const auto& r) { return r.thread != first->thread; });
   const bool has_times = any([](const auto& r) { return r.duration_ns > 0; });
-  const bool checked = is_checked(p);
-  const record::EngineTotals totals = record::totals_of(trace, p.results, p.wrong);
+  const record::EngineTotals totals = totals_of(p);
+  const bool checked = totals.checked;
   report::Table t{"Every query", {"query"}};
   // With many queries, the wrong ones are shown, then those with the most tests.
   std::vector<std::size_t> order(trace.steps.size());

@@ -263,7 +263,7 @@ Approach find_approach(const LrbRep& a, const Pose& pose_a, const LrbRep& b, con
               : first_contact(a, lrb::Motion::still(pose_a), b, steps.whole(), request);
   Approach out;
   out.search = trace::measured(found, std::move(reported.history));
-  const bool inside = found.at_begin == Relation::a_inside_b || found.at_begin == Relation::b_inside_a;
+  const bool inside = is_inside(found.at_begin);
   if (!(motion.exact && found.is_contact() && !found.passed) || inside) {
     const auto from = static_cast<std::uint32_t>(found.t0 * whole_way);
     if (inside || found.outcome != MotionOutcome::never)

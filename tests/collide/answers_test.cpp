@@ -177,8 +177,7 @@ void check(const Bodies& x, const Pose& pose_a, const Pose& pose_b, CoherentQuer
   }
   if (!meets) {
     const CollideResult back = collide(x.b, pose_b, x.a, pose_a);
-    REQUIRE((back.relation == truth.relation || truth.relation == Relation::a_inside_b ||
-             truth.relation == Relation::b_inside_a));
+    REQUIRE(back.relation == mirrored(truth.relation));
     if (x.a.real_face_count() < 400) REQUIRE(distance(x.a, pose_a, x.b, pose_b).relation == truth.relation);
   }
   if (roots_are_apart(x.a.tree(), pose_a, x.b.tree(), pose_b)) {
@@ -189,7 +188,7 @@ void check(const Bodies& x, const Pose& pose_a, const Pose& pose_b, CoherentQuer
   seen.contact += meets;
   seen.apart += truth.relation == Relation::separate;
   seen.undefined += truth.relation == Relation::undefined;
-  seen.inside += truth.relation == Relation::a_inside_b || truth.relation == Relation::b_inside_a;
+  seen.inside += is_inside(truth.relation);
 }
 
 /// Checks every `part`th of the poses.

@@ -60,7 +60,7 @@ void compare(const CollideResult& coherent, const CollideResult& scratch, Mode m
   }
   tally.contact += !scratch.pairs.empty();
   tally.apart += scratch.relation == Relation::separate;
-  tally.inside += scratch.relation == Relation::a_inside_b || scratch.relation == Relation::b_inside_a;
+  tally.inside += is_inside(scratch.relation);
 }
 
 /// Two poses that change from query to query.

@@ -32,11 +32,6 @@ struct Rejected {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
                  kInfinite = std::numeric_limits<double>::infinity();
 
-inline Relation mirrored(Relation r) {
-  if (r == Relation::a_inside_b) return Relation::b_inside_a;
-  return r == Relation::b_inside_a ? Relation::a_inside_b : r;
-}
-
 template <class Pair>
 std::vector<std::tuple<SimplexId, SimplexId, exact::Meet>> transposed(
     const std::vector<Pair>& pairs, bool swapped, const std::vector<exact::Meet>& meets = {}) {

@@ -62,7 +62,7 @@ void check(const LrbRep& a, const Pose& pose_a, const LrbRep& b, const Pose& pos
     return;
   }
   REQUIRE(d.relation == truth.relation);
-  const bool holds = d.relation == Relation::a_inside_b || d.relation == Relation::b_inside_a;
+  const bool holds = is_inside(d.relation);
   t.inside += holds;
   t.apart += !holds;
   REQUIRE(d.solids_upper() == (holds ? 0 : d.upper));

@@ -8,10 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 for name in bolt hinge lid valve; do
-  awk 'BEGIN {
-    for (i = 0; i < 8; i++) print "v", i % 2, int(i / 2) % 2, int(i / 4)
-    print "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6"
-  }' >$name.obj
+  cp "$1/examples/data/a.obj" $name.obj
   cat >$name.scenario.json <<END
 {
   "name": "$name",

@@ -13,16 +13,6 @@
 namespace lrb::torture {
 namespace {
 
-Relation mirrored(Relation r) {
-  if (r == Relation::a_inside_b) return Relation::b_inside_a;
-  if (r == Relation::b_inside_a) return Relation::a_inside_b;
-  return r;
-}
-
-bool holds_each_other(Relation r) {
-  return r == Relation::a_inside_b || r == Relation::b_inside_a;
-}
-
 class Comparison {
  public:
   Comparison(const cases::Case& c, RandomEngine& random, const Effort& effort, std::string& trouble)
@@ -45,7 +35,7 @@ class Comparison {
     }
     brute_ = brute_force(*c_.a, c_.pose_a, *c_.b, c_.pose_b);
     t_.in_contact += !brute_.pairs.empty();
-    t_.inside += holds_each_other(brute_.relation);
+    t_.inside += is_inside(brute_.relation);
     compare_pairs();
     compare_first();
     compare_swapped();

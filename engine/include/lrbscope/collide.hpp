@@ -138,6 +138,15 @@ constexpr auto enum_names(Relation) {
                                             {Relation::undefined, "undefined"},
                                             {Relation::unresolved, "unresolved"}});
 }
+/// Returns true if one body contains the other.
+constexpr bool is_inside(Relation r) {
+  return r == Relation::a_inside_b || r == Relation::b_inside_a;
+}
+/// Returns the relation of the bodies in the other order.
+constexpr Relation mirrored(Relation r) {
+  if (r == Relation::a_inside_b) return Relation::b_inside_a;
+  return r == Relation::b_inside_a ? Relation::a_inside_b : r;
+}
 const char* to_string(Relation r);
 
 enum class Answer : std::uint8_t { no, yes, unknown };

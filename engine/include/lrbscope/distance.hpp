@@ -80,9 +80,7 @@ struct DistanceResult {
   DistanceCounters counters;
 
   /// Bounds of the distance of the solids: 0 also if one contains the other.
-  bool solids_meet() const {
-    return meet || relation == Relation::a_inside_b || relation == Relation::b_inside_a;
-  }
+  bool solids_meet() const { return meet || is_inside(relation); }
   double solids_lower() const { return solids_meet() ? 0 : lower; }
   double solids_upper() const { return solids_meet() ? 0 : upper; }
 };
