@@ -397,9 +397,10 @@ render::Image worst_case_picture(const cases::Case& c, std::span<const SimplexPa
       shown.push_back(near.cut({close->box.corner(static_cast<AlignedBox3d::CornerType>(i))})[0] * kContext /
                       std::numbers::sqrt3);
     const double extent = std::max(diagonal(close->box) * kContext, std::numeric_limits<double>::min());
-    panels.push_back(
-        {draw_list(s, near, kReach, verdict.mark()), pictures::fit_points(shown, dim, fit),
-         close->caption + ", " + render::short_number(diagonal(box) / extent) + " times as large", false});
+    const double times = diagonal(box) / extent;
+    const std::string scale = std::isfinite(times) ? render::short_number(times) : "over 1e308";
+    panels.push_back({draw_list(s, near, kReach, verdict.mark()), pictures::fit_points(shown, dim, fit),
+                      close->caption + ", " + scale + " times as large", false});
   }
   const render::Overlay overlay = overlay_of(s, verdict, text);
   pictures::Look look;

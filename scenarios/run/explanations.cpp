@@ -471,6 +471,16 @@ json steps_json(const frames::RecordedRun& p, const Explained& what, const Scene
   return out;
 }
 
+/// Returns true if the exact answer names a solid box by its first face, of which an explanation would speak.
+bool names_a_solid(const frames::RecordedRun& p, std::uint32_t step, PairExplainer& placed) {
+  if (p.wrong == nullptr || p.wrong->empty()) return false;  // lrbscope's own run
+  const std::vector<SimplexPair>& exact = (*p.results)[step].pairs;
+  return std::ranges::all_of(exact, [](const SimplexPair& pair) { return pair.b == 0; }) &&
+         std::ranges::any_of(exact, [&](const SimplexPair& pair) {
+           return placed.explain(pair).meet == exact::Meet::disjoint;
+         });
+}
+
 }  // namespace
 
 json explanations_json(const frames::RecordedRun& p, const Explained& what, const SceneFrame& frame,
@@ -483,10 +493,15 @@ json explanations_json(const frames::RecordedRun& p, const Explained& what, cons
   PairExplainer explainer(*p.reps[0], *p.reps[1]);
   PairColumns columns(frame);
   std::uint32_t placed = kNull;
+  bool of_solid = false;
   for (const ComparedPair& compared : pairs) {
     const trace::Step& step = p.trace->steps[compared.step];
-    if (placed != compared.step) explainer.place(step.pose_a, step.pose_b);
+    if (placed != compared.step) {
+      explainer.place(step.pose_a, step.pose_b);
+      of_solid = names_a_solid(p, compared.step, explainer);
+    }
     placed = compared.step;
+    if (of_solid) continue;
     const auto current = std::lower_bound(what.steps.begin(), what.steps.end(), compared.step);
     columns.add(static_cast<std::uint32_t>(current - what.steps.begin()), explainer.explain(compared.pair));
   }

@@ -240,6 +240,13 @@ TEST_CASE("page data of a run explains each pair of a step once, and each step w
     CHECK((step["roots"]["gap"] > 0 || !step["boxes"].is_null() || step["facePairs"] > 0));
     if (!step["plane"].is_null()) CHECK(step["plane"]["gap"] > 0);
   }
+  // Of a captured query with a solid box, which its first face stands for, no face is explained.
+  std::vector<CollideResult> exact(r.trace.steps.size());
+  for (CollideResult& one : exact) one.pairs = {{SimplexId(0), SimplexId(0)}};
+  const std::vector<record::WrongAnswer> right(exact.size());
+  frames::RecordedRun captured = run_of(r);
+  captured.results = &exact, captured.wrong = &right;
+  CHECK(json::parse(run::scene_json(captured, {"trace.json", ""}))["why"]["pairs"]["count"] == 0);
 }
 
 TEST_CASE("page data of a run explains only answers of the complete query") {
