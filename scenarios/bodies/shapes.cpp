@@ -117,27 +117,6 @@ Mesh make_torus(int n, int m, double major, double minor, bool quads) {
   return mesh;
 }
 
-/// Splits every triangle into four, with new vertices at the edges' midpoints.
-Mesh subdivided(const Mesh& in) {
-  Mesh out;
-  out.vertices = in.vertices;
-  std::map<std::pair<VertexId, VertexId>, VertexId> midpoints;
-  const auto midpoint = [&](VertexId a, VertexId b) {
-    const auto [it, fresh] = midpoints.try_emplace(std::minmax(a, b), id(out.vertices.size()));
-    if (fresh) out.vertices.push_back((in.vertices[a] + in.vertices[b]) / 2);
-    return it->second;
-  };
-  for (FaceId f = 0; f < in.face_count(); ++f) {
-    const auto c = in.face(f);
-    const VertexId ab = midpoint(c[0], c[1]), bc = midpoint(c[1], c[2]), ca = midpoint(c[2], c[0]);
-    add(out, {c[0], ab, ca});
-    add(out, {c[1], bc, ab});
-    add(out, {c[2], ca, bc});
-    add(out, {ab, bc, ca});
-  }
-  return out;
-}
-
 Mesh unit_icosphere(int level) {
   Mesh mesh = icosahedron();
   for (int i = 0; i < level; ++i) mesh = subdivided(mesh);
@@ -168,6 +147,26 @@ Mesh radial(int corners, const std::function<double(int)>& radius) {
 }
 
 }  // namespace
+
+Mesh subdivided(const Mesh& in) {
+  Mesh out;
+  out.vertices = in.vertices;
+  std::map<std::pair<VertexId, VertexId>, VertexId> midpoints;
+  const auto midpoint = [&](VertexId a, VertexId b) {
+    const auto [it, fresh] = midpoints.try_emplace(std::minmax(a, b), id(out.vertices.size()));
+    if (fresh) out.vertices.push_back((in.vertices[a] + in.vertices[b]) / 2);
+    return it->second;
+  };
+  for (FaceId f = 0; f < in.face_count(); ++f) {
+    const auto c = in.face(f);
+    const VertexId ab = midpoint(c[0], c[1]), bc = midpoint(c[1], c[2]), ca = midpoint(c[2], c[0]);
+    add(out, {c[0], ab, ca});
+    add(out, {c[1], bc, ab});
+    add(out, {c[2], ca, bc});
+    add(out, {ab, bc, ca});
+  }
+  return out;
+}
 
 Mesh icosahedron() {
   const double g = std::numbers::phi;

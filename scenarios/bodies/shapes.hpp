@@ -85,6 +85,9 @@ Mesh l_shape();                        ///< three unit cells in an L
 Mesh comb(int teeth, int length = 4);  ///< cells in a row with a tooth of `length` cells on every second one
 Mesh box_with_void();  ///< 3 x 3 x 3 cells without the central one: two components, one a void
 
+/// Splits every triangle into four, with new vertices at the edges' midpoints.
+Mesh subdivided(const Mesh& mesh);
+
 // Round bodies.
 Mesh icosphere(int level, double radius = 1, const Point3& centre = {0, 0, 0});  ///< 20 * 4^level triangles
 Mesh bumpy_sphere(int level, std::uint64_t seed,

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <set>
 
 #include <doctest/doctest.h>
@@ -58,32 +57,6 @@ void check_translation(const LrbRep& a, const Pose& pose_a, const LrbRep& b, con
   CHECK(result.translation.norm() >= result.depth->upper * (1 - 1e-12));
   const Pose moved{pose_b.r, pose_b.t + result.translation};
   CHECK(collide(a, pose_a, b, moved).relation == Relation::separate);
-}
-
-/// Divides each triangle into four.
-Mesh finer(const Mesh& mesh) {
-  Mesh out;
-  out.dim = 3;
-  out.vertices = mesh.vertices;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, VertexId> midpoints;
-  const auto midpoint = [&](VertexId v, VertexId w) {
-    const auto [it, is_new] = midpoints.try_emplace(std::minmax(v.value(), w.value()), kNull);
-    if (is_new) {
-      it->second = VertexId(out.vertices.size());
-      out.vertices.push_back(0.5 * (mesh.vertices[v] + mesh.vertices[w]));
-    }
-    return it->second;
-  };
-  for (FaceId f = 0; f < mesh.face_count(); ++f) {
-    const auto v = mesh.face(f);
-    REQUIRE(v.size() == 3);
-    const VertexId m[3] = {midpoint(v[0], v[1]), midpoint(v[1], v[2]), midpoint(v[2], v[0])};
-    out.add_face(std::array<VertexId, 3>{v[0], m[0], m[2]});
-    out.add_face(std::array<VertexId, 3>{v[1], m[1], m[0]});
-    out.add_face(std::array<VertexId, 3>{v[2], m[2], m[1]});
-    out.add_face(std::array<VertexId, 3>{m[0], m[1], m[2]});
-  }
-  return out;
 }
 
 }  // namespace
@@ -164,20 +137,22 @@ TEST_CASE("clash: enclosed, equal, flush") {
   CHECK(kind_of(a, small) == ClashKind::b_inside_a);
   CHECK(kind_of(small, a) == ClashKind::a_inside_b);
   CHECK(kind_of(a, a) == ClashKind::equal);
-  CHECK(kind_of(a, finer(a)) == ClashKind::equal);
+  CHECK(kind_of(a, shapes::subdivided(a)) == ClashKind::equal);
   const Mesh flush = shapes::box({0, 0.25, 0.25}, {0.5, 0.5, 0.5});
   CHECK(kind_of(a, flush) == ClashKind::b_inside_a);
   CHECK(ask(a, flush).shares_faces);
   CHECK(!ask(a, small).shares_faces);
   check_holds(ask(a, small).depth, 0.5, 1e-11);
   check_holds(ask(a, a).depth, 1, 1e-11);
-  check_holds(ask(a, finer(a)).volume, 1, 1e-10);
+  check_holds(ask(a, shapes::subdivided(a)).volume, 1, 1e-10);
   check_holds(ask(a, a).volume, 1, 1e-10);
   // A plate within the other body: at most its own volume.
   const double top = 0.5 + 1e-11;
   check_holds(ask(a, shapes::box({0.25, 0.25, 0.5}, {0.75, 0.75, top})).volume, 0.25 * (top - 0.5), 5e-12);
   // At most that of the box of the overlap.
-  check_holds(ask(finer(a), finer(shapes::box({1 - 0x1p-40, 0, 0}, {2, 1, 1}))).volume, 0x1p-40, 9e-12);
+  check_holds(
+      ask(shapes::subdivided(a), shapes::subdivided(shapes::box({1 - 0x1p-40, 0, 0}, {2, 1, 1}))).volume,
+      0x1p-40, 9e-12);
   // Shifted along an edge: no face crosses another.
   const ClashResult shifted = ask(a, shapes::translated(a, {0.5, 0, 0}));
   CHECK(shifted.kind == ClashKind::protrudes);
@@ -462,8 +437,8 @@ TEST_CASE("clash: the same solid in more faces gives the same intervals") {
     const ClashResult first = ask(a, b, turned, request);
     Mesh fine_a = a, fine_b = b;
     for (int level = 0; level < 2; ++level) {
-      fine_a = finer(fine_a);
-      fine_b = finer(fine_b);
+      fine_a = shapes::subdivided(fine_a);
+      fine_b = shapes::subdivided(fine_b);
       const ClashResult r = ask(fine_a, fine_b, turned, request);
       CHECK(r.kind == first.kind);
       const auto close = [&](const std::optional<ProvedInterval>& x, const std::optional<ProvedInterval>& y) {
