@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 #include <span>
@@ -191,19 +190,6 @@ class FigureJob {
     return pose;
   }
 
-  /// A panel or an inset.
-  struct Piece {
-    const View* view;
-    std::size_t moment;
-    std::size_t block, panel;
-    PanelPlace place;
-    double scale;                  ///< points per unit of the view
-    const Inset* inset = nullptr;  ///< null: a panel
-    double magnification = 1;
-    AlignedBox2d shown = {};    ///< part of the view
-    bool has_one_line = false;  ///< of an inset: to its frame
-  };
-
   /// Collects panels, each followed by its insets.
   void find_pieces() {
     pieces_.clear();
@@ -216,44 +202,10 @@ class FigureJob {
         pieces_.push_back({view, moment, b, panel, place, block.scale, nullptr, 1,
                            painter_.shown_part(place, block.scale)});
         for (std::size_t k = 0; k < place.insets.size(); ++k) add_inset(b, i, panel, k);
-        uncross(pieces_.size() - place.insets.size() - 1);
+        const auto insets = pieces_.end() - static_cast<std::ptrdiff_t>(place.insets.size());
+        uncross(insets[-1], {insets, pieces_.end()});
       }
     }
-  }
-
-  /// Exchanges the squares of a panel's insets, which are the pieces after it, so that the fewest lines to
-  /// their frames cross. If some cross in any order, each has one line instead of two.
-  void uncross(std::size_t panel) {
-    constexpr std::size_t kMax = 6;  // of which all orders are tried
-    const std::span<Piece> insets(&pieces_[panel] + 1, pieces_.size() - panel - 1);
-    if (insets.size() < 2 || insets.size() > kMax) return;
-    std::vector<AlignedBox2d> squares, best;
-    for (const Piece& inset : insets) squares.push_back(inset.place.box);
-    const auto put = [&](const std::vector<AlignedBox2d>& boxes) {
-      for (std::size_t k = 0; k < insets.size(); ++k) insets[k].place.box = boxes[k];
-    };
-    const auto is_before = [](const AlignedBox2d& a, const AlignedBox2d& b) {
-      return std::pair(a.min().y(), a.min().x()) < std::pair(b.min().y(), b.min().x());
-    };
-    std::sort(squares.begin(), squares.end(), is_before);
-    std::ptrdiff_t least = std::numeric_limits<std::ptrdiff_t>::max();
-    do {
-      put(squares);
-      std::vector<render::Canvas::Loop> lines;
-      std::ptrdiff_t crossings = 0;
-      for (const Piece& inset : insets)
-        for (const std::size_t k : {1, 2}) {
-          const render::Canvas::Loop line = frame_of(pieces_[panel], inset)[k];
-          crossings += std::count_if(lines.begin(), lines.end(), [&](const render::Canvas::Loop& other) {
-            return cross(line[0], line[1], other[0], other[1]);
-          });
-          lines.push_back(line);
-        }
-      if (crossings < least) best = squares;
-      least = std::min(least, crossings);
-    } while (std::next_permutation(squares.begin(), squares.end(), is_before));
-    put(best);
-    for (Piece& inset : insets) inset.has_one_line = least > 0;
   }
 
   /// Adds an inset: the target with its surroundings, in a square. Its magnification is limited, so that its
@@ -403,21 +355,6 @@ class FigureJob {
     for (std::size_t i = 0; i < places.size(); ++i)
       canvas.text({places[i].text, texts[i], layout_.text_height, false, style().ink, render::Align::centre,
                    style().paper});
-  }
-
-  /// Returns the frame of an inset in its panel, and the two lines that connect both, which may be the same.
-  static std::array<render::Canvas::Loop, 3> frame_of(const Piece& panel, const Piece& inset) {
-    const auto on_paper = [&](const Vector2d& x) {
-      return Vector2d(panel.place.box.min() + (x - panel.shown.min()) * panel.scale);
-    };
-    const AlignedBox2d frame(on_paper(inset.shown.min()), on_paper(inset.shown.max())),
-        &box = inset.place.box;
-    const render::Canvas::Loop line = {{frame.center().x(), frame.max().y()},
-                                       {box.center().x(), box.min().y()}};
-    if (inset.has_one_line) return {render::corners(frame), line, line};
-    return {render::corners(frame),
-            {Vector2d(frame.min().x(), frame.max().y()), box.min()},
-            {frame.max(), Vector2d(box.max().x(), box.min().y())}};
   }
 
   void paint_frame(render::Canvas& canvas, const Piece& panel, const Piece& inset) const {

@@ -12,17 +12,6 @@
 #include <lrbscope/render/scene.hpp>
 
 namespace lrb::figure {
-bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
-  const auto turn = [](const Vector2d& p, const Vector2d& q, const Vector2d& r) {
-    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
-  };
-  const auto around = [](const Vector2d& p, const Vector2d& q) {
-    return AlignedBox2d(p.cwiseMin(q), p.cwiseMax(q));
-  };
-  return turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0 &&
-         around(a, b).intersects(around(c, d));
-}
-
 namespace {
 
 using Eigen::AlignedBox2d;
@@ -253,6 +242,62 @@ std::vector<AlignedBox2d> target_boxes(const Inset& inset, const render::Project
     if (const auto at = projection.to_pixel(x)) out.extend(*at);
   if (out.isEmpty()) throw InputError(inset.option + ": is behind the camera of its panel");
   return {out};
+}
+
+bool cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
+  const auto turn = [](const Vector2d& p, const Vector2d& q, const Vector2d& r) {
+    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
+  };
+  const auto around = [](const Vector2d& p, const Vector2d& q) {
+    return AlignedBox2d(p.cwiseMin(q), p.cwiseMax(q));
+  };
+  return turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0 &&
+         around(a, b).intersects(around(c, d));
+}
+
+std::array<render::Canvas::Loop, 3> frame_of(const Piece& panel, const Piece& inset) {
+  const auto on_paper = [&](const Vector2d& x) {
+    return Vector2d(panel.place.box.min() + (x - panel.shown.min()) * panel.scale);
+  };
+  const AlignedBox2d frame(on_paper(inset.shown.min()), on_paper(inset.shown.max())), &box = inset.place.box;
+  const render::Canvas::Loop line = {{frame.center().x(), frame.max().y()},
+                                     {box.center().x(), box.min().y()}};
+  if (inset.has_one_line) return {render::corners(frame), line, line};
+  return {render::corners(frame),
+          {Vector2d(frame.min().x(), frame.max().y()), box.min()},
+          {frame.max(), Vector2d(box.max().x(), box.min().y())}};
+}
+
+void uncross(const Piece& panel, std::span<Piece> insets) {
+  constexpr std::size_t kMax = 6;  // of which all orders are tried
+  if (insets.size() < 2 || insets.size() > kMax) return;
+  std::vector<AlignedBox2d> squares, best;
+  for (const Piece& inset : insets) squares.push_back(inset.place.box);
+  const auto put = [&](const std::vector<AlignedBox2d>& boxes) {
+    for (std::size_t k = 0; k < insets.size(); ++k) insets[k].place.box = boxes[k];
+  };
+  const auto is_before = [](const AlignedBox2d& a, const AlignedBox2d& b) {
+    return std::pair(a.min().y(), a.min().x()) < std::pair(b.min().y(), b.min().x());
+  };
+  std::sort(squares.begin(), squares.end(), is_before);
+  std::ptrdiff_t least = std::numeric_limits<std::ptrdiff_t>::max();
+  do {
+    put(squares);
+    std::vector<render::Canvas::Loop> lines;
+    std::ptrdiff_t crossings = 0;
+    for (const Piece& inset : insets)
+      for (const std::size_t k : {1, 2}) {
+        const render::Canvas::Loop line = frame_of(panel, inset)[k];
+        crossings += std::count_if(lines.begin(), lines.end(), [&](const render::Canvas::Loop& other) {
+          return cross(line[0], line[1], other[0], other[1]);
+        });
+        lines.push_back(line);
+      }
+    if (crossings < least) best = squares;
+    least = std::min(least, crossings);
+  } while (std::next_permutation(squares.begin(), squares.end(), is_before));
+  put(best);
+  for (Piece& inset : insets) inset.has_one_line = least > 0;
 }
 
 Vector3d anchor(const Target& target, const LrbRep& rep, const Pose& pose) {

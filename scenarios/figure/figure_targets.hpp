@@ -2,6 +2,7 @@
 /// Faces, regions and contacts that a figure points out, by callouts with text and insets that enlarge them.
 /// Lengths are in points, x to the right, y down.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,6 +10,9 @@
 
 #include <Eigen/Geometry>
 
+#include "render/canvas.hpp"
+#include "render/pictures/frame_spec.hpp"
+#include "scenarios/figure/figure_layout.hpp"
 #include <lrbscope/contact.hpp>
 #include <lrbscope/lrb_rep.hpp>
 #include <lrbscope/pose.hpp>
@@ -70,6 +74,26 @@ void add_outlines(render::DrawList& list, const Target& target, const LrbRep& re
 std::vector<Eigen::AlignedBox2d> target_boxes(const Inset& inset, const render::Projection& projection,
                                               const LrbRep& rep, const Pose& pose,
                                               std::span<const ContactRegion> contacts);
+
+/// A panel of a figure, or an inset.
+struct Piece {
+  const pictures::FrameSpec::View* view;
+  std::size_t moment;
+  std::size_t block, panel;
+  PanelPlace place;
+  double scale;                  ///< points per unit of the view
+  const Inset* inset = nullptr;  ///< null: a panel
+  double magnification = 1;
+  Eigen::AlignedBox2d shown = {};  ///< part of the view
+  bool has_one_line = false;       ///< of an inset: to its frame
+};
+
+/// Returns the frame of an inset in its panel, and the two lines that connect both, which may be the same.
+std::array<render::Canvas::Loop, 3> frame_of(const Piece& panel, const Piece& inset);
+
+/// Exchanges the squares of a panel's insets so that the fewest lines to their frames cross. If some cross in
+/// any order, each has one line instead of two.
+void uncross(const Piece& panel, std::span<Piece> insets);
 
 /// Returns the point of a face or region that a callout points to: the centroid of the face, or of the lid
 /// closest to the lids' centre.
