@@ -434,19 +434,29 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wr
   SceneHighlight highlight;
   if (!wrong) highlight.under_test = {pair.pair.a, pair.pair.b};
   Scene scene = build_scene(named, highlight);
-  for (const auto& [side, corners] : {std::pair(Side::a, &of_a), {Side::b, &of_b}})
+  const std::optional<SeparatingBoxes> boxes = deciding_boxes(pair, bodies);
+  DrawList whole;
+  if (wrong) {
+    whole = scene.list;
+    add_mark(whole, bounds(both).center(), palette::kWrong, 8);
+  }
+  // The bodies are ghosts around two boxes, or around faces that they may hide.
+  if (boxes || wrong) make_translucent(scene.list, 60);
+  for (const auto& [side, corners] : {std::pair(Side::a, &of_a), {Side::b, &of_b}}) {
+    DrawTriangle face;
+    face.colour = palette::body(side);
+    if (wrong) scene.list.add_polygon(*corners, face);
     outline(scene.list, *corners, wrong ? palette::kWrong : palette::edge_of(palette::body(side)), 3);
+  }
   // The contact's corners, or the closest points, with the segment, polygon or plane between them.
   std::vector<Vector3d> points(pair.nearest.begin(), pair.nearest.end());
   if (!apart) points.clear();
   for (int i = 0; i < pair.contact.corner_count && !apart; ++i) points.push_back(pair.contact.corners[i].x);
   for (const Vector3d& x : points) add_mark(scene.list, x, palette::kContact, 5);
   if (points.size() > 1) outline(scene.list, points, palette::kContact, 4);
-  const std::optional<SeparatingBoxes> boxes = deciding_boxes(pair, bodies);
   Vector3d across = pair.nearest[1] - pair.nearest[0];
   if (boxes) {
-    // The bodies are ghosts around the two boxes and the gap between them, which is seen from the side.
-    make_translucent(scene.list, 60);
+    // The gap between the boxes is seen from the side.
     add_boxes(scene.list, *boxes, style_of(StyleName::screen), true);
     const Square square = separating_square(*boxes, bodies.dim());
     if (in_3d) add_sheet(scene.list, {square.begin(), square.end()});
@@ -479,8 +489,11 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wr
     return in_3d ? fit_contact(both, bounds(bodies.points()), width, height, fit, boxes ? 1.2 : 2.5, 0.001)
                  : fit_top(both, width, height, 0.3);
   };
-  const Panel panel{std::move(scene.list), camera, "", false};
-  return draw_panels({&panel, 1}, overlay, screen_of(1200, wrong ? 560 : 900));
+  std::vector<Panel> panels = {{std::move(scene.list), camera, "", false}};
+  if (wrong)
+    panels.insert(panels.begin(),
+                  {std::move(whole), fit_points(bodies.points(), bodies.dim(), fit), "", false});
+  return draw_panels(panels, overlay, screen_of(1200, wrong ? 560 : 900));
 }
 
 namespace {

@@ -49,7 +49,7 @@ render::Image picture_of(const SelfIntersections& found, const LrbRep& body, con
 
 /// Draws two faces and the bodies around them: their intersection, or the segment between their closest
 /// points and a separating plane perpendicular to it. `wrong`: another engine got the pair wrong; then the
-/// picture is low.
+/// picture is low, and both bodies are beside it.
 render::Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wrong = false,
                          const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 

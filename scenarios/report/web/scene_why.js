@@ -54,10 +54,10 @@ export class WhyPanel {
     this.now = found && {
       kind: simplices ? "pair" : "step", key: `${step} ${simplices || ""}`, found,
     };
-    byId("why").hidden = !simplices && !separation;
+    this.command = explanations.commandFor(events.stepNumber(selection.event), simplices);
+    byId("why").hidden = !(simplices ? found || this.decision || this.command : separation);
     if (simplices) this.showPair(simplices, found);
     else if (separation) this.showStep(separation);
-    this.command = explanations.commandFor(events.stepNumber(selection.event), simplices);
     // Lines break between words, not after a hyphen of an option.
     byId("why-command").replaceChildren(...(this.command || "").split(" ").flatMap((word, i) =>
       [i ? " " : "", element("span", { style: "display: inline-block; max-width: 100%" }, word)]));
