@@ -439,8 +439,14 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wr
   if (wrong) {
     whole = scene.list;
     add_mark(whole, bounds(both).center(), palette::kWrong, 8);
+    // Of the bodies, which may hide the faces, the close-up shows what is near them.
+    const Eigen::AlignedBox3d box = bounds(both);
+    const Eigen::AlignedBox3d near(box.min() - box.diagonal() / 2, box.max() + box.diagonal() / 2);
+    std::erase_if(scene.list.triangles, [&](const DrawTriangle& t) {
+      return !near.intersects(bounds({t.x.begin(), t.x.end()}));
+    });
   }
-  // The bodies are ghosts around two boxes, or around faces that they may hide.
+  // The bodies are ghosts around two boxes or around a wrong pair.
   if (boxes || wrong) make_translucent(scene.list, 60);
   for (const auto& [side, corners] : {std::pair(Side::a, &of_a), {Side::b, &of_b}}) {
     DrawTriangle face;
@@ -486,7 +492,8 @@ Image picture_of(const PairExplanation& pair, const PosedBodies& bodies, bool wr
   FitOptions fit;
   if (in_3d) fit.view = apart && across.norm() > 0 ? view_beside(across, up) : onto_both(of_a, of_b, up);
   const auto camera = [&](double width, double height) {
-    return in_3d ? fit_contact(both, bounds(bodies.points()), width, height, fit, boxes ? 1.2 : 2.5, 0.001)
+    return in_3d ? fit_contact(both, bounds(bodies.points()), width, height, fit, boxes || wrong ? 1.2 : 2.5,
+                               0.001)
                  : fit_top(both, width, height, 0.3);
   };
   std::vector<Panel> panels = {{std::move(scene.list), camera, "", false}};
