@@ -13,6 +13,7 @@
 #include "tools/terminal.hpp"
 #include <lrbscope/core/file.hpp>
 #include <lrbscope/error.hpp>
+#include <lrbscope/render/overlay.hpp>
 
 namespace lrb::tools {
 namespace {
@@ -126,7 +127,14 @@ void write_page(const std::vector<profile::Check>& checks, bool wrong, const Che
   const report::Folder folder(o.folder);
   report::Document page("Answers and visits of " + std::string(checks.size() == 1 ? "an engine" : "engines"),
                         "An exact query checks each answer. Prices of visits: needed, proof, or waste.");
-  page.verdict(wrong ? "wrong answers" : "no wrong answers", !wrong).command(globals.command_line);
+  profile::CheckSums all;
+  for (const profile::Check& c : checks) all += c.sum();
+  page.verdict(wrong ? "wrong in " +
+                           std::to_string(all.outcomes[static_cast<std::size_t>(profile::Judgement::wrong)]) +
+                           " of " + render::counted(all.queries, "query", "queries")
+                     : "no wrong answers",
+               !wrong)
+      .command(globals.command_line);
   note(globals, profile::add_checks(page, checks, view_with(o.up).up));
   page.write(folder);
 }

@@ -307,11 +307,15 @@ class Experiment {
     return true;
   }
 
-  void start_expected(FamilyWork& family) {
+  workers::Worker::Task task_for(const FamilyWork& family) const {
     workers::Worker::Task task;
     task.question = [this, &family](std::uint64_t k) { return question_of(record(family, k)).dump(); };
-    task.begin = begin_;
-    task.end = end_;
+    task.begin = begin_, task.end = end_;
+    return task;
+  }
+
+  void start_expected(FamilyWork& family) {
+    workers::Worker::Task task = task_for(family);
     task.limit = kBruteForceTimeout;
     task.on_line = [this, &family](std::uint64_t, const std::string& line) {
       family.expected.push_back(expected_from(line));
@@ -328,10 +332,7 @@ class Experiment {
 
   void start_method(FamilyWork& family, std::size_t m) {
     const workers::WorkerMethod& method = o_.methods[m];
-    workers::Worker::Task task;
-    task.question = [this, &family](std::uint64_t k) { return question_of(record(family, k)).dump(); };
-    task.begin = begin_;
-    task.end = end_;
+    workers::Worker::Task task = task_for(family);
     for (; task.begin < end_; ++task.begin) {
       const Record* known = unfinished_.find(record(family, task.begin, method.info.name));
       if (known == nullptr) break;

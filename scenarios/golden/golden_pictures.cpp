@@ -1,6 +1,7 @@
 #include "scenarios/golden/golden_pictures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -119,32 +120,20 @@ bool same_bodies(const trace::Trace& x, const trace::Trace& y) {
                             &trace::BodyInfo::hash);
 }
 
-/// The two runs where they begin to differ.
-struct DivergencePictures {
-  render::Image expected, actual;  ///< empty if there is nothing to draw
-  std::string expected_caption, actual_caption;
-  std::string note;  ///< why there is nothing to draw, or which step is shown
-};
-
 /// Draws both runs at the first differing event, or at the end of its step; as a whole and in a close-up,
-/// through the same cameras.
-DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
-                                   const trace::Divergence& divergence) {
-  DivergencePictures out;
+/// through the same cameras. Returns why there is nothing to draw, or which step is shown.
+std::string draw_divergence(const Golden& golden, const GoldenRun& run, const trace::Divergence& divergence,
+                            std::array<frames::PaintedFrame, 2>& out) {
   const trace::Trace &expected = golden.trace, &actual = run.recording.trace;
-  if (!same_bodies(expected, actual)) {
-    out.note = "A body itself has changed: the approved run cannot be replayed on it.";
-    return out;
-  }
+  if (!same_bodies(expected, actual))
+    return "A body itself has changed: the approved run cannot be replayed on it.";
   std::optional<trace::EventId> event = divergence.event;
   const std::optional<std::size_t> step = step_of(expected, actual, divergence, event);
-  if (!step) {
-    out.note = "One of the runs has no step, so there is nothing to draw.";
-    return out;
-  }
+  if (!step) return "One of the runs has no step, so there is nothing to draw.";
+  std::string note;
   if (expected.steps.size() != actual.steps.size() && !divergence.step)
-    out.note = "The pictures are of step " + std::to_string(actual.steps[*step].index) +
-               ", the last that both runs have.";
+    note = "The pictures are of step " + std::to_string(actual.steps[*step].index) +
+           ", the last that both runs have.";
   const SideShown sides[2] = {{expected, event_to_show(expected, *step, event)},
                               {actual, event_to_show(actual, *step, event)}};
   const std::vector<const LrbRep*> reps = recorded_run_of(run).reps;
@@ -157,16 +146,11 @@ DivergencePictures draw_divergence(const Golden& golden, const GoldenRun& run,
     if (framing.contacts.empty() && *step < run.recording.results.size())
       framing.contacts = render::contact_points(run.recording.results[*step].regions);
     const pictures::FrameSpec spec = spec_for(run, !framing.contacts.empty());
-    frames::PaintedFrame pictures[2] = {paint(run, sides[0], spec, framing),
-                                        paint(run, sides[1], spec, framing)};
-    out.expected = std::move(pictures[0].image);
-    out.actual = std::move(pictures[1].image);
-    out.expected_caption = pictures[0].caption;
-    out.actual_caption = pictures[1].caption;
+    out = {paint(run, sides[0], spec, framing), paint(run, sides[1], spec, framing)};
   } catch (const InputError& e) {
-    out.note = std::string("Cannot be drawn: ") + e.what();
+    note = std::string("Cannot be drawn: ") + e.what();
   }
-  return out;
+  return note;
 }
 
 report::PngBytes png_of(const render::Image& image) {
@@ -255,9 +239,10 @@ void add_comparison(GoldenResult& result, report::Comparison comparison, const r
 }  // namespace
 
 void add_divergence(GoldenResult& result, const Golden& golden, const GoldenRun& run) {
-  const DivergencePictures pictures = draw_divergence(golden, run, *result.verdict.divergence);
+  std::array<frames::PaintedFrame, 2> pictures;
+  const std::string note = draw_divergence(golden, run, *result.verdict.divergence, pictures);
   std::string text = result.verdict.divergence->message();
-  for (const std::string& more : {result.verdict.diagnosis, pictures.note})
+  for (const std::string& more : {result.verdict.diagnosis, note})
     if (!more.empty()) text += ". " + more;
   add_comparison(result,
                  {result.name + "-divergence",
@@ -265,8 +250,8 @@ void add_divergence(GoldenResult& result, const Golden& golden, const GoldenRun&
                   text,
                   false,
                   {},
-                  {pictures.expected_caption, pictures.actual_caption}},
-                 pictures.expected, pictures.actual);
+                  {pictures[0].caption, pictures[1].caption}},
+                 pictures[0].image, pictures[1].image);
 }
 
 void add_maps(GoldenResult& result, const Golden& golden, const GoldenRun& run) {

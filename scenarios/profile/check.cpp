@@ -70,7 +70,11 @@ render::Image draw_waste(std::span<const WasteMap> maps, const Eigen::Vector3d& 
 }
 
 render::Image draw_wrong(const ShownPair& wrong, const Eigen::Vector3d& up) {
-  const bodies::LoadedBody a = captured_body(wrong.meshes[0]), b = captured_body(wrong.meshes[1]);
+  const auto body = [](capture::Mesh mesh) {
+    mesh.name = std::filesystem::path(mesh.name).stem().string();
+    return captured_body(mesh);
+  };
+  const bodies::LoadedBody a = body(wrong.meshes[0]), b = body(wrong.meshes[1]);
   const pictures::PosedBodies posed{a.rep, wrong.poses[0], b.rep, wrong.poses[1]};
   return pictures::picture_of(explain_pair(a.rep, posed.pose_a, b.rep, posed.pose_b, wrong.pair), posed, true,
                               up);
