@@ -110,8 +110,7 @@ template Option* App::add_flag(const std::string&, bool&, const std::string&);
 template Option* App::add_flag(const std::string&, std::optional<bool>&, const std::string&);
 
 Option* App::get_option(const std::string& name) {
-  const auto named =
-      std::find_if(options_.begin(), options_.end(), [&](const Option& o) { return o.name() == name; });
+  const auto named = std::ranges::find_if(options_, [&](const Option& o) { return o.name() == name; });
   return &*named;
 }
 
@@ -174,8 +173,7 @@ std::string help_text(const CLI::App& app, const CLI::ParseError& request) {
 
 /// Returns the first word that is not an option: the command's name.
 std::string command_word(const std::vector<std::string>& words) {
-  const auto word =
-      std::find_if(words.begin(), words.end(), [](const std::string& w) { return !w.starts_with('-'); });
+  const auto word = std::ranges::find_if(words, [](const std::string& w) { return !w.starts_with('-'); });
   return word == words.end() ? "" : *word;
 }
 
@@ -229,8 +227,7 @@ std::string plain_message(const CLI::App& root, const CLI::App& app, const CLI::
            in_quotes(text.substr(equals + 3));
   if (!text.starts_with("The following argument")) return text;
   const std::vector<std::string> words = root.remaining(true);
-  const auto option =
-      std::find_if(words.begin(), words.end(), [](const std::string& w) { return w.starts_with("--"); });
+  const auto option = std::ranges::find_if(words, [](const std::string& w) { return w.starts_with("--"); });
   if (option == words.end()) return text;
   std::vector<std::string> known;
   for (const CLI::Option* o : app.get_options())
@@ -254,8 +251,8 @@ std::string usage_error(const CLI::App& root, const CLI::ParseError& error, std:
   if (word.empty() || !root.get_subcommands(is_named).empty()) {
     app = &named_command(root);
     const std::vector<std::string> words = root.remaining(true);
-    const auto other = std::find_if(words.begin(), words.end(),
-                                    [](const std::string& w) { return !w.empty() && w[0] != '-'; });
+    const auto other =
+        std::ranges::find_if(words, [](const std::string& w) { return !w.empty() && w[0] != '-'; });
     word = other == words.end() ? "" : *other;
   }
   const std::string help = " (see " + call_of(*app) + " --help)";

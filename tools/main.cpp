@@ -128,8 +128,7 @@ std::vector<std::string> usual_form(std::vector<std::string> words) {
     words.erase(words.begin());
     words.emplace_back("--help");
   }
-  std::replace(words.begin(), std::find(words.begin(), words.end(), "--"), std::string("-"),
-               std::string("/dev/stdin"));
+  std::replace(words.begin(), std::ranges::find(words, "--"), std::string("-"), std::string("/dev/stdin"));
   return words;
 }
 
@@ -139,8 +138,7 @@ void prepare_files(const App& app) {
       "--output", "--draw", "--draw-separation", "--chart", "--animate", "--junit", "--markdown"};
   std::vector<std::string> outputs;
   app.for_each_value([&](const std::string& option, const std::string& value) {
-    if (std::find(kOutputs.begin(), kOutputs.end(), option) != kOutputs.end())
-      return outputs.push_back(value);
+    if (std::ranges::find(kOutputs, option) != kOutputs.end()) return outputs.push_back(value);
     hold_pipe(value);
     protect_input(value);
   });

@@ -80,13 +80,11 @@ bool alike(const Placement& p, const Placement& q, double angle, double distance
 
 std::vector<Trial> Search::worst(std::size_t most) const {
   std::vector<Trial> sorted = trials;
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Trial& p, const Trial& q) { return p.cost > q.cost; });
+  std::ranges::stable_sort(sorted, [](const Trial& p, const Trial& q) { return p.cost > q.cost; });
   std::vector<Trial> out;
   for (const Trial& t : sorted) {
     if (out.size() == most) break;
-    if (std::none_of(out.begin(), out.end(), [&](const Trial& o) { return alike(o.at, t.at); }))
-      out.push_back(t);
+    if (std::ranges::none_of(out, [&](const Trial& o) { return alike(o.at, t.at); })) out.push_back(t);
   }
   return out;
 }

@@ -200,8 +200,8 @@ std::vector<methods::MethodStyle> styles_of(const std::vector<methods::MethodInf
       const auto& [colour, shape] = kSpares[spares++ % kSpares.size()];
       style = {m.name, colour, shape};
     }
-    const auto same = std::find_if(out.begin(), out.end(),
-                                   [&](const methods::MethodStyle& s) { return s.title == style.title; });
+    const auto same =
+        std::ranges::find_if(out, [&](const methods::MethodStyle& s) { return s.title == style.title; });
     series_of[m.name] = static_cast<std::size_t>(same - out.begin());
     if (same == out.end()) out.push_back(std::move(style));
   }
@@ -235,7 +235,7 @@ std::vector<const Point*> frontier(const std::vector<const Point*>& panel) {
   std::vector<const Point*> all, out;
   for (const Point* p : panel)
     if (p->frontier || !p->ties.empty()) all.push_back(p);
-  std::sort(all.begin(), all.end(), [](const Point* p, const Point* q) {
+  std::ranges::sort(all, [](const Point* p, const Point* q) {
     return p->error() != q->error() ? p->error() < q->error() : p->median < q->median;
   });
   for (const Point* p : all)
@@ -344,7 +344,7 @@ constexpr int kCsvDigits = 6;
 std::vector<std::size_t> errors_in(const std::vector<Point>& points) {
   std::vector<std::size_t> out;
   for (std::size_t m = 0; m < kMetrics; ++m)
-    if (std::any_of(points.begin(), points.end(), [&](const Point& p) { return p.errors[m].has_value(); }))
+    if (std::ranges::any_of(points, [&](const Point& p) { return p.errors[m].has_value(); }))
       out.push_back(m);
   return out;
 }
@@ -352,8 +352,7 @@ std::vector<std::size_t> errors_in(const std::vector<Point>& points) {
 report::Table table_of_points(const std::vector<Point>& points) {
   report::Table t{"All points", {"bodies", "pose", "method", "median \u00b5s", "p95", "p99", "cold \u00b5s"}};
   const std::vector<std::size_t> errors = errors_in(points);
-  const bool built =
-      std::any_of(points.begin(), points.end(), [](const Point& p) { return p.build_seconds > 0; });
+  const bool built = std::ranges::any_of(points, [](const Point& p) { return p.build_seconds > 0; });
   for (const std::size_t m : errors) t.columns.emplace_back(metric_info(static_cast<Metric>(m)).name);
   for (const char* c : {"proven bound", "failed", "frontier"}) t.columns.emplace_back(c);
   if (built) t.columns.insert(t.columns.end(), {"build s", "MB", "face tests"});
@@ -499,10 +498,9 @@ report::Chart summary_chart(const std::vector<DataSet>& sets, const std::vector<
   std::vector<Point> means;
   for (const Point& like : points) {  // in the order of the methods
     std::vector<const Point*>& of = by_name[name_of(like.method, like.setting)];
-    if (of.size() == panels.size() &&
-        std::all_of(of.begin(), of.end(), [](const Point* p) { return p->median > 0; })) {
-      Point& mean = means.emplace_back(**std::max_element(
-          of.begin(), of.end(), [](const Point* p, const Point* q) { return p->error() < q->error(); }));
+    if (of.size() == panels.size() && std::ranges::all_of(of, [](const Point* p) { return p->median > 0; })) {
+      Point& mean = means.emplace_back(**std::ranges::max_element(
+          of, [](const Point* p, const Point* q) { return p->error() < q->error(); }));
       mean.set = kAllSets;
       mean.pose_class = classes.front();
       for (double Point::*time : {&Point::median, &Point::least, &Point::most}) {
@@ -511,7 +509,7 @@ report::Chart summary_chart(const std::vector<DataSet>& sets, const std::vector<
         mean.*time = geometric_mean(times);
       }
       mean.ties.clear();
-      mean.always_wrong = std::all_of(of.begin(), of.end(), [](const Point* p) { return p->always_wrong; });
+      mean.always_wrong = std::ranges::all_of(of, [](const Point* p) { return p->always_wrong; });
     }
     of.clear();
   }
@@ -548,8 +546,8 @@ report::Document accuracy_page(Quantity quantity, const std::vector<DataSet>& se
     // Its key is that of all charts.
     for (const report::Chart& chart : charts)
       for (const report::Series& s : chart.series)
-        if (!s.label.empty() && std::none_of(summary.series.begin(), summary.series.end(),
-                                             [&](const auto& known) { return known.label == s.label; }))
+        if (!s.label.empty() &&
+            std::ranges::none_of(summary.series, [&](const auto& known) { return known.label == s.label; }))
           summary.series.push_back({s.label, {}, {}, s.style});
     doc.chart(summary);
   }

@@ -29,8 +29,8 @@ std::vector<PairHistory> pair_histories(const CrowdRun& run) {
     }
   std::vector<PairHistory> out;
   for (const auto& [bodies, history] : of) out.push_back(history);
-  std::stable_sort(out.begin(), out.end(),
-                   [](const PairHistory& x, const PairHistory& y) { return x.face_tests > y.face_tests; });
+  std::ranges::stable_sort(
+      out, [](const PairHistory& x, const PairHistory& y) { return x.face_tests > y.face_tests; });
   return out;
 }
 
@@ -112,16 +112,15 @@ void write_kinds(JsonWriter& w, const spec::Crowd& crowd, const CrowdRun& run) {
 }
 
 std::size_t count(const CrowdStep& step, Relation relation) {
-  return static_cast<std::size_t>(
-      std::count_if(step.queries.begin(), step.queries.end(),
-                    [relation](const CrowdQuery& q) { return q.result.relation == relation; }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      step.queries, [relation](const CrowdQuery& q) { return q.result.relation == relation; }));
 }
 
 std::size_t bodies_in_contact(const CrowdStep& step, std::size_t bodies) {
   std::vector<bool> in(bodies);
   for (const CrowdQuery& q : step.queries)
     if (q.meets()) in[q.bodies.i] = in[q.bodies.j] = true;
-  return static_cast<std::size_t>(std::count(in.begin(), in.end(), true));
+  return static_cast<std::size_t>(std::ranges::count(in, true));
 }
 
 Counters sum(const CrowdStep& step) {
@@ -167,8 +166,7 @@ void write_step(JsonWriter& w, const CrowdStep& step, std::size_t index, std::si
   w.member("box_tests", step.broad_phase.box_tests).member("swaps", step.broad_phase.swaps);
   w.member("sorted_afresh", step.broad_phase.sorted_afresh);
   w.member("pairs", std::uint64_t{step.queries.size()}).end_object();
-  const auto kept =
-      std::count_if(step.queries.begin(), step.queries.end(), [](const CrowdQuery& q) { return q.is_kept; });
+  const auto kept = std::ranges::count_if(step.queries, [](const CrowdQuery& q) { return q.is_kept; });
   if (kept > 0) w.member("kept_answers", static_cast<std::uint64_t>(kept));
   write_relations(w, step);
   w.member("bodies_in_contact", std::uint64_t{bodies_in_contact(step, bodies)});
@@ -234,7 +232,7 @@ namespace {
 
 std::uint32_t find_body(const std::vector<std::string>& names, const std::string& name,
                         const std::string& crowd) {
-  const auto at = std::find(names.begin(), names.end(), name);
+  const auto at = std::ranges::find(names, name);
   if (at == names.end())
     throw InputError("--pair: " + crowd + " has no body " + printable_name(name) +
                      "; its bodies are named by kind and number, from " + names.front() + " to " +

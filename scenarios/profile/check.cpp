@@ -49,8 +49,7 @@ pictures::Panel panel_of(const LrbRep& rep, const WasteMap& map, const render::S
 /// scale. Throws EnvironmentError if this machine cannot render.
 render::Image draw_waste(std::span<const WasteMap> maps, const Eigen::Vector3d& up) {
   double most = 0;
-  for (const WasteMap& map : maps)
-    most = std::max(most, *std::max_element(map.waste.begin(), map.waste.end()));
+  for (const WasteMap& map : maps) most = std::max(most, *std::ranges::max_element(map.waste));
   const render::ScaleBar scale{"wasted visits per triangle (log scale)", most / kRange, most, true};
   std::vector<pictures::Panel> panels;
   for (const WasteMap& map : maps) {
@@ -83,9 +82,8 @@ render::Image draw_wrong(const ShownPair& wrong, const Eigen::Vector3d& up) {
 std::uint64_t visits_in(const capture::Capture& capture) {
   std::uint64_t out = 0;
   for (const capture::Query& q : capture.queries)
-    out += static_cast<std::uint64_t>(
-        std::count_if(q.events.begin(), q.events.end(),
-                      [](const capture::Event& e) { return e.kind == capture::EventKind::nodes; }));
+    out += static_cast<std::uint64_t>(std::ranges::count_if(
+        q.events, [](const capture::Event& e) { return e.kind == capture::EventKind::nodes; }));
   return out;
 }
 
@@ -236,7 +234,7 @@ std::vector<WasteMap> most_wasted(const capture::Capture& capture, PriceBook& bo
     const double sum = std::accumulate(waste.begin(), waste.end(), 0.0);
     if (sum > 0) all.push_back({sum, {capture.meshes[capture.trees[tree].mesh], std::move(waste)}});
   }
-  std::stable_sort(all.begin(), all.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::ranges::stable_sort(all, [](const auto& x, const auto& y) { return x.first > y.first; });
   std::vector<WasteMap> out;
   for (std::size_t i = 0; i < std::min(kMaps, all.size()); ++i) out.push_back(std::move(all[i].second));
   return out;
@@ -349,10 +347,9 @@ Check check(const capture::Capture& capture, const CheckSettings& settings,
 report::Table price_table(std::span<const Check> checks) {
   report::Table t{"Benefit of the visits",
                   {"engine", "queries", "visits", "needed", "proof", "test", "volumes", "order"}};
-  const bool unsplit =
-      std::any_of(checks.begin(), checks.end(), [](const Check& c) { return c.sum().prices.unsplit > 0; });
-  const bool unattributed = std::any_of(checks.begin(), checks.end(),
-                                        [](const Check& c) { return c.sum().prices.unattributed > 0; });
+  const bool unsplit = std::ranges::any_of(checks, [](const Check& c) { return c.sum().prices.unsplit > 0; });
+  const bool unattributed =
+      std::ranges::any_of(checks, [](const Check& c) { return c.sum().prices.unattributed > 0; });
   if (unsplit) t.columns.emplace_back("volumes or order");
   if (unattributed) t.columns.emplace_back("unattributed");
   for (const char* column : {"volume tests", "triangle tests", "for nothing"}) t.columns.emplace_back(column);

@@ -185,9 +185,9 @@ void Finder::find_in_volumes(const NodeMeasures& measures, double tolerance) {
       for (const std::uint32_t t : subtrees.triangles_of(n))
         for (std::size_t c = 0; c < 3; ++c) {
           const Vector3d& p = mesh_.vertices[mesh_.triangles[t][c]];
-          const bool is_inside =
-              !half.empty() && std::all_of(half.begin(), half.end(),
-                                           [&](const HalfSpace& h) { return h.normal.dot(p) <= h.offset; });
+          const bool is_inside = !half.empty() && std::ranges::all_of(half, [&](const HalfSpace& h) {
+            return h.normal.dot(p) <= h.offset;
+          });
           if (is_inside) continue;
           const double by = volumes_.outside(n, p);
           if (!(by > most)) continue;
@@ -208,8 +208,7 @@ void Finder::find_in_volumes(const NodeMeasures& measures, double tolerance) {
       children_do[p] = 0;
   }
   // The worst first.
-  std::stable_sort(outside.begin(), outside.end(),
-                   [](const FoundFault& x, const FoundFault& y) { return x.by > y.by; });
+  std::ranges::stable_sort(outside, [](const FoundFault& x, const FoundFault& y) { return x.by > y.by; });
   for (FoundFault& fault : outside) add(std::move(fault));
 }
 
@@ -298,8 +297,7 @@ std::string text_of(const FoundFault& fault, const capture::Tree& tree, const ca
   switch (fault.kind) {
     case TreeFault::two_parents:
       if (fault.node == 0) return node + ", the root, is a child of " + list(", ", " and of ");
-      if (std::all_of(fault.nodes.begin(), fault.nodes.end(),
-                      [&](std::uint32_t n) { return n == fault.nodes[0]; }))
+      if (std::ranges::all_of(fault.nodes, [&](std::uint32_t n) { return n == fault.nodes[0]; }))
         return node + " is " + std::to_string(fault.nodes.size()) + " times a child of node " +
                id(fault.nodes[0]);
       return node + " has " + std::to_string(fault.nodes.size()) + " parents: " + list(", ", " and ");

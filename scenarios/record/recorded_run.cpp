@@ -148,9 +148,9 @@ OpenStep open_step(const std::string& run, std::optional<std::uint32_t> number) 
   if (trace.header.bodies.size() != 2)
     throw InputError(printable_name(path) + ": expected a run of two bodies, found one body");
   if (trace.steps.empty()) throw InputError(printable_name(path) + ": the trace has no time steps");
-  const auto at = number ? std::find_if(trace.steps.begin(), trace.steps.end(),
-                                        [&](const trace::Step& s) { return s.index == *number; })
-                         : trace.steps.end() - 1;
+  const auto at =
+      number ? std::ranges::find_if(trace.steps, [&](const trace::Step& s) { return s.index == *number; })
+             : trace.steps.end() - 1;
   if (at == trace.steps.end())
     throw InputError(printable_name(path) + ": no step " + std::to_string(*number) +
                      " in the trace; expected one from " + std::to_string(trace.steps.front().index) +
@@ -281,8 +281,7 @@ void record_collision(const spec::Scenario& s, Recording& r, const ProgressRepor
 std::vector<RegionId> outside_in(const LrbRep& rep) {
   std::vector<RegionId> order(rep.region_count());
   std::iota(order.begin(), order.end(), RegionId{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](RegionId x, RegionId y) { return rep.layer(x) > rep.layer(y); });
+  std::ranges::stable_sort(order, [&](RegionId x, RegionId y) { return rep.layer(x) > rep.layer(y); });
   return order;
 }
 
@@ -299,8 +298,7 @@ std::string transitions(const LrbRep& rep, const std::vector<RegionId>& regions,
   CellId outer = kOutside;
   for (const RegionId region : regions) {
     const auto lids = rep.lids(region);
-    const auto lid =
-        std::find_if(lids.begin(), lids.end(), [&](FaceId f) { return rep.outer_cell(f) == outer; });
+    const auto lid = std::ranges::find_if(lids, [&](FaceId f) { return rep.outer_cell(f) == outer; });
     if (lid != lids.end()) out += "face " + std::to_string(*lid) + " -> ";  // a void has no lids
     out += "region " + std::to_string(region) + " -> ";
     outer = region;

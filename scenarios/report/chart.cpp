@@ -226,8 +226,7 @@ std::vector<std::pair<const Series*, std::size_t>> key_of(std::span<const Chart>
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
       const Series& s = panel.series[i];
       const auto same = [&](const auto& entry) { return entry.first->label == s.label; };
-      if (!s.label.empty() && !s.x.empty() && std::none_of(out.begin(), out.end(), same))
-        out.emplace_back(&s, i);
+      if (!s.label.empty() && !s.x.empty() && std::ranges::none_of(out, same)) out.emplace_back(&s, i);
     }
   return out;
 }
@@ -304,9 +303,8 @@ Dimensions dimensions_of(const PrintLayout& layout, std::span<const Chart> panel
   const auto columns = static_cast<std::size_t>(layout.columns), key = is_common ? key_of(panels).size() : 0;
   const auto rows = static_cast<double>((panels.size() + columns - 1) / columns);
   // A label of all panels is only below the last ones: the rows above need less space.
-  const bool has_common_label = std::all_of(panels.begin(), panels.end(), [&](const Chart& panel) {
-    return panel.x.label == panels.front().x.label;
-  });
+  const bool has_common_label = std::ranges::all_of(
+      panels, [&](const Chart& panel) { return panel.x.label == panels.front().x.label; });
   const double gap = is_common ? 0.5 * line : has_common_label ? 2 * line : out.bottom;
   out.top = line * (panels.size() < 2 ? 1 : is_common ? 3 : 2);
   out.row = out.top + layout.panel_height + gap;
@@ -318,7 +316,7 @@ Dimensions dimensions_of(const PrintLayout& layout, std::span<const Chart> panel
 }
 
 bool is_empty(const Chart& panel) {
-  return std::all_of(panel.series.begin(), panel.series.end(), [](const Series& s) { return s.x.empty(); });
+  return std::ranges::all_of(panel.series, [](const Series& s) { return s.x.empty(); });
 }
 
 }  // namespace

@@ -81,15 +81,14 @@ std::vector<report::Chart> engine_charts(const frames::RecordedRun& p) {
   if (totals_of(p).checked) {
     const auto add_unless_zero = [&](const char* name, std::uint64_t record::AnswerScore::*which) {
       report::Series s = series(name, [&](std::size_t i) { return score_at(p, i).*which; });
-      if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return y > 0; }))
-        pairs.series.push_back(std::move(s));
+      if (std::ranges::any_of(s.y, [](double y) { return y > 0; })) pairs.series.push_back(std::move(s));
     };
     add_unless_zero("missed", &record::AnswerScore::missed);
     add_unless_zero("false", &record::AnswerScore::false_pairs);
   }
   const auto is_above = [](const report::Chart& chart, double least) {
-    return std::any_of(chart.series.begin(), chart.series.end(), [&](const report::Series& s) {
-      return std::any_of(s.y.begin(), s.y.end(), [&](double y) { return y > least; });
+    return std::ranges::any_of(chart.series, [&](const report::Series& s) {
+      return std::ranges::any_of(s.y, [&](double y) { return y > least; });
     });
   };
   std::vector<report::Chart> out;
@@ -114,8 +113,8 @@ report::Table engine_table(const frames::RecordedRun& p) {
   constexpr std::size_t kMaxRows = 200;
   const trace::Trace& trace = *p.trace;
   const auto any = [&](const auto& test) {
-    return std::any_of(trace.steps.begin(), trace.steps.end(),
-                       [&](const trace::Step& s) { return s.result.engine && test(*s.result.engine); });
+    return std::ranges::any_of(
+        trace.steps, [&](const trace::Step& s) { return s.result.engine && test(*s.result.engine); });
   };
   const auto first = [&]() -> const trace::EngineReport* {
     for (const trace::Step& s : trace.steps)
@@ -136,8 +135,7 @@ report::Table engine_table(const frames::RecordedRun& p) {
       const Counters& c = trace.steps[i].result.counters;
       return std::pair(checked && score_at(p, i).is_wrong, c.box_tests + c.face_tests);
     };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t x, std::size_t y) { return key(x) > key(y); });
+    std::ranges::stable_sort(order, [&](std::size_t x, std::size_t y) { return key(x) > key(y); });
     order.resize(kMaxRows);
   }
   for (const std::size_t i : order) {

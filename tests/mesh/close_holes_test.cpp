@@ -43,8 +43,7 @@ ClosedHoles close(const Mesh& m) {
   }
   CHECK(after[MeshFault::open_edge].count == left);
   CHECK(out.new_faces == out.mesh.face_count() - m.face_count());
-  if (std::none_of(out.holes.begin(), out.holes.end(),
-                   [](const Hole& h) { return h.state == HoleState::closed_as_ring; }))
+  if (std::ranges::none_of(out.holes, [](const Hole& h) { return h.state == HoleState::closed_as_ring; }))
     CHECK(faces == out.mesh.face_count());
   return out;
 }
@@ -109,8 +108,7 @@ TEST_CASE("two touching holes are two loops; a hole interrupted by a fin is no l
     for (const VertexId v : ball.face(f)) n += std::count(ball.face(g).begin(), ball.face(g).end(), v) > 0;
     return n;
   };
-  const auto across =
-      std::find_if(at_first.begin(), at_first.end(), [&](FaceId f) { return share(f, at_first[0]) == 1; });
+  const auto across = std::ranges::find_if(at_first, [&](FaceId f) { return share(f, at_first[0]) == 1; });
   const auto rims = loops_of(without_faces(ball, {at_first[0], *across}));
   REQUIRE(rims.size() == 2);
   CHECK(rims[0].edges() == 3);

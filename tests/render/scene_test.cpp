@@ -41,8 +41,7 @@ std::set<std::uint32_t> ids(const render::DrawList& list, render::Layer layer) {
 }
 
 bool has_key(const render::Scene& scene, const std::string& text) {
-  return std::any_of(scene.key.begin(), scene.key.end(),
-                     [&](const render::LegendItem& i) { return i.text == text; });
+  return std::ranges::any_of(scene.key, [&](const render::LegendItem& i) { return i.text == text; });
 }
 
 }  // namespace
@@ -166,10 +165,9 @@ TEST_CASE("exploded lids keep their shape and move outward, layer by layer") {
   const render::Scene later =
       render::build_scene(std::vector<render::SceneBody>{{&rep, &refined, {}, {}, ""}}, highlight, options);
   CHECK(later.list.lines.empty());
-  const auto green =
-      std::count_if(later.list.triangles.begin(), later.list.triangles.end(), [&](const auto& t) {
-        return render::with_alpha(t.colour, 255) == render::style_of(options.style).refining;
-      });
+  const auto green = std::ranges::count_if(later.list.triangles, [&](const auto& t) {
+    return render::with_alpha(t.colour, 255) == render::style_of(options.style).refining;
+  });
   CHECK(static_cast<std::size_t>(green) == rep.lids(3).size());
 }
 
