@@ -28,15 +28,14 @@ std::string engine_sentence(const frames::RecordedRun& p) {
 }
 
 void add_engine_answer(report::Document& doc, const frames::RecordedRun& p) {
-  using render::counted, render::group_digits;
+  using render::group_digits;
   const record::EngineTotals t = totals_of(p);
   if (!t.checked)
     doc.verdict("answers not checked");
   else if (t.wrong_queries == 0)
     doc.verdict("no wrong answer");
   else
-    doc.verdict("wrong in " + group_digits(t.wrong_queries) + " of " + counted(t.queries, "query", "queries"),
-                false);
+    doc.verdict("wrong in " + group_digits(t.wrong_queries) + " of " + group_digits(t.queries), false);
   // Errors come first, and right verdicts are no comfort beside them.
   if (t.checked && t.has_pairs)
     doc.number({"Missed pairs", group_digits(t.missed),
