@@ -1,7 +1,10 @@
 // On any number of threads the same bytes, and the same report.
 
+#include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -109,10 +112,17 @@ TEST_CASE("workers run every task once, rethrow the exception of the lowest task
     }
     for (int round = 0; round < 20; ++round) {
       std::vector<int> done(100, 0);
+      std::atomic<int> later{0}, failed{0};
       const auto failing = [&] {
         workers.for_each(done.size(), [&](std::size_t i, unsigned) {
-          if (i % 10 == 7) throw std::runtime_error(std::to_string(i));
-          ++done[i];
+          if (i % 10 != 7) return void(++done[i]);
+          // The lowest waits for another, if one runs at the same time, which then fails after it.
+          if (i > 7) ++later;
+          for (int wait = 0; threads > 1 && wait < 50 && (i > 7 ? failed : later) == 0; ++wait)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+          if (i > 7) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+          ++failed;
+          throw std::runtime_error(std::to_string(i));
         });
       };
       CHECK_THROWS_WITH_AS(failing(), "7", std::runtime_error);

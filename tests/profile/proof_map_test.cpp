@@ -42,11 +42,10 @@ ProofMap checked_map(const frames::RecordedRun& recorded, std::span<const Simple
         grid[a * columns + b] = cell.argument;
       }
   CHECK(once);
-  CHECK(std::count(times.begin(), times.end(), 0) == 0);
+  CHECK(std::ranges::count(times, 0) == 0);
   for (const Argument argument : {Argument::child_boxes, Argument::node_boxes, Argument::floats,
                                   Argument::filter, Argument::contact, Argument::tolerance})
-    CHECK(static_cast<std::uint64_t>(std::count(grid.begin(), grid.end(), argument)) ==
-          pairs_of(*map, argument));
+    CHECK(static_cast<std::uint64_t>(std::ranges::count(grid, argument)) == pairs_of(*map, argument));
   const frames::MapAxis a(frames::walked_shape(recorded, 0, 0)), b(frames::walked_shape(recorded, 1, 0));
   for (const SimplexPair& pair : truth) {
     const Argument by = grid[std::size_t{a.rank[pair.a]} * columns + b.rank[pair.b]];
@@ -90,9 +89,9 @@ TEST_CASE("the cells of a proof map tile the square of all pairs, for every kind
         for (const EventLevel level : {EventLevel::nodes, EventLevel::all}) {
           const trace::Trace trace = recorded(a, b, step.pose, {.mode = mode}, level);
           const ProofMap map = checked_map(run_of(a, b, trace), step.truth.pairs, mode == Mode::all_pairs);
-          CHECK(map.visits == static_cast<std::uint64_t>(std::count_if(
-                                  trace.events.begin(), trace.events.end(),
-                                  [](const auto& e) { return e.kind == EventKind::node_pair; })));
+          CHECK(map.visits ==
+                static_cast<std::uint64_t>(std::ranges::count_if(
+                    trace.events, [](const auto& e) { return e.kind == EventKind::node_pair; })));
           not_needed += pairs_of(map, Argument::open);
         }
   }

@@ -90,7 +90,7 @@ TEST_CASE("pairs are listed by their cost, with the sums over all steps") {
     CHECK(p.most_pairs == most);
   }
   const std::string table = crowd::pair_table(run, 2);
-  CHECK(std::count(table.begin(), table.end(), '\n') == 4);  // titles, two pairs, and how many are left out
+  CHECK(std::ranges::count(table, '\n') == 4);  // titles, two pairs, and how many are left out
   CHECK(table.find(run.names[pairs[0].bodies.i]) != std::string::npos);
   const json summary = json::parse(crowd::crowd_summary(crowd, run));
   CHECK(summary["pairs_by_cost"].size() == pairs.size());
@@ -207,8 +207,7 @@ TEST_CASE("a crowd keeps the answers of bodies that have not moved; they equal t
   }
   CHECK(kept > 20);
   CHECK(queried > 20);
-  CHECK(std::all_of(run.steps[5].queries.begin(), run.steps[5].queries.end(),
-                    [](const crowd::CrowdQuery& q) { return q.is_kept; }));
+  CHECK(std::ranges::all_of(run.steps[5].queries, [](const crowd::CrowdQuery& q) { return q.is_kept; }));
 }
 
 TEST_CASE("two bodies of a crowd are a run of their own, with the same answers") {
@@ -229,8 +228,8 @@ TEST_CASE("two bodies of a crowd are a run of their own, with the same answers")
         CHECK(trace::equal(recording.trace.steps[step].pose_b, run.motion.pose(pair.j, step)));
         const CollideResult& found = recording.results[step];
         const auto& queries = run.steps[step].queries;
-        const auto query = std::find_if(queries.begin(), queries.end(),
-                                        [&](const crowd::CrowdQuery& q) { return q.bodies == pair; });
+        const auto query =
+            std::ranges::find_if(queries, [&](const crowd::CrowdQuery& q) { return q.bodies == pair; });
         // A pair that was not queried has disjoint boxes.
         CHECK(found.relation == (query == queries.end() ? Relation::separate : query->result.relation));
         CHECK(fingerprint(found.pairs) ==

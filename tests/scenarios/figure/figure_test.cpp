@@ -189,8 +189,7 @@ TEST_CASE("the outline of a region: closed chains of the edges that only one lid
         for (std::size_t i = 0; i < (rep.dim() == 2 ? 1 : corners.size()); ++i)
           ++lids_at[std::minmax({corners[i], corners[(i + 1) % corners.size()]})];
       }
-      const auto border =
-          std::count_if(lids_at.begin(), lids_at.end(), [](const auto& edge) { return edge.second == 1; });
+      const auto border = std::ranges::count_if(lids_at, [](const auto& edge) { return edge.second == 1; });
       std::ptrdiff_t found = 0;
       for (const std::vector<Vector3d>& chain : outlines({Target::Kind::region, 0, r}, rep, {})) {
         CHECK(chain.front() == chain.back());
