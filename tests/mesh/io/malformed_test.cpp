@@ -220,7 +220,7 @@ TEST_CASE("malformed OFF files are rejected by line") {
       {"OFF\n3\n", "a.off:2: ", "the number of faces"},
       {"OFF\n3 1 x\n", "a.off:2: ", "found 'x'"},
       {"OFF\n3 1 0 0\n", "a.off:2: ", "found '0', expected the end of the line of counts"},
-      {"OFF\n-3 1 0\n", "a.off:2: ", "found '-3', expected 0 or more"},
+      {"OFF\n-1 1 0\n", "a.off:2: ", "found '-1', expected 0 or more"},
       {"OFF\n4000000000 1 0\n" + points, "a.off:2: ", "counts of 4000000000 vertices and 1 faces"},
       {"OFF\n3 4000000000 0\n" + points, "a.off:2: ", "counts of 3 vertices and 4000000000 faces"},
       {"OFF\n9223372036854775807 9223372036854775807 0\n", "a.off:2: ", "counts of 9223372036854775807"},
