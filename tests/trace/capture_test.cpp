@@ -83,7 +83,7 @@ std::size_t find_chunk(const Bytes& bytes, const char* kind, int n = 0) {
 }
 template <class Number>
 Bytes with(Bytes bytes, const char* kind, std::size_t offset, Number value, int n = 0) {
-  std::memcpy(bytes.data() + find_chunk(bytes, kind, n) + kHeader + offset, &value, sizeof value);
+  std::memcpy(bytes.data() + (find_chunk(bytes, kind, n) + kHeader + offset), &value, sizeof value);
   return bytes;
 }
 Bytes without(Bytes bytes, const char* kind, int n = 0) {
